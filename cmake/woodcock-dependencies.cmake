@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+# What the library needs. The installed package includes this file too: whoever links the static
+# library links these.
+
+# OpenVDB installs its find module outside CMake's search path.
+find_path(WOODCOCK_OPENVDB_MODULE_DIR FindOpenVDB.cmake
+    HINTS $ENV{OPENVDB_ROOT} ${OPENVDB_ROOT}
+    PATH_SUFFIXES
+        lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB lib/cmake/OpenVDB lib64/cmake/OpenVDB
+    REQUIRED)
+mark_as_advanced(WOODCOCK_OPENVDB_MODULE_DIR)
+list(APPEND CMAKE_MODULE_PATH ${WOODCOCK_OPENVDB_MODULE_DIR})
+
+# A function, because FindOpenVDB sets BUILD_SHARED_LIBS for whoever calls it, and talks a lot.
+function(woodcock_find_openvdb)
+    set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+    find_package(OpenVDB 10.0 QUIET REQUIRED COMPONENTS openvdb)
+endfunction()
+woodcock_find_openvdb()
+
+# Through pkg-config: Debian's CMake packages of these two name files that are not installed.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
+pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
+
+find_package(TBB 2021 REQUIRED COMPONENTS tbb)
+find_package(fmt REQUIRED)
+find_package(tomlplusplus REQUIRED)

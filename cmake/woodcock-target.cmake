@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+# How our own code is compiled: woodcock_target(name) for every target of this project.
+
+if(PROJECT_IS_TOP_LEVEL)
+    find_program(CCACHE ccache)
+    mark_as_advanced(CCACHE)
+    if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+        set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+    endif()
+    if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+        set(CMAKE_BUILD_TYPE Release)
+    endif()
+endif()
+
+function(woodcock_target name)
+    target_compile_features(${name} PUBLIC cxx_std_20)
+    set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+    target_compile_options(${name} PRIVATE
+        -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+        -fno-math-errno -fno-trapping-math
+        $<$<BOOL:${WOODCOCK_NATIVE}>:-march=native>)
+    if(WOODCOCK_SANITIZE)
+        set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
+        target_compile_options(${name} PRIVATE ${sanitizers} -fno-omit-frame-pointer)
+        target_link_options(${name} PUBLIC ${sanitizers})
+    endif()
+endfunction()

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/camera/camera.h"
+
+namespace woodcock {
+
+CameraRay Camera::ray(double x, double y, int pixelWidth, int pixelHeight) const {
+    const double h = pixelHeight;
+    const double sx = (2 * x - pixelWidth) / h, sy = (h - 2 * y) / h;  // +-1 at top and bottom
+    if (kind == Kind::Orthographic) {
+        const double half = height / 2;
+        return {worldFromCamera.point({sx * half, sy * half, 0}),
+                normalize(worldFromCamera.vector({0, 0, -1}))};
+    }
+    const double t = std::tan(fovY * pi / 360);
+    return {worldFromCamera.translation, normalize(worldFromCamera.vector({sx * t, sy * t, -1}))};
+}
+
+Affine3d lookAtTransform(Vec3d eye, Vec3d lookAt, Vec3d up) {
+    const Vec3d z = normalize(eye - lookAt);
+    const Vec3d x = normalize(cross(up, z));
+    return {{x, cross(z, x), z}, eye};
+}
+
+Camera Camera::perspective(Vec3d eye, Vec3d lookAt, Vec3d up, double fovY) {
+    return {Kind::Perspective, lookAtTransform(eye, lookAt, up), fovY, 1};
+}
+
+Camera Camera::orthographic(Vec3d eye, Vec3d lookAt, Vec3d up, double height) {
+    return {Kind::Orthographic, lookAtTransform(eye, lookAt, up), 40, height};
+}
+
+}  // namespace woodcock

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/base/affine.h"
+
+namespace woodcock {
+
+/// World-space ray with unit direction.
+struct CameraRay {
+    Vec3d origin, direction;
+};
+
+/// Pinhole or orthographic. Looks along -z of camera space, +y up; worldFromCamera is a rigid
+/// motion.
+struct Camera {
+    enum class Kind { Perspective, Orthographic };
+    Kind kind = Kind::Perspective;
+    Affine3d worldFromCamera;
+    double fovY = 40;   ///< full vertical angle in degrees (perspective)
+    double height = 1;  ///< world units from bottom to top (orthographic)
+
+    /// The ray through film position (x, y), in pixels of an image of width x height, y down.
+    CameraRay ray(double x, double y, int width, int height) const;
+
+    static Camera perspective(Vec3d eye, Vec3d lookAt, Vec3d up, double fovY);
+    static Camera orthographic(Vec3d eye, Vec3d lookAt, Vec3d up, double height);
+};
+
+/// The rigid motion that stands at `eye` and looks at `lookAt`; `up` is any vector not along it.
+Affine3d lookAtTransform(Vec3d eye, Vec3d lookAt, Vec3d up);
+
+}  // namespace woodcock

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
+#include "woodcock/base/vec.h"
+#include "woodcock/grid/block_table.h"
+#include "woodcock/grid/field_source.h"
+
+namespace woodcock {
+
+/// Smallest and largest value that something takes.
+struct Range {
+    float min = 0, max = 0;
+    void add(Range r) { min = std::min(min, r.min), max = std::max(max, r.max); }
+    bool operator==(const Range&) const = default;
+};
+
+/// A sparse grid made for reading: 8x8x8 bricks in flat memory, found in O(1), each block with the
+/// exact range of the *reconstructed* field. Values sit at integer index positions and are
+/// interpolated trilinearly; outside everything lies the background. Knows nothing of sigma.
+class Field {
+public:
+    int channels() const { return channels_; }
+    Storage storage() const { return half_ ? Storage::Half : Storage::Float; }
+    float background(int channel = 0) const { return background_[static_cast<size_t>(channel)]; }
+
+    /// Index-space box outside which the reconstruction is the background: one voxel around all
+    /// voxels of a leaf or tile that differ from it. Empty when there are none.
+    const Box3d& support() const { return support_; }
+
+    /// The stored value of voxel `v` (any index).
+    float voxel(Vec3i v, int channel = 0) const {
+        const std::uint32_t ref = blockOf(v).ref;
+        if (ref & constantBit)
+            return constants_[(ref & ~constantBit) * channelCount() + static_cast<size_t>(channel)];
+        return stored((std::size_t{ref} * 512 + offset(v)) * channelCount() +
+                      static_cast<size_t>(channel));
+    }
+
+    /// Trilinear interpolation at index-space position `p`.
+    float trilinear(Vec3d p, int channel = 0) const {
+        const Vec3i v = floorToInt(p);
+        const Vec3d f = p - v.as<double>();
+        const auto lerp = [](double t, double a, double b) { return a + t * (b - a); };
+        const auto row = [&](int y, int z) {
+            return lerp(f.x, voxel(v + Vec3i{0, y, z}, channel), voxel(v + Vec3i{1, y, z}, channel));
+        };
+        return static_cast<float>(
+            lerp(f.z, lerp(f.y, row(0, 0), row(1, 0)), lerp(f.y, row(0, 1), row(1, 1))));
+    }
+
+    /// One of the eight corners around `p`, chosen with its trilinear weight: the expectation is
+    /// trilinear(p), at an eighth of the loads. Use only where the value enters linearly.
+    /// Pharr et al. 2024, "Filtering After Shading With Stochastic Texture Filtering".
+    Vec3i stochasticVoxel(Vec3d p, std::uint64_t bits) const {
+        constexpr double unit = 0x1p-21;
+        return floorToInt(p + Vec3d{static_cast<double>(bits & 0x1fffff) + 0.5,
+                                 static_cast<double>((bits >> 21) & 0x1fffff) + 0.5,
+                                 static_cast<double>((bits >> 42) & 0x1fffff) + 0.5} *
+                               unit);
+    }
+    float stochastic(Vec3d p, std::uint64_t bits, int channel = 0) const {
+        return voxel(stochasticVoxel(p, bits), channel);
+    }
+
+    /// Bounds of the reconstruction over the closed cube of the block that holds voxel `8 block`,
+    /// over all channels. A cube may be shared by more than one block (Found::log2Size).
+    struct Block {
+        std::uint32_t ref = 0;  ///< brick, or constantBit | constant
+        Range range;
+    };
+    BlockTable<Block>::Found findBlock(Vec3i block) const { return table_.find(block); }
+    const BlockTable<Block>& blocks() const { return table_; }
+
+    /// The range over all of space.
+    Range range() const { return range_; }
+    std::size_t brickCount() const { return brickCount_; }
+    std::size_t bytes() const;  ///< memory held, tables included
+
+private:
+    friend class FieldBuilder;
+    static constexpr std::uint32_t constantBit = 0x80000000u;
+
+    std::size_t channelCount() const { return static_cast<std::size_t>(channels_); }
+    static std::size_t offset(Vec3i v) {
+        return static_cast<std::size_t>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
+    }
+    const Block& blockOf(Vec3i v) const { return *table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value; }
+    float stored(std::size_t i) const { return half_ ? decodeHalf(halves_[i]) : floats_[i]; }
+
+    /// IEEE half to float, for finite values: exact, denormals included.
+    static float decodeHalf(std::uint16_t h) {
+#ifdef __F16C__
+        return _cvtsh_ss(h);
+#else
+        const std::uint32_t magnitude = (h & 0x7fffu) << 13;
+        const float v = std::bit_cast<float>(magnitude) * 0x1p112f;
+        return h & 0x8000u ? -v : v;
+#endif
+    }
+
+    int channels_ = 1;
+    bool half_ = false;
+    std::array<float, 3> background_{};
+    Box3d support_;
+    Range range_;
+    std::size_t brickCount_ = 0;
+    BlockTable<Block> table_;
+    std::vector<float> constants_;
+    std::vector<float> floats_;         // either these or
+    std::vector<std::uint16_t> halves_;  // these: 512 x channels values a brick
+};
+
+/// Builds the field in parallel. Errors: Input when half storage is asked for values beyond 65504.
+Field buildField(const FieldSource& source, Storage storage);
+
+}  // namespace woodcock

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+/// How a field keeps its voxels. Auto takes half where every value survives it exactly (grids that
+/// were saved as half, say), float otherwise.
+enum class Storage { Auto, Half, Float };
+
+/// A constant cube of voxels: `size` (8, 128 or 4096) voxels wide, at a multiple of its size.
+struct FieldTile {
+    Vec3i origin;
+    int size = 8;
+    std::array<float, 3> value{};
+};
+
+/// What a sparse grid says, whoever holds it: leaves of 8x8x8 voxels and constant tiles, in index
+/// space; `background` everywhere else. Scalars use the first of three channels.
+struct FieldSource {
+    int channels = 1;  ///< 1 or 3
+    std::array<float, 3> background{};
+    std::vector<Vec3i> leafOrigins;  ///< multiples of 8
+    std::vector<FieldTile> tiles;    ///< overlapping neither each other nor a leaf
+    /// Writes the 512 x channels values of leaf `i`: x slowest, z fastest, channels innermost.
+    /// Called once for each leaf, from many threads.
+    std::function<void(size_t i, std::span<float> values)> copyLeaf;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/grid/grid_roles.h"
+
+#include <algorithm>
+#include <cctype>
+#include <span>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+
+namespace woodcock {
+
+namespace {
+
+std::string lowerCase(std::string_view text) {
+    std::string s(text);
+    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return std::tolower(c); });
+    return s;
+}
+
+/// In lower case, the likeliest first.
+std::span<const std::string_view> namesOf(GridRole role) {
+    static constexpr std::string_view density[]{"density", "smoke"};
+    static constexpr std::string_view emission[]{"flame", "heat", "flames", "fuel", "burn"};
+    static constexpr std::string_view temperature[]{"temperature"};
+    static constexpr std::string_view colour[]{"cd", "color", "colour", "rgb", "albedo"};
+    static constexpr std::string_view velocity[]{"vel", "v", "velocity"};
+    switch (role) {
+        case GridRole::Density: return density;
+        case GridRole::Emission: return emission;
+        case GridRole::Temperature: return temperature;
+        case GridRole::Colour: return colour;
+        case GridRole::Velocity: return velocity;
+    }
+    return {};
+}
+
+/// Scalars that are no density although they may stand alone in a file.
+bool meansSomethingElse(std::string_view name) {
+    static constexpr std::string_view others[]{"shadow", "collision", "collider", "pressure",
+                                               "divergence", "surface", "mask"};
+    const std::string lower = lowerCase(name);
+    if (std::find(std::begin(others), std::end(others), lower) != std::end(others)) return true;
+    for (GridRole role :
+         {GridRole::Emission, GridRole::Temperature, GridRole::Colour, GridRole::Velocity}) {
+        const auto names = namesOf(role);
+        if (std::find(names.begin(), names.end(), lower) != names.end()) return true;
+    }
+    return lower.starts_with("vel.") || lower.starts_with("velocity");
+}
+
+template <class Match>
+const GridListing* firstWhere(const VdbFile& file, Match match) {
+    const auto it = std::find_if(file.grids.begin(), file.grids.end(), match);
+    return it == file.grids.end() ? nullptr : &*it;
+}
+
+/// Says so where the file holds others of the same name.
+FoundGrid found(const VdbFile& file, const GridListing& grid, std::string note = {}) {
+    const auto same = std::count_if(file.grids.begin(), file.grids.end(),
+                                    [&](const GridListing& g) { return g.name == grid.name; });
+    if (note.empty() && same > 1)
+        note = fmt::format("{} holds {} grids named '{}'; took {}", file.path.string(), same,
+                           grid.name, grid.uniqueName);
+    return {grid, std::move(note)};
+}
+
+const GridListing* findByRoleName(const VdbFile& file, GridRole role) {
+    for (std::string_view name : namesOf(role))
+        if (const auto* grid = firstWhere(
+                file, [&](const GridListing& g) { return lowerCase(g.name) == name; }))
+            return grid;
+    return nullptr;
+}
+
+}  // namespace
+
+const char* roleName(GridRole role) {
+    switch (role) {
+        case GridRole::Density: return "density";
+        case GridRole::Emission: return "emission";
+        case GridRole::Temperature: return "temperature";
+        case GridRole::Colour: return "colour";
+        case GridRole::Velocity: return "velocity";
+    }
+    return "";
+}
+
+FoundGrid findGrid(const VdbFile& file, std::string_view name) {
+    if (const auto* grid =
+            firstWhere(file, [&](const GridListing& g) { return g.uniqueName == name; }))
+        return {*grid, {}};
+    if (const auto* grid = firstWhere(file, [&](const GridListing& g) { return g.name == name; }))
+        return found(file, *grid);
+    const std::string lower = lowerCase(name);
+    if (const auto* grid = firstWhere(file, [&](const GridListing& g) {
+            return lowerCase(g.uniqueName) == lower || lowerCase(g.name) == lower;
+        }))
+        return found(file, *grid,
+                     fmt::format("'{}' is '{}' in {}", name, grid->uniqueName, file.path.string()));
+
+    std::vector<std::string> names;
+    for (const GridListing& grid : file.grids) names.push_back(grid.uniqueName);
+    const std::string near = nearestName(name, names);
+    throw inputError("grid '{}' not found in {}{}; it has: {}", name, file.path.string(),
+                     near.empty() ? "" : "; did you mean '" + near + "'?", describeGrids(file));
+}
+
+FoundGrid findGrid(const VdbFile& file, GridRole role) {
+    if (const auto* grid = findByRoleName(file, role)) return found(file, *grid);
+    if (role == GridRole::Density) {
+        std::vector<const GridListing*> candidates;
+        for (const GridListing& grid : file.grids)
+            if (grid.usable() && grid.channels == 1 && !meansSomethingElse(grid.name))
+                candidates.push_back(&grid);
+        if (candidates.size() == 1) {
+            const GridListing& only = *candidates.front();
+            return {only,
+                    fmt::format("{} has no grid named density; took '{}', its only scalar grid "
+                                "that may be one",
+                                file.path.string(), only.uniqueName)};
+        }
+    }
+    std::string names;
+    for (std::string_view name : namesOf(role))
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    throw inputError("no {} grid in {} (looked for: {}); it has: {}; name the grid to use",
+                     roleName(role), file.path.string(), names, describeGrids(file));
+}
+
+bool hasRole(const VdbFile& file, GridRole role) { return findByRoleName(file, role) != nullptr; }
+
+}  // namespace woodcock

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "woodcock/grid/vdb_file.h"
+
+namespace woodcock {
+
+/// What a grid is for, as its name tells by the customs of Houdini, Blender and EmberGen.
+enum class GridRole { Density, Emission, Temperature, Colour, Velocity };
+
+const char* roleName(GridRole role);
+
+struct FoundGrid {
+    GridListing grid;
+    std::string note;  ///< what was chosen where there was a choice; empty when the name was exact
+};
+
+/// The grid of this name: exact, `name[2]`, or in another case. Errors: Input, listing what the
+/// file holds and the nearest name.
+FoundGrid findGrid(const VdbFile& file, std::string_view name);
+
+/// The grid of this role, by the usual names in any case. A file's only scalar grid is its density,
+/// whatever its name, unless that name is known to mean something else. Errors: Input, listing what
+/// the file holds.
+FoundGrid findGrid(const VdbFile& file, GridRole role);
+
+/// True when some grid of the file has one of the role's names.
+bool hasRole(const VdbFile& file, GridRole role);
+
+}  // namespace woodcock

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/grid/vdb_load.h"
+
+#include <cmath>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/grid/grid_roles.h"
+
+namespace woodcock {
+
+namespace {
+
+std::string place(const VdbFile& file, const GridListing& grid) {
+    return fmt::format("grid '{}' in {}", grid.uniqueName, file.path.string());
+}
+
+void requireUse(const VdbFile& file, const GridListing& grid, GridUse use) {
+    if (!grid.usable())
+        throw inputError("{} cannot be used: {}", place(file, grid), grid.unusable);
+    if (use == GridUse::Colour || grid.channels == 1) return;
+    std::vector<std::string> scalars;
+    for (const GridListing& other : file.grids)
+        if (other.usable() && other.channels == 1) scalars.push_back(other.uniqueName);
+    throw inputError(
+        "{} is a vector grid ({}) where a scalar one is needed; scalar grids there: {}",
+        place(file, grid), grid.valueType, joinNames(scalars));
+}
+
+void requireContent(const VdbFile& file, const GridListing& grid,
+                    const GridStatistics& statistics) {
+    const VoxelScan& voxels = statistics.voxels;
+    if (voxels.active > 0) return;
+    if (voxels.inactiveValues == 0)
+        throw inputError("{} is empty: it has no active voxels", place(file, grid));
+    throw inputError(
+        "{} has no active voxels, but {} inactive ones with values other than the "
+        "background; activate them if they are meant to be seen (Houdini: VDB Activate)",
+        place(file, grid), voxels.inactiveValues);
+}
+
+/// Returns the note about what was repaired, if anything was.
+std::string requireSoundValues(const VdbFile& file, const GridListing& grid,
+                               const GridStatistics& statistics, const LoadOptions& options) {
+    const std::string faults = describeFaults(statistics, options.nonNegative);
+    if (faults.empty()) return {};
+    if (options.repair) return fmt::format("{}: set to zero: {}", place(file, grid), faults);
+    throw inputError("{} holds {}; --repair (in a scene file: repair = true) sets them to zero",
+                     place(file, grid), faults);
+}
+
+}  // namespace
+
+std::string describeFaults(const GridStatistics& statistics, bool nonNegative) {
+    std::string text;
+    const auto add = [&](const std::string& fault) { text += (text.empty() ? "" : ", ") + fault; };
+    const auto addVoxels = [&](const VoxelCount& voxels, const char* kind) {
+        if (voxels.count > 0)
+            add(fmt::format("{} {} voxel{} (first at [{}, {}, {}])", voxels.count, kind,
+                            voxels.count == 1 ? "" : "s", voxels.first.x, voxels.first.y,
+                            voxels.first.z));
+    };
+    addVoxels(statistics.voxels.nan, "NaN");
+    addVoxels(statistics.voxels.infinite, "infinite");
+    if (nonNegative) addVoxels(statistics.voxels.negative, "negative");
+    for (float v : statistics.background)
+        if (!std::isfinite(v) || (nonNegative && v < 0)) {
+            add(fmt::format("a background of {}", v));
+            break;
+        }
+    return text;
+}
+
+LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOptions& options) {
+    requireUse(file, grid, options.use);
+    const GridSource source =
+        readGridSource(file, grid, {.faulty = options.repair, .negative = options.nonNegative});
+    requireContent(file, grid, source.statistics);
+
+    LoadedGrid loaded;
+    if (std::string note = requireSoundValues(file, grid, source.statistics, options);
+        !note.empty())
+        loaded.notes.push_back(std::move(note));
+    if (grid.gridClass == GridClass::Staggered)
+        loaded.notes.push_back(fmt::format("{} is staggered: its values belong to the faces of "
+                                           "voxels, but are drawn at their index positions",
+                                           place(file, grid)));
+    Storage storage = options.storage;
+    if (storage == Storage::Auto)
+        storage = source.statistics.voxels.exactAsHalf ? Storage::Half : Storage::Float;
+    try {
+        loaded.field = buildField(source.field, storage);
+    } catch (const Error& e) {
+        throw Error(e.kind(), fmt::format("{}: {}", place(file, grid), e.what()));
+    }
+    loaded.worldFromIndex = *grid.worldFromIndex;
+    loaded.statistics = source.statistics;
+    return loaded;
+}
+
+LoadedGrid loadGrid(const std::filesystem::path& path, std::string_view gridName,
+                    const LoadOptions& options) {
+    const VdbFile file = listGrids(path);
+    const FoundGrid found = findGrid(file, gridName);
+    LoadedGrid loaded = loadGrid(file, found.grid, options);
+    if (!found.note.empty()) loaded.notes.insert(loaded.notes.begin(), found.note);
+    return loaded;
+}
+
+}  // namespace woodcock

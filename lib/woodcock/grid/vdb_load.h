@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/grid/field.h"
+#include "woodcock/grid/vdb_file.h"
+#include "woodcock/grid/vdb_read.h"
+
+namespace woodcock {
+
+/// What a grid is loaded as. A colour may come from a scalar grid, as grey: its field has one
+/// channel then.
+enum class GridUse { Scalar, Colour };
+
+struct LoadOptions {
+    GridUse use = GridUse::Scalar;
+    Storage storage = Storage::Auto;
+    bool nonNegative =
+        true;  ///< a coefficient: values below zero are faults, as NaN and infinity are
+    bool repair = false;      ///< faults become zero, and a note, instead of an error
+};
+
+struct LoadedGrid {
+    Field field;
+    Affine3d worldFromIndex;
+    GridStatistics statistics;       ///< of the values as they stand in the file
+    std::vector<std::string> notes;  ///< what a user should know: repairs, unusual classes
+};
+
+/// Loads a grid of a listed file. Errors: Input when the grid is of a kind that cannot be rendered,
+/// empty, of the wrong use, or holds faulty values; naming file and grid.
+LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOptions& options);
+
+/// The same, from the names of a file and a grid.
+LoadedGrid loadGrid(const std::filesystem::path& path, std::string_view gridName,
+                    const LoadOptions& options = {});
+
+/// "3 NaN voxels (first at [1, 2, 3]), 1 negative voxel (first at [4, 0, 0])"; empty for none.
+std::string describeFaults(const GridStatistics& statistics, bool nonNegative);
+
+}  // namespace woodcock

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "woodcock/image/chromaticities.h"
+
+namespace woodcock {
+
+/// How scene-linear light becomes a picture. Names are the config's, letter case aside; empty: its
+/// default.
+struct DisplaySettings {
+    std::string display, view;
+    std::string look;     ///< instead of the view's own looks
+    double exposure = 0;  ///< stops, applied in scene-linear before anything else
+};
+
+/// Scene-linear RGBA to display values; cheap to copy, may be used from many threads.
+class DisplayTransform {
+public:
+    /// In place, four floats a pixel; alpha passes through. RGB must not be multiplied by alpha.
+    void apply(std::span<float> rgba) const;
+
+private:
+    friend class ColorConfig;
+    struct Processor;
+    explicit DisplayTransform(std::shared_ptr<const Processor> processor);
+    std::shared_ptr<const Processor> processor_;
+};
+
+/// An OpenColorIO configuration.
+class ColorConfig {
+public:
+    /// `file`, or the one that $OCIO names, or the one that Woodcock ships (data/ocio). Throws
+    /// Error{Input} on one that cannot be used.
+    explicit ColorConfig(const std::filesystem::path& file = {});
+
+    /// What the user should know of it, say that some of its views need a newer OpenColorIO; empty:
+    /// nothing.
+    const std::string& note() const;
+
+    /// Of its scene_linear role, where that is recognisable by name: Rec.709, Rec.2020, ACEScg,
+    /// ACES2065-1.
+    std::optional<Chromaticities> chromaticities() const;
+
+    /// Throws Error{Usage} on names that the config does not have, and lists those that it has.
+    DisplayTransform displayTransform(const DisplaySettings& settings) const;
+
+private:
+    struct Impl;
+    static std::shared_ptr<const Impl> load(const std::filesystem::path& file);
+    std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "woodcock/image/film.h"
+
+namespace woodcock {
+
+enum class PixelType { UInt8, Half, Float };
+
+struct ImageChannel {
+    std::string name;
+    PixelType type = PixelType::Float;
+};
+
+using ImageAttribute = std::variant<int, float, std::string, std::vector<float>>;
+
+/// What an image file says beside its pixels.
+struct ImageHeader {
+    std::string format;         ///< as OpenImageIO calls it: openexr, png, jpeg
+    Film::Window window;        ///< where the pixels lie in the whole image
+    int width = 0, height = 0;  ///< of the whole image
+    std::vector<ImageChannel> channels;
+    std::vector<std::pair<std::string, ImageAttribute>> attributes;
+};
+
+/// The bytes of an image file. `pixels` holds header.window row by row, channels innermost; UInt8
+/// rounds [0, 1] to 0 ... 255 and clamps. Throws Error{Failure} with OpenImageIO's reason.
+std::vector<unsigned char> encodeImage(const ImageHeader& header, std::span<const float> pixels);
+
+}  // namespace woodcock

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/film.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+
+namespace {
+
+Rgb mean(const double (&sum)[3], std::uint64_t n) {
+    if (n == 0) return Rgb(0.0f);
+    return Rgb::map([&](int i) { return static_cast<float>(sum[i] / static_cast<double>(n)); });
+}
+
+float standardErrorOfMean(double sum, double sumOfSquares, double n) {
+    // Equal samples may leave a difference below zero by rounding.
+    const double variance = std::max(0.0, (sumOfSquares - sum * (sum / n)) / (n - 1));
+    return static_cast<float>(std::sqrt(variance / n));
+}
+
+}  // namespace
+
+Film::Film(int width, int height, Window crop) : width_(width), height_(height), crop_(crop) {
+    if (width <= 0 || height <= 0)
+        throw usageError("an image of {} x {} pixels is empty", width, height);
+    if (crop.width() <= 0 || crop.height() <= 0)
+        throw usageError(
+            "the crop from ({}, {}) to ({}, {}) is empty: its end, which is not part "
+            "of it, must lie beyond its start",
+            crop.x0, crop.y0, crop.x1, crop.y1);
+    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > width || crop.y1 > height)
+        throw usageError("the crop from ({}, {}) to ({}, {}) leaves the image of {} x {} pixels",
+                         crop.x0, crop.y0, crop.x1, crop.y1, width, height);
+    pixels_.resize(static_cast<std::size_t>(crop.width()) *
+                   static_cast<std::size_t>(crop.height()));
+}
+
+std::size_t Film::index(int x, int y) const {
+    assert(x >= crop_.x0 && x < crop_.x1 && y >= crop_.y0 && y < crop_.y1);
+    return static_cast<std::size_t>(y - crop_.y0) * static_cast<std::size_t>(crop_.width()) +
+           static_cast<std::size_t>(x - crop_.x0);
+}
+
+Film::Pixel& Film::at(int x, int y) { return pixels_[index(x, y)]; }
+
+const Film::Pixel& Film::at(int x, int y) const { return pixels_[index(x, y)]; }
+
+void Film::add(int x, int y, const FilmSample& sample) {
+    Pixel& p = at(x, y);
+    if (!sample.radiance.isFinite() || !std::isfinite(sample.alpha)) {
+        ++p.nonFinite;
+        return;
+    }
+    for (int i = 0; i < 3; ++i) {
+        const double v = sample.radiance[i];
+        p.radiance[i] += v;
+        p.radianceSquared[i] += v * v;
+    }
+    p.alpha += sample.alpha;
+    ++p.samples;
+}
+
+void Film::add(int x, int y, const DepthSample& sample) {
+    Pixel& p = at(x, y);
+    if (!sample.transmittance.isFinite() || !std::isfinite(sample.weightedDepth) ||
+        !std::isfinite(sample.weight)) {
+        ++p.nonFinite;
+        return;
+    }
+    for (int i = 0; i < 3; ++i) p.transmittance[i] += sample.transmittance[i];
+    p.weightedDepth += sample.weightedDepth;
+    p.depthWeight += sample.weight;
+    ++p.depthSamples;
+}
+
+void Film::merge(const Film& other) {
+    if (width_ != other.width_ || height_ != other.height_ || crop_ != other.crop_)
+        throw usageError("films of {} x {} and {} x {} pixels, or with different crops, do not add",
+                         width_, height_, other.width_, other.height_);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        Pixel& p = pixels_[i];
+        const Pixel& q = other.pixels_[i];
+        for (int c = 0; c < 3; ++c) {
+            p.radiance[c] += q.radiance[c];
+            p.radianceSquared[c] += q.radianceSquared[c];
+            p.transmittance[c] += q.transmittance[c];
+        }
+        p.alpha += q.alpha;
+        p.weightedDepth += q.weightedDepth;
+        p.depthWeight += q.depthWeight;
+        p.samples += q.samples;
+        p.depthSamples += q.depthSamples;
+        p.nonFinite += q.nonFinite;
+    }
+}
+
+Rgb Film::radiance(int x, int y) const {
+    const Pixel& p = at(x, y);
+    return mean(p.radiance, p.samples);
+}
+
+float Film::alpha(int x, int y) const {
+    const Pixel& p = at(x, y);
+    return p.samples == 0 ? 0.0f : static_cast<float>(p.alpha / static_cast<double>(p.samples));
+}
+
+Rgb Film::transmittance(int x, int y) const {
+    const Pixel& p = at(x, y);
+    return mean(p.transmittance, p.depthSamples);
+}
+
+Rgb Film::standardError(int x, int y) const {
+    const Pixel& p = at(x, y);
+    if (p.samples < 2) return Rgb(0.0f);
+    return Rgb::map([&](int i) {
+        return standardErrorOfMean(p.radiance[i], p.radianceSquared[i],
+                                   static_cast<double>(p.samples));
+    });
+}
+
+float Film::depth(int x, int y) const {
+    const Pixel& p = at(x, y);
+    return p.depthWeight > 0 ? static_cast<float>(p.weightedDepth / p.depthWeight) : noDepth;
+}
+
+std::uint64_t Film::nonFiniteCount() const {
+    std::uint64_t count = 0;
+    for (const Pixel& p : pixels_) count += p.nonFinite;
+    return count;
+}
+
+double Film::noise() const {
+    double sum = 0;
+    std::uint64_t pixels = 0;
+    for (int y = crop_.y0; y < crop_.y1; ++y) {
+        for (int x = crop_.x0; x < crop_.x1; ++x) {
+            const double light = radiance(x, y).mean();
+            if (at(x, y).samples < 2 || !(light > 0)) continue;
+            sum += standardError(x, y).mean() / light;
+            ++pixels;
+        }
+    }
+    return pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+}
+
+}  // namespace woodcock

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/outputs.h"
+
+#include <algorithm>
+
+#include "woodcock/base/error.h"
+#include "woodcock/image/image_format.h"
+#include "woodcock/image/whole_file.h"
+#include "woodcock/image/write_display.h"
+
+namespace woodcock {
+
+Outputs::Outputs(OutputSettings settings)
+    : settings_(std::move(settings)), colour_(settings_.ocio) {
+    const auto& files = settings_.files;
+    for (auto file = files.begin(); file != files.end(); ++file) {
+        if (std::find(files.begin(), file, *file) != file)
+            throw usageError("output '{}' is named twice", file->string());
+        const bool display = imageFormat(*file) != ImageFormat::Exr;
+        checkWritable(*file);
+        if (display && !transform_) transform_ = colour_.displayTransform(settings_.display);
+    }
+}
+
+void Outputs::write(const Film& film, const RenderMetadata& metadata) const {
+    std::string failures;
+    for (const std::filesystem::path& file : settings_.files) {
+        try {
+            if (imageFormat(file) == ImageFormat::Exr)
+                writeExr(file, film, metadata,
+                         {settings_.half, settings_.layers, colour_.chromaticities()});
+            else
+                writeDisplay(file, film, *transform_, settings_.withAlpha);
+        } catch (const Error& e) {
+            failures += (failures.empty() ? "" : "\n") + std::string(e.what());
+        }
+    }
+    if (!failures.empty()) throw failure("{}", failures);
+}
+
+}  // namespace woodcock

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/write_exr.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/base/version.h"
+#include "woodcock/image/encode_image.h"
+#include "woodcock/image/whole_file.h"
+
+namespace woodcock {
+
+namespace {
+
+constexpr float largestHalf = 65504.0f;
+
+/// A few neighbouring channels of one type and how a pixel fills them.
+struct ChannelGroup {
+    std::vector<std::string> names;
+    PixelType type;
+    std::function<void(int x, int y, float* to)> fill;
+};
+
+void copy(Rgb from, float* to) { std::copy(from.c.begin(), from.c.end(), to); }
+
+std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& settings) {
+    const bool half = settings.half;
+    std::vector<ChannelGroup> groups;
+    groups.push_back({{"R", "G", "B", "A"},
+                      half ? PixelType::Half : PixelType::Float,
+                      [&film, half](int x, int y, float* to) {
+                          copy(film.radiance(x, y), to);
+                          to[3] = film.alpha(x, y);
+                          // Beyond its range a half is infinite, which no later program repairs.
+                          if (half)
+                              for (int i = 0; i < 4; ++i)
+                                  to[i] = std::clamp(to[i], -largestHalf, largestHalf);
+                      }});
+    const ExrLayers& layers = settings.layers;
+    if (layers.depth)
+        groups.push_back({{"Z"}, PixelType::Float, [&film](int x, int y, float* to) {
+                              *to = film.depth(x, y);
+                          }});
+    if (layers.transmittance)
+        groups.push_back(
+            {{"transmittance.R", "transmittance.G", "transmittance.B"},
+             PixelType::Float,
+             [&film](int x, int y, float* to) { copy(film.transmittance(x, y), to); }});
+    if (layers.samples)
+        groups.push_back({{"samples"}, PixelType::Float, [&film](int x, int y, float* to) {
+                              *to = static_cast<float>(film.at(x, y).samples);
+                          }});
+    if (layers.error)
+        groups.push_back(
+            {{"error.R", "error.G", "error.B"}, PixelType::Float, [&film](int x, int y, float* to) {
+                 copy(film.standardError(x, y), to);
+             }});
+    return groups;
+}
+
+ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSettings& settings,
+                   const std::vector<ChannelGroup>& groups) {
+    ImageHeader h{"openexr", film.crop(), film.width(), film.height(), {}, {}};
+    for (const ChannelGroup& group : groups)
+        for (const std::string& name : group.names) h.channels.push_back({name, group.type});
+
+    const auto set = [&](const char* name, ImageAttribute value) {
+        h.attributes.emplace_back(name, std::move(value));
+    };
+    set("compression", "zip");
+    set("Software", fmt::format("woodcock {}", version()));
+    if (settings.chromaticities)
+        set("chromaticities",
+            std::vector<float>(settings.chromaticities->begin(), settings.chromaticities->end()));
+    set("woodcock/version", std::string(version()));
+    set("woodcock/samples", metadata.endSample - metadata.firstSample);
+    set("woodcock/sampleRange", fmt::format("{}:{}", metadata.firstSample, metadata.endSample));
+    // EXR has no integer of 64 bits.
+    set("woodcock/seed", fmt::format("{}", metadata.seed));
+    set("woodcock/nonFinite", fmt::format("{}", film.nonFiniteCount()));
+    set("woodcock/sceneDigest", metadata.sceneDigest);
+    set("woodcock/renderSeconds", static_cast<float>(metadata.renderSeconds));
+    if (!metadata.commandLine.empty()) set("woodcock/commandLine", metadata.commandLine);
+    return h;
+}
+
+}  // namespace
+
+ExrLayers layersFromNames(const std::vector<std::string>& names) {
+    static const std::vector<std::string> known{"depth", "transmittance", "samples", "error"};
+    ExrLayers layers;
+    for (const std::string& name : names) {
+        if (name == known[0])
+            layers.depth = true;
+        else if (name == known[1])
+            layers.transmittance = true;
+        else if (name == known[2])
+            layers.samples = true;
+        else if (name == known[3])
+            layers.error = true;
+        else
+            throw usageError("unknown layer '{}'{}", name,
+                             suggestName(name, "known layers", known));
+    }
+    return layers;
+}
+
+void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
+              const ExrSettings& settings) {
+    const std::vector<ChannelGroup> groups = channelGroups(film, settings);
+    const ImageHeader h = header(film, metadata, settings, groups);
+    const Film::Window crop = film.crop();
+    std::vector<float> pixels(static_cast<std::size_t>(crop.width()) *
+                              static_cast<std::size_t>(crop.height()) * h.channels.size());
+    float* to = pixels.data();
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x)
+            for (const ChannelGroup& group : groups) {
+                group.fill(x, y, to);
+                to += group.names.size();
+            }
+    writeWholeFile(file, encodeImage(h, pixels));
+}
+
+}  // namespace woodcock

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "woodcock/image/chromaticities.h"
+#include "woodcock/image/film.h"
+
+namespace woodcock {
+
+/// How an image was made; its header says it.
+struct RenderMetadata {
+    int firstSample = 0, endSample = 0;
+    std::uint64_t seed = 0;
+    double renderSeconds = 0;
+    std::string sceneDigest;
+    std::string commandLine;  ///< empty: not written
+};
+
+/// Channels beyond R, G, B and A, always in float.
+struct ExrLayers {
+    bool depth = false;          ///< Z: Film::depth(), world units
+    bool transmittance = false;  ///< transmittance.R, .G, .B along the camera ray
+    bool samples = false;        ///< samples: how many make the pixel
+    bool error = false;          ///< error.R, .G, .B: standard error of R, G, B
+};
+
+/// From the names that users write: depth, transmittance, samples, error. Throws Error{Usage} on
+/// any other.
+ExrLayers layersFromNames(const std::vector<std::string>& names);
+
+struct ExrSettings {
+    bool half = false;  ///< R, G, B, A in half, at most its largest number; float otherwise
+    ExrLayers layers;
+    std::optional<Chromaticities> chromaticities;  ///< of the working space, where it is known
+};
+
+/// Writes the film's means, premultiplied by alpha, with the crop as data window. Whole or not at
+/// all; throws Error{Failure}.
+void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
+              const ExrSettings& settings);
+
+}  // namespace woodcock

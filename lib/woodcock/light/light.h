@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <variant>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/light/environment_map.h"
+
+namespace woodcock {
+
+/// Light that arrives at a point from one direction, as drawn by a light's own sampling.
+struct LightSample {
+    Vec3d direction;  ///< from the point towards the light, unit length
+    double distance = std::numeric_limits<double>::infinity();
+    Rgb weight;      ///< radiance / pdf, or the irradiance perpendicular to it of a delta light
+    double pdf = 0;  ///< per steradian; 0: a delta light, which no other sampling can hit
+};
+
+/// Parallel rays, or a disc in the sky of even radiance.
+class Sun {
+public:
+    /// `travel`: the way its light goes. `irradiance` is on a surface perpendicular to it.
+    Sun(Vec3d travel, Rgb irradiance, double angularDiameterDegrees, bool visible);
+
+    bool delta() const { return sinHalf_ == 0; }
+    bool visible() const { return visible_; }
+    Rgb irradiance() const { return irradiance_; }
+    Vec3d towards() const { return towards_; }
+
+    LightSample sample(double u0, double u1) const;
+    double pdf(Vec3d direction) const;      ///< 0 outside the disc and for delta
+    Rgb radiance(Vec3d direction) const;    ///< of the disc; 0 for delta
+
+private:
+    Vec3d towards_;
+    Rgb irradiance_;
+    double sinHalf_, oneMinusCos_;  // of half the angular diameter
+    bool visible_;
+};
+
+/// Radiance from all around: a constant, or a lat-long image times one.
+class Environment {
+public:
+    Environment(Rgb radiance, bool visible) : scale_(radiance), visible_(visible) {}
+    Environment(EnvironmentMap map, Rgb scale, const Affine3d& worldFromLight, bool visible);
+
+    bool constant() const { return map_.empty(); }
+    bool visible() const { return visible_; }
+    const EnvironmentMap& map() const { return map_; }
+    Rgb scale() const { return scale_; }
+    Rgb meanRadiance() const;  ///< over the sphere
+
+    Rgb radiance(Vec3d direction) const;
+    LightSample sample(double u0, double u1) const;  ///< of the image; constants need none
+    double pdf(Vec3d direction) const;
+
+private:
+    EnvironmentMap map_;
+    Rgb scale_;
+    Affine3d worldFromLight_, lightFromWorld_;
+    bool visible_;
+};
+
+struct PointLight {
+    Vec3d position;
+    Rgb intensity;  ///< power per solid angle
+
+    LightSample sample(Vec3d from) const;
+};
+
+/// A sphere that radiates evenly outwards and lets other light pass; it gives none inside itself.
+struct SphereLight {
+    Vec3d position;
+    double radius;
+    Rgb radiance;
+    bool visible = true;
+
+    LightSample sample(Vec3d from, double u0, double u1) const;  ///< weight 0 from inside
+    double pdf(Vec3d from, Vec3d direction) const;
+    /// Distance at which a ray from outside enters the sphere; infinity when it misses.
+    double hit(Vec3d origin, Vec3d direction) const;
+};
+
+using Light = std::variant<Sun, Environment, PointLight, SphereLight>;
+
+}  // namespace woodcock

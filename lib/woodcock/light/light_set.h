@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "woodcock/light/light.h"
+
+namespace woodcock {
+
+/// A point that scatters light: what light selection may look at.
+struct ScatterPoint {
+    Vec3d position;
+    Vec3d forward;  ///< unit: the way the path came along
+    double g;
+};
+
+/// The lights of a scene, and the choice among them.
+class LightSet {
+public:
+    LightSet() = default;
+    explicit LightSet(std::vector<Light> lights);
+
+    const std::vector<Light>& lights() const { return lights_; }
+
+    /// Indices of the lights that next-event estimation samples: all but constant environments,
+    /// which the phase function samples perfectly by itself.
+    std::span<const int> sampled() const { return sampled_; }
+    /// Those that stand somewhere (point, sphere).
+    std::span<const int> local() const { return local_; }
+
+    /// Probabilities, one for each of sampled(), in proportion to what each light would send
+    /// through the phase function if nothing stood between. Sums to 1 unless all are zero.
+    void pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const;
+
+    LightSample sample(int light, Vec3d from, double u0, double u1) const;
+    double pdf(int light, Vec3d from, Vec3d direction) const;
+
+    /// Radiance that an infinitely far light (environment, a sun's disc) sends from a direction; 0
+    /// for others, and for camera rays also of what is invisible to them.
+    Rgb distantRadiance(int light, Vec3d direction, bool cameraRay) const;
+
+    /// Rough radiance that these lights make in a scattering medium of such bounds: the yardstick
+    /// of Russian roulette. It steers cost only.
+    float typicalRadiance(const Box3d& bounds) const;
+
+    bool chromatic() const;
+
+private:
+    std::vector<Light> lights_;
+    std::vector<int> sampled_, local_;
+};
+
+}  // namespace woodcock

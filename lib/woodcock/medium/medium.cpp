@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/medium.h"
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/random.h"
+
+namespace woodcock {
+
+MediumPart::MediumPart(Description description) : d_(std::move(description)) {
+    const double determinant = d_.worldFromIndex.determinant();
+    if (!std::isfinite(determinant) || determinant == 0)
+        throw inputError("a volume's transform is singular: its determinant is {}", determinant);
+    if (!(std::abs(d_.g) < 1))
+        throw inputError("g is {}; it must lie strictly between -1 and 1", d_.g);
+    for (int c = 0; c < 3; ++c)
+        if (!(d_.scattering[c] >= 0 && d_.absorption[c] >= 0 && std::isfinite(extinction()[c])))
+            throw inputError("sigma_a is {} and sigma_s is {}; expected finite numbers >= 0",
+                             d_.absorption[c], d_.scattering[c]);
+    indexFromWorld_ = d_.worldFromIndex.inverse();
+    albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
+    largestExtinction_ = extinction().maximum();
+    channelWeight_ = Rgb::map([&](int c) {
+        const float albedo = d_.scattering[c] > 0 ? d_.scattering[c] / extinction()[c] : 0;
+        return 0.05f + albedo * albedo;
+    });
+    if (!d_.field) {
+        support_ = d_.box;
+        meanExtinction_ = largestExtinction_;
+        return;
+    }
+    support_ = d_.field->support();
+    background_ = d_.field->blocks().outside().range;
+    const double voxelWidth = std::cbrt(std::abs(determinant));
+    majorants_ = MajorantGrid(*d_.field, {largestExtinction_ * voxelWidth, d_.majorantScale,
+                                          d_.majorantSmallestLog2});
+    if (support_.empty()) return;
+    RandomStream random(hashOf(0x6d65616e));
+    constexpr int samples = 4096;
+    for (int i = 0; i < samples; ++i) {
+        const Vec3d u{random.uniform(), random.uniform(), random.uniform()};
+        meanExtinction_ += d_.field->stochastic(support_.lower + support_.size() * u, random.bits()) *
+                           double{largestExtinction_} / samples;
+    }
+}
+
+float MediumPart::value(Vec3d world, int channel) const {
+    const Vec3d p = indexFromWorld_.point(world);
+    if (!d_.field) return support_.contains(p) ? 1.0f : 0.0f;
+    return d_.field->trilinear(p, d_.field->channels() == 1 ? 0 : channel);
+}
+
+Rgb MediumPart::sigmaT(Vec3d world) const {
+    return Rgb::map([&](int c) { return extinction()[c] * value(world, c); });
+}
+
+Rgb MediumPart::sigmaS(Vec3d world) const {
+    return Rgb::map([&](int c) {
+        const float a = d_.albedo ? d_.albedo->trilinear(albedoIndex(world),
+                                                         d_.albedo->channels() == 1 ? 0 : c)
+                                  : 1.0f;
+        return d_.scattering[c] * value(world, c) * a;
+    });
+}
+
+bool MediumPart::chromatic() const {
+    return !isGrey(d_.absorption) || !isGrey(d_.scattering) ||
+           (d_.field && d_.field->channels() == 3) || (d_.albedo && d_.albedo->channels() == 3);
+}
+
+Box3d Medium::worldBounds() const {
+    Box3d box;
+    for (const MediumPart& p : parts)
+        if (!p.support().empty()) box.add(p.worldBounds());
+    return box;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/grid/cell_walk.h"
+#include "woodcock/grid/field.h"
+#include "woodcock/grid/majorants.h"
+
+namespace woodcock {
+
+/// One additive part of the medium: sigma_t(x) = (absorption + scattering) x f(x) and sigma_s(x) =
+/// scattering x f(x) x albedo(x), per world unit and channel, with one phase function. A volume with
+/// sigma_a and sigma_s from grids of their own is two parts; overlapping volumes are several:
+/// coefficients add.
+class MediumPart {
+public:
+    struct Description {
+        std::shared_ptr<const Field> field;  ///< null: f = 1 inside `box`, 0 outside
+        Box3d box;                           ///< of object space; only without a field
+        Affine3d worldFromIndex;             ///< or world from object, without a field
+        Rgb absorption{0.0f};                ///< sigma_a where f (and albedo) is 1
+        Rgb scattering{1.0f};                ///< sigma_s where f (and albedo) is 1
+        std::shared_ptr<const Field> albedo; ///< null: 1; values in [0, 1], 1 or 3 channels
+        Affine3d albedoWorldFromIndex;
+        double g = 0;
+        double majorantScale = 1;      ///< loosens the majorants; see MajorantGrid::Options
+        int majorantSmallestLog2 = 1;  ///< coarsens them
+    };
+    explicit MediumPart(Description description);
+
+    const Description& description() const { return d_; }
+    double g() const { return d_.g; }
+    Rgb extinction() const { return d_.absorption + d_.scattering; }
+    /// Channels' weights in deciding for all of them at once; see collide() in tracking.cpp.
+    const Rgb& channelWeight() const { return channelWeight_; }
+    const Rgb& absorption() const { return d_.absorption; }
+    const Rgb& scattering() const { return d_.scattering; }
+    float largestExtinction() const { return largestExtinction_; }
+    const Field* field() const { return d_.field.get(); }
+    const Field* albedo() const { return d_.albedo.get(); }
+    const MajorantGrid& majorants() const { return majorants_; }
+
+    IndexRay indexRay(Vec3d origin, Vec3d direction) const {
+        return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
+    }
+    Vec3d albedoIndex(Vec3d world) const { return albedoIndexFromWorld_.point(world); }
+    /// Index-space box outside which f is the background.
+    const Box3d& support() const { return support_; }
+    Range background() const { return background_; }
+    bool unbounded() const { return background_.max > 0; }
+    Box3d worldBounds() const { return d_.worldFromIndex.box(support_); }
+
+    /// f at a world position, by full trilinear interpolation.
+    float value(Vec3d world, int channel = 0) const;
+    /// sigma_t and sigma_s at a world position, by full trilinear interpolation.
+    Rgb sigmaT(Vec3d world) const;
+    Rgb sigmaS(Vec3d world) const;
+
+    /// Rough mean of the largest channel's sigma_t over the support: steers cost only.
+    double meanExtinction() const { return meanExtinction_; }
+
+    bool chromatic() const;
+    bool scatters() const { return d_.scattering.maximum() > 0; }
+
+private:
+    Description d_;
+    Affine3d indexFromWorld_, albedoIndexFromWorld_;
+    Box3d support_;
+    Range background_;
+    float largestExtinction_ = 0;
+    Rgb channelWeight_;
+    double meanExtinction_ = 0;
+    MajorantGrid majorants_;
+};
+
+/// The sum of its parts.
+struct Medium {
+    std::vector<MediumPart> parts;
+
+    /// World box of all parts' supports (the background, where not zero, reaches beyond it).
+    Box3d worldBounds() const;
+};
+
+/// Walks the part of a ray that a medium part fills, as segments of world ray parameter in order:
+/// the cells of its field, one segment for a homogeneous box, and the background before and after
+/// where that is not zero.
+class PartWalk {
+public:
+    PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
+        : background_(part.background()), end_(tMax), enter_(0), leave_(tMax),
+          cells_(makeCells(part, ray)) {}
+
+    bool next(Segment& segment) {
+        if (stage_ == Stage::Before) {
+            stage_ = Stage::Inside;
+            if (background_.max > 0 && enter_ > 0) {
+                segment = {0, enter_, background_};
+                return true;
+            }
+        }
+        if (stage_ == Stage::Inside) {
+            if (homogeneous_) {
+                stage_ = Stage::Done;
+                if (!(enter_ < leave_)) return false;
+                segment = {enter_, leave_, {1, 1}};
+                return true;
+            }
+            if (cells_.next(segment)) return true;
+            stage_ = background_.max > 0 && leave_ < end_ ? Stage::After : Stage::Done;
+        }
+        if (stage_ == Stage::After) {
+            stage_ = Stage::Done;
+            segment = {leave_, end_, background_};
+            return true;
+        }
+        return false;
+    }
+
+private:
+    enum class Stage { Before, Inside, After, Done };
+
+    CellWalk makeCells(const MediumPart& part, const IndexRay& ray) {
+        homogeneous_ = !part.field();
+        if (part.support().empty() || !clip(ray, part.support(), enter_, leave_))
+            enter_ = leave_ = end_;  // all background
+        return {part.majorants(), part.support(), ray, enter_, homogeneous_ ? enter_ : leave_};
+    }
+
+    Range background_;
+    bool homogeneous_ = false;
+    Stage stage_ = Stage::Before;
+    double end_, enter_, leave_;
+    CellWalk cells_;
+};
+
+}  // namespace woodcock

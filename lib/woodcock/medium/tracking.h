@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "woodcock/base/random.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+struct Medium;
+
+/// The two hot walks. Each takes an array of rays with a random stream each, and knows nothing of
+/// lights, materials or film.
+
+/// Work done, for measuring.
+struct TrackingCounters {
+    std::uint64_t segments = 0, collisions = 0;  ///< collisions include null ones
+};
+
+/// A path that goes on from `origin`: where does it scatter next?
+template <int N>
+struct DistanceQuery {
+    Vec3d origin, direction;  ///< world space, direction of unit length
+    double tMax;              ///< how far; infinity: until it leaves the medium
+    double u;                 ///< in (0, 1]: draws the first optical depth; the stream draws the rest
+    RandomStream random;
+    float roulette = 0;       ///< throughput below which Russian roulette is played; 0: never
+    bool absorptionToo = false;  ///< absorption is an event like scattering: finds interactions
+    // In and out:
+    Spectrum<N> throughput;   ///< multiplied by the weight of what happened; all zero: path ended
+    // Out:
+    double t = 0;             ///< distance of the scattering event
+    int part = -1;            ///< which part of the medium scatters there; -1: reached tMax
+};
+
+/// Weighted null-collision tracking with local majorants: Galtier et al. 2013; weights for the
+/// channels as in Novak et al. 2018 ("Monte Carlo Methods for Volumetric Light Transport
+/// Simulation"), sec. 5.2; see tracking.cpp for the collision probabilities.
+template <int N>
+void trackDistance(const Medium& medium, std::span<DistanceQuery<N>> queries,
+                   TrackingCounters& counters);
+
+/// What of `contribution` arrives across [0, tMax] of the ray?
+template <int N>
+struct TransmittanceQuery {
+    Vec3d origin, direction;
+    double tMax;
+    RandomStream random;
+    /// Below this (largest channel) Russian roulette is played, in one draw for the whole ray.
+    float roulette = 0;
+    // In and out: multiplied by an unbiased estimate of the transmittance.
+    Spectrum<N> contribution;
+};
+
+/// Residual ratio tracking with each cell's lower bound as control: Novak et al. 2014, eq. 13.
+template <int N>
+void trackTransmittance(const Medium& medium, std::span<TransmittanceQuery<N>> queries,
+                        TrackingCounters& counters);
+
+/// Exact optical depth of every channel along [t0, t1] of a world ray (no randomness, up to
+/// rounding): trilinear density is a cubic along a ray inside a cell of the voxel lattice, where
+/// two-point Gauss-Legendre is exact. Slow: the reference for the estimators above.
+Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1);
+
+}  // namespace woodcock

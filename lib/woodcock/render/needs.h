@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace woodcock {
+
+struct Scene;
+
+/// What a scene requires of the path loop. Found once; only what is needed is run.
+struct Needs {
+    bool chromatic = false;   ///< channels differ somewhere: three are traced instead of one
+    bool overlap = false;     ///< more than one medium component
+    bool scattering = false;  ///< sigma_s > 0 somewhere: otherwise camera rays only
+    bool lightSampling = false;  ///< a light that phase sampling alone would miss or sample badly
+    bool localLights = false;    ///< lights near or inside the medium: equiangular sampling
+
+    /// One line: what the scene needs and what was left out.
+    std::string describe() const;
+};
+
+Needs findNeeds(const Scene& scene);
+
+/// Counts of the inner loops, for --stats and for tests of cost.
+struct RenderCounters {
+    std::uint64_t paths = 0, scatterings = 0, shadowRays = 0;
+    std::uint64_t distanceSegments = 0, distanceCollisions = 0;  ///< collisions include null ones
+    std::uint64_t shadowSegments = 0, shadowCollisions = 0;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "woodcock/image/film.h"
+#include "woodcock/render/needs.h"
+#include "woodcock/render/scene.h"
+
+namespace woodcock {
+
+/// One camera path to trace.
+struct PathJob {
+    int x = 0, y = 0;  ///< pixel, y down
+    std::uint32_t sample = 0;
+};
+
+/// What one camera path found.
+struct PathResult {
+    FilmSample film;
+    DepthSample depth;  ///< only with depthLayers
+};
+
+/// Traces camera paths through a scene in batches: spawn, walk, shade, shadow walk, resolve. One
+/// object serves one thread at a time. A job's result depends on the scene, the seed and the job
+/// alone, never on its neighbours in a batch.
+class PathTracer {
+public:
+    struct Options {
+        int width = 1, height = 1;  ///< of the image
+        std::uint64_t seed = 0;
+        std::optional<int> maxScatterings;
+        bool depthLayers = false;
+    };
+
+    virtual ~PathTracer() = default;
+    /// Fills results[i] for jobs[i]. `stop` is asked now and then; once it says true the results are
+    /// void and false is returned.
+    virtual bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
+                       const std::function<bool()>& stop) = 0;
+    virtual const RenderCounters& counters() const = 0;
+
+    /// The tracer for the fewest channels that the scene needs.
+    static std::unique_ptr<PathTracer> make(const Scene& scene, const Needs& needs,
+                                            const Options& options);
+};
+
+}  // namespace woodcock

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/session.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "woodcock/base/error.h"
+#include "woodcock/render/path_tracer.h"
+
+namespace woodcock {
+
+namespace {
+
+constexpr int tileSize = 16;
+constexpr int longestPass = 32;  // samples per pixel: bounds a tile's buffer and the wait for a stop
+constexpr std::chrono::milliseconds progressInterval{100};
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void validate(const RenderSettings& s, const Film::Window& crop) {
+    if (s.width < 1 || s.height < 1)
+        throw usageError("the image is {} x {}; both must be at least 1", s.width, s.height);
+    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > s.width || crop.y1 > s.height ||
+        crop.width() < 1 || crop.height() < 1)
+        throw usageError("the crop {},{},{},{} is empty or leaves the {} x {} image", crop.x0,
+                         crop.y0, crop.x1, crop.y1, s.width, s.height);
+    if (s.firstSample < 0 || s.endSample <= s.firstSample)
+        throw usageError("the sample range {}:{} is empty", s.firstSample, s.endSample);
+}
+
+void add(RenderCounters& a, const RenderCounters& b) {
+    a.paths += b.paths, a.scatterings += b.scatterings, a.shadowRays += b.shadowRays;
+    a.distanceSegments += b.distanceSegments, a.distanceCollisions += b.distanceCollisions;
+    a.shadowSegments += b.shadowSegments, a.shadowCollisions += b.shadowCollisions;
+}
+
+/// Renders passes over all tiles into a film. Tiles own their pixels, and a pixel's samples are
+/// added in their order, so neither threads nor the length of passes shows in the sums.
+class Session {
+public:
+    Session(const Scene& scene, const RenderSettings& settings, Film::Window crop)
+        : scene_(scene), settings_(settings), crop_(crop), needs_(findNeeds(scene)),
+          film_(settings.width, settings.height, crop) {
+        for (int y = crop.y0 / tileSize * tileSize; y < crop.y1; y += tileSize)
+            for (int x = crop.x0 / tileSize * tileSize; x < crop.x1; x += tileSize)
+                tiles_.push_back({std::max(x, crop.x0), std::max(y, crop.y0),
+                                  std::min(x + tileSize, crop.x1), std::min(y + tileSize, crop.y1)});
+        pathsPerSample_ = static_cast<std::uint64_t>(crop.width()) *
+                          static_cast<std::uint64_t>(crop.height());
+    }
+
+    RenderResult run(const std::function<bool(const RenderProgress&)>& onProgress) {
+        {
+            const Monitor monitor(*this, onProgress);
+            runPasses();
+        }
+        RenderResult result{std::move(film_), needs_, reason_, completeSamples_,
+                            secondsSince(start_), counters_};
+        return result;
+    }
+
+private:
+    /// Calls back from a thread of its own until it is destroyed.
+    class Monitor {
+    public:
+        Monitor(Session& session, const std::function<bool(const RenderProgress&)>& callback)
+            : session_(session), callback_(callback) {
+            if (callback_) thread_ = std::thread([this] { watch(); });
+        }
+        ~Monitor() {
+            if (!callback_) return;
+            {
+                const std::lock_guard lock(mutex_);
+                done_ = true;
+            }
+            wake_.notify_one();
+            thread_.join();
+        }
+        Monitor(const Monitor&) = delete;
+        Monitor& operator=(const Monitor&) = delete;
+
+    private:
+        void watch() {
+            std::unique_lock lock(mutex_);
+            while (!wake_.wait_for(lock, progressInterval, [this] { return done_; }))
+                if (!callback_(session_.progress())) session_.stop_ = true;
+            callback_(session_.progress());
+        }
+        Session& session_;
+        const std::function<bool(const RenderProgress&)>& callback_;
+        std::mutex mutex_;
+        std::condition_variable wake_;
+        bool done_ = false;
+        std::thread thread_;
+    };
+
+    RenderProgress progress() const {
+        RenderProgress p;
+        p.seconds = secondsSince(start_);
+        const auto total = static_cast<double>(pathsPerSample_) *
+                           (settings_.endSample - settings_.firstSample);
+        p.fraction = std::min(1.0, static_cast<double>(pathsDone_.load()) / total);
+        p.samples = completeSamples_.load() - settings_.firstSample;
+        p.noise = noise_.load();
+        if (settings_.timeLimit > 0)
+            p.fraction = std::max(p.fraction, std::min(1.0, p.seconds / settings_.timeLimit));
+        if (settings_.noise > 0 && p.noise > 0) {  // the error falls with the root of the time
+            const double ratio = settings_.noise / p.noise;
+            p.fraction = std::max(p.fraction, std::min(1.0, ratio * ratio));
+        }
+        if (p.fraction > 0) p.secondsLeft = p.seconds * (1 - p.fraction) / p.fraction;
+        return p;
+    }
+
+    void runPasses() {
+        const int threads =
+            settings_.threads > 0 ? settings_.threads : tbb::task_arena::automatic;
+        std::optional<tbb::global_control> allow;  // more threads than cores, where asked for
+        if (settings_.threads > 0)
+            allow.emplace(tbb::global_control::max_allowed_parallelism,
+                          static_cast<std::size_t>(settings_.threads));
+        tbb::task_arena arena(threads);
+        completeSamples_ = settings_.firstSample;
+        int length = 1;
+        while (completeSamples_ < settings_.endSample) {
+            const int first = completeSamples_;
+            const int end = std::min(first + length, settings_.endSample);
+            arena.execute([&] { runPass(first, end); });
+            if (stop_) {
+                reason_ = StopReason::Interrupted;
+                return;
+            }
+            completeSamples_ = end;
+            noise_ = film_.noise();
+            if (settings_.noise > 0 && noise_ > 0 && noise_ < settings_.noise &&
+                end - settings_.firstSample >= fewestSamplesForNoise) {
+                if (end < settings_.endSample) reason_ = StopReason::NoiseReached;
+                return;
+            }
+            length = std::min(2 * length, longestPass);
+            if (settings_.timeLimit > 0) {
+                const double perSample = secondsSince(start_) / (end - settings_.firstSample);
+                const double left = settings_.timeLimit - secondsSince(start_);
+                length = std::min(length, static_cast<int>(left / perSample));
+                if (length < 1) {
+                    if (end < settings_.endSample) reason_ = StopReason::TimeLimit;
+                    return;
+                }
+            }
+        }
+    }
+
+    void runPass(int first, int end) {
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, tiles_.size(), 1),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t i = range.begin(); i < range.end() && !stop_; ++i)
+                    renderTile(tiles_[i], first, end);
+            },
+            tbb::simple_partitioner{});
+    }
+
+    void renderTile(const Film::Window& tile, int first, int end) {
+        std::vector<PathJob> jobs;
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x)
+                for (int s = first; s < end; ++s)
+                    jobs.push_back({x, y, static_cast<std::uint32_t>(s)});
+        std::vector<PathResult> results(jobs.size());
+        const auto tracer = PathTracer::make(scene_, needs_,
+                                             {settings_.width, settings_.height, settings_.seed,
+                                              settings_.maxScatterings, settings_.depthLayers});
+        if (!tracer->trace(jobs, results, [this] { return stop_.load(); })) return;
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            film_.add(jobs[i].x, jobs[i].y, results[i].film);
+            if (settings_.depthLayers) film_.add(jobs[i].x, jobs[i].y, results[i].depth);
+        }
+        pathsDone_ += jobs.size();
+        const std::lock_guard lock(countersMutex_);
+        add(counters_, tracer->counters());
+    }
+
+    static constexpr int fewestSamplesForNoise = 8;  // below, the estimate of the error is itself noise
+
+    const Scene& scene_;
+    const RenderSettings settings_;
+    const Film::Window crop_;
+    const Needs needs_;
+    Film film_;
+    std::vector<Film::Window> tiles_;
+    std::uint64_t pathsPerSample_ = 0;
+    const Clock::time_point start_ = Clock::now();
+    StopReason reason_ = StopReason::Complete;
+    std::atomic<bool> stop_{false};
+    std::atomic<std::uint64_t> pathsDone_{0};
+    std::atomic<int> completeSamples_{0};
+    std::atomic<double> noise_{0};
+    std::mutex countersMutex_;
+    RenderCounters counters_;
+};
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const RenderSettings& settings,
+                    const std::function<bool(const RenderProgress&)>& onProgress) {
+    const Film::Window crop =
+        settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
+    validate(settings, crop);
+    return Session(scene, settings, crop).run(onProgress);
+}
+
+}  // namespace woodcock

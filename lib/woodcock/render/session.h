@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "woodcock/image/film.h"
+#include "woodcock/render/needs.h"
+#include "woodcock/render/scene.h"
+
+namespace woodcock {
+
+struct RenderSettings {
+    int width = 960, height = 540;
+    std::optional<Film::Window> crop;      ///< absent: the whole image
+    int firstSample = 0, endSample = 64;   ///< the half-open range of sample indices to render
+    std::uint64_t seed = 0;
+    std::optional<int> maxScatterings;     ///< absent: unlimited
+    int threads = 0;                       ///< 0: all cores
+    double timeLimit = 0;                  ///< seconds; 0: none. Checked between passes.
+    double noise = 0;                      ///< stop once Film::noise() is below it; 0: never
+    bool depthLayers = false;              ///< also sample transmittance and depth of camera rays
+};
+
+struct RenderProgress {
+    double fraction = 0;     ///< of the planned work, 0 to 1
+    double seconds = 0;      ///< since the render began
+    double secondsLeft = 0;  ///< estimate
+    int samples = 0;         ///< per pixel, complete so far
+    double noise = 0;        ///< Film::noise() after the last complete pass; 0 before
+};
+
+enum class StopReason { Complete, TimeLimit, NoiseReached, Interrupted };
+
+struct RenderResult {
+    Film film;
+    Needs needs;
+    StopReason reason = StopReason::Complete;
+    int endSample = 0;  ///< samples [firstSample, endSample) are complete in every pixel
+    double seconds = 0;
+    RenderCounters counters;
+};
+
+/// Renders `scene`: the same scene, seed and sample range give the same film, bit for bit, whatever
+/// the number of threads. Passes over the whole crop, so that a stop leaves an even picture.
+/// `onProgress` is called a few times a second from one thread; returning false stops at once (the
+/// pass at work is dropped).
+/// Throws Error{Usage} on an empty crop, image or sample range.
+RenderResult render(const Scene& scene, const RenderSettings& settings,
+                    const std::function<bool(const RenderProgress&)>& onProgress = {});
+
+}  // namespace woodcock

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/render/scene.h"
+#include "woodcock/scene/description.h"
+#include "woodcock/scene/load.h"
+
+namespace woodcock {
+
+/// The scene that a render draws, from a complete description (see completeScene) and what was
+/// loaded for it. Throws Error{Usage} where the description is not complete.
+Scene buildScene(const SceneDescription& description, LoadedScene loaded);
+
+Affine3d worldFromCamera(const CameraPose& pose);
+
+}  // namespace woodcock

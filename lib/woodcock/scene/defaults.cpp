@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/defaults.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/outline.h"
+#include "woodcock/scene/path_variables.h"
+#include "woodcock/scene/toml_text.h"
+#include "woodcock/scene/write.h"
+
+namespace woodcock {
+namespace {
+
+constexpr double typicalDepth = 10;
+constexpr double margin = 0.08;  // of the picture, on every side that is tight
+
+/// `v` to a multiple of 10^exponent.
+double roundTo(double v, int exponent) {
+    const double power = std::pow(10, std::abs(exponent));
+    return exponent < 0 ? std::round(v * power) / power : std::round(v / power) * power;
+}
+Vec3d roundTo(Vec3d v, int exponent) {
+    return {roundTo(v.x, exponent), roundTo(v.y, exponent), roundTo(v.z, exponent)};
+}
+int magnitude(double v) { return static_cast<int>(std::floor(std::log10(v))); }
+
+/// From a y-up frame to the one whose up axis is `up`; -z becomes +y.
+Vec3d withUp(Vec3d v, UpAxis up) { return up == UpAxis::Z ? Vec3d{v.x, 0 - v.z, v.y} : v; }
+
+/// Median of the line integrals of the field (world units, mean of channels) over a lattice of rays
+/// along its three index axes, of those that meet more than wisps. By sums at unit steps or coarser:
+/// a choice needs no more. Zero for an empty field.
+double typicalIntegral(const Field& field, const Affine3d& worldFromIndex) {
+    const Box3d box = field.support();
+    if (box.empty()) return 0;
+    constexpr int raysPerSide = 24, mostSteps = 512;
+    std::vector<double> integrals;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const int steps = std::min(mostSteps, static_cast<int>(std::ceil(box.size()[axis])));
+        const double step = box.size()[axis] / steps;
+        const double worldStep = step * length(worldFromIndex.column[static_cast<size_t>(axis)]);
+        for (int i = 0; i < raysPerSide * raysPerSide; ++i) {
+            Vec3d p;
+            p[u] = box.lower[u] + box.size()[u] * (i % raysPerSide + 0.5) / raysPerSide;
+            p[v] = box.lower[v] + box.size()[v] * (i / raysPerSide + 0.5) / raysPerSide;
+            double sum = 0;
+            for (int k = 0; k < steps; ++k) {
+                p[axis] = box.lower[axis] + (k + 0.5) * step;
+                for (int c = 0; c < field.channels(); ++c) sum += field.trilinear(p, c);
+            }
+            integrals.push_back(sum * worldStep / field.channels());
+        }
+    }
+    const double largest = *std::max_element(integrals.begin(), integrals.end());
+    std::erase_if(integrals, [&](double t) { return t <= 0.02 * largest; });
+    if (integrals.empty()) return 0;
+    const auto middle = integrals.begin() + static_cast<std::ptrdiff_t>(integrals.size() / 2);
+    std::nth_element(integrals.begin(), middle, integrals.end());
+    return *middle;
+}
+
+std::optional<std::string> chooseScale(VolumeDescription& volume, const LoadedVolume& loaded,
+                                       size_t index) {
+    auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+    if (!c || c->scale) return std::nullopt;
+    const double integral = typicalIntegral(
+        *loaded.density.field, volume.worldFromObject * loaded.density.objectFromIndex);
+    const double exact = typicalDepth / integral;
+    if (!(integral > 0) || !(exact < std::numeric_limits<float>::max())) {
+        c->scale = Rgb(1);
+        return fmt::format("volume[{}] seems empty: no ray of a bundle through it met any density; "
+                           "chosen:\nscale = 1",
+                           index);
+    }
+    c->scale = Rgb(static_cast<float>(roundTo(exact, magnitude(exact) - 2)));
+    return fmt::format("chosen for volume[{}], so that a typical ray through it has an optical "
+                       "depth of {}:\nscale = {}",
+                       index, typicalDepth, tomlColour(*c->scale));
+}
+
+/// What points span along an axis.
+struct Extent {
+    double lower = std::numeric_limits<double>::infinity();
+    double upper = -std::numeric_limits<double>::infinity();
+    void add(double v) { lower = std::min(lower, v), upper = std::max(upper, v); }
+    double centre() const { return (lower + upper) / 2; }
+};
+
+/// Half the width and height of the picture that are to be filled: at distance 1 (perspective), or
+/// of a picture of height 1 (orthographic).
+struct HalfPicture {
+    double x, y;
+    explicit HalfPicture(const SceneDescription& scene) {
+        const bool perspective = scene.camera.kind == CameraDescription::Kind::Perspective;
+        y = (1 - 2 * margin) * (perspective ? std::tan(scene.camera.fovY * pi / 360) : 0.5);
+        x = y * scene.render.width / scene.render.height;
+    }
+};
+
+/// Where a perspective camera of this picture stands closest with all points in it, in a frame that
+/// is turned as the camera is. A point is in it while |p.x - eye.x| <= half.x (eye.z - p.z), and so
+/// for y; the tightest points on either side give the planes that meet in the eye.
+Vec3d nearestEye(const std::vector<Vec3d>& points, const HalfPicture& half) {
+    Extent left, right, below, above;
+    for (const Vec3d& p : points) {
+        left.add(p.z * half.x - p.x), right.add(p.z * half.x + p.x);
+        below.add(p.z * half.y - p.y), above.add(p.z * half.y + p.y);
+    }
+    return {(right.upper - left.upper) / 2, (above.upper - below.upper) / 2,
+            std::max((right.upper + left.upper) / (2 * half.x),
+                     (above.upper + below.upper) / (2 * half.y))};
+}
+
+/// A three-quarter view from slightly above that shows all points.
+LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& points, UpAxis up) {
+    Box3d bounds;
+    for (const Vec3d& p : points) bounds.add(p);
+    const Vec3d above = withUp({0, 1, 0}, up), centre = bounds.centre();
+    const Affine3d camera = lookAtTransform(withUp({0.55, 0.35, 1}, up), {0, 0, 0}, above);
+    std::vector<Vec3d> turned;
+    Extent x, y, z;
+    for (const Vec3d& p : points) {
+        const Vec3d d = p - centre;
+        turned.push_back(
+            {dot(d, camera.column[0]), dot(d, camera.column[1]), dot(d, camera.column[2])});
+        x.add(turned.back().x), y.add(turned.back().y), z.add(turned.back().z);
+    }
+    const double size = length(bounds.size());
+    Vec3d eye{x.centre(), y.centre(), z.upper + size};
+    if (scene.camera.kind == CameraDescription::Kind::Perspective) {
+        eye = nearestEye(turned, HalfPicture(scene));
+        eye.z = std::max(eye.z, z.upper + 0.2 * size);  // a wide angle would touch the volume
+    }
+    const int grain = magnitude(size) - 3;
+    return {roundTo(centre + camera.vector(eye), grain),
+            roundTo(centre + camera.vector({eye.x, eye.y, z.centre()}), grain), above};
+}
+
+/// The height of picture that shows all points from where the camera stands.
+double chooseHeight(const SceneDescription& scene, const std::vector<Vec3d>& points) {
+    const Affine3d cameraFromWorld = worldFromCamera(*scene.camera.pose).inverse();
+    const HalfPicture half(scene);
+    double height = 0;
+    for (const Vec3d& point : points) {
+        const Vec3d p = cameraFromWorld.point(point);
+        height = std::max({height, std::abs(p.x) / half.x, std::abs(p.y) / half.y});
+    }
+    return roundTo(height, magnitude(height) - 2);
+}
+
+std::optional<std::string> chooseCamera(SceneDescription& scene, const std::vector<Vec3d>& points,
+                                        UpAxis up) {
+    CameraDescription& camera = scene.camera;
+    const bool fits = camera.height || camera.kind == CameraDescription::Kind::Perspective;
+    if (camera.pose && fits) return std::nullopt;
+    if (!camera.pose) camera.pose = chooseView(scene, points, up);
+    if (!fits) camera.height = chooseHeight(scene, points);
+    return fmt::format("chosen to frame the volumes (up is {}):\n{}",
+                       up == UpAxis::Z ? "+z, as in Blender, which wrote them" : "+y",
+                       writeCamera(camera));
+}
+
+std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up) {
+    if (!scene.lights.empty()) return std::nullopt;
+    // From the camera's left: light from the side shows form.
+    const Vec3d above = withUp({0, 1, 0}, up);
+    Vec3d side = -worldFromCamera(*scene.camera.pose).column[0];
+    side = side - above * dot(side, above);
+    side = length(side) > 1e-6 ? normalize(side) : withUp({-1, 0, 0}, up);
+    constexpr double elevation = 40 * pi / 180;
+    SunDescription sun;
+    sun.direction = roundTo(-(side * std::cos(elevation) + above * std::sin(elevation)), -2);
+    sun.irradiance = Rgb(5.2f, 4.4f, 3.4f);
+    sun.angularDiameter = 0.53;
+    EnvironmentDescription sky;
+    sky.radiance = Rgb(0.12f, 0.19f, 0.32f);
+    scene.lights = {{sun, ""}, {sky, ""}};
+    return fmt::format("chosen, a warm sun from the upper left and a blue sky:\n{}\n{}",
+                       writeLight(scene.lights[0]), writeLight(scene.lights[1]));
+}
+
+UpAxis upOf(const SceneDescription& scene, const LoadedScene& loaded) {
+    bool anyFile = false;
+    for (size_t i = 0; i < scene.volumes.size(); ++i) {
+        if (scene.volumes[i].file.empty()) continue;
+        if (loaded.volumes[i].up == UpAxis::Y) return UpAxis::Y;
+        anyFile = true;
+    }
+    return anyFile ? UpAxis::Z : UpAxis::Y;
+}
+
+}  // namespace
+
+std::string defaultSceneText(const std::vector<std::filesystem::path>& vdbFiles) {
+    std::string text;
+    for (const std::filesystem::path& file : vdbFiles)
+        text += fmt::format("[[volume]]\nfile = {}\ng = 0.6\n", tomlText(escapePath(file)));
+    return text;
+}
+
+std::vector<std::string> completeScene(SceneDescription& description, const LoadedScene& loaded) {
+    std::vector<std::string> notes;
+    const auto add = [&](std::optional<std::string> note) {
+        if (note) notes.push_back(std::move(*note));
+    };
+    for (size_t i = 0; i < description.volumes.size(); ++i)
+        add(chooseScale(description.volumes[i], loaded.volumes[i], i));
+    const UpAxis up = upOf(description, loaded);
+    add(chooseCamera(description, sceneOutline(description, loaded), up));
+    add(chooseLights(description, up));
+    return notes;
+}
+
+}  // namespace woodcock

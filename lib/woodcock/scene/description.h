@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/grid/field_source.h"
+
+namespace woodcock {
+
+/// A scene as its file says it: plain values, checked for type and range, nothing loaded yet.
+/// Lengths are world units, angles degrees, colours scene-linear.
+
+/// A coefficient from a grid of its own: sigma(x) = scale x grid(x).
+struct GridCoefficient {
+    std::string grid;
+    Rgb scale{1.0f};
+    bool operator==(const GridCoefficient&) const = default;
+};
+
+/// sigma_t = scale x density, sigma_s = albedo x sigma_t.
+struct DensityCoefficients {
+    std::string density;  ///< grid name; empty: found by its role
+    std::optional<Rgb> scale;  ///< absent: chosen for a reasonable optical depth
+    Rgb albedo{1.0f};
+    std::string albedoGrid;  ///< vec3 or scalar grid that multiplies `albedo`; empty: none
+    bool operator==(const DensityCoefficients&) const = default;
+};
+
+/// sigma_a and sigma_s each from a grid; either may be absent (zero). sigma_a = [..] without a grid
+/// in a scene file means "times the density grid" and arrives here with that grid's name (or empty,
+/// for the role).
+struct SeparateCoefficients {
+    std::optional<GridCoefficient> sigmaA, sigmaS;
+    bool operator==(const SeparateCoefficients&) const = default;
+};
+
+/// A constant medium in an axis-aligned box of object space.
+struct HomogeneousBox {
+    Box3d box;
+    Rgb sigmaA{0.0f}, sigmaS{0.0f};
+    bool operator==(const HomogeneousBox&) const = default;
+};
+
+struct VolumeDescription {
+    std::filesystem::path file;  ///< empty for a HomogeneousBox
+    std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
+    float g = 0;               ///< mean cosine of Henyey-Greenstein, in (-1, 1)
+    Affine3d worldFromObject;  ///< applied after the grid's own transform
+    Storage storage = Storage::Auto;
+    bool repair = false;   ///< NaN, infinite and negative voxels become zero instead of an error
+    std::string where;     ///< "scene.toml:12:1", for messages; empty when made by the program
+    bool operator==(const VolumeDescription&) const = default;
+};
+
+struct SunDescription {
+    Vec3d direction{0, -1, 0};  ///< the way its light travels, of any length
+    Rgb irradiance{1.0f};       ///< on a surface perpendicular to it
+    double angularDiameter = 0; ///< degrees; 0: parallel rays
+    bool visible = false;       ///< to camera rays (needs an angular diameter)
+    bool operator==(const SunDescription&) const = default;
+};
+enum class UpAxis { Y, Z };
+struct EnvironmentDescription {
+    Rgb radiance{1.0f};           ///< multiplies the image where there is one
+    std::filesystem::path image;  ///< lat-long, scene-linear; empty: constant
+    UpAxis up = UpAxis::Y;        ///< Y: the image's centre is towards -z; Z: towards +y
+    double rotation = 0;          ///< degrees about the up axis, counter-clockwise from above
+    bool visible = true;          ///< to camera rays
+    bool operator==(const EnvironmentDescription&) const = default;
+};
+struct PointDescription {
+    Vec3d position;
+    Rgb intensity{1.0f};  ///< radiance x area: power per solid angle
+    bool operator==(const PointDescription&) const = default;
+};
+struct SphereDescription {
+    Vec3d position;
+    double radius = 1;
+    Rgb radiance{1.0f};
+    bool visible = true;  ///< to camera rays
+    bool operator==(const SphereDescription&) const = default;
+};
+struct LightDescription {
+    std::variant<SunDescription, EnvironmentDescription, PointDescription, SphereDescription> light;
+    std::string where;
+    bool operator==(const LightDescription&) const = default;
+};
+
+/// A camera at `eye` that looks at `target`, with `up` upwards in the picture.
+struct LookAt {
+    Vec3d eye, target;
+    Vec3d up{0, 1, 0};
+    bool operator==(const LookAt&) const = default;
+};
+
+/// Where a camera stands; or the world from the camera, a rigid motion, looking along -z with +y up.
+using CameraPose = std::variant<LookAt, Affine3d>;
+
+struct CameraDescription {
+    enum class Kind { Perspective, Orthographic } kind = Kind::Perspective;
+    std::optional<CameraPose> pose;  ///< absent: chosen to frame the volumes
+    double fovY = 40;              ///< full vertical angle, degrees (perspective)
+    std::optional<double> height;  ///< world units from bottom to top (orthographic); absent: fits
+    bool operator==(const CameraDescription&) const = default;
+};
+
+struct RenderDescription {
+    int width = 960, height = 540;
+    int spp = 64;
+    std::uint64_t seed = 0;
+    std::optional<int> maxScatterings;  ///< absent: unlimited
+    double timeLimit = 0;               ///< seconds; 0: none
+    double noise = 0;                   ///< mean relative standard error to stop at; 0: none
+    double majorantScale = 1;           ///< >= 1; loosens the majorants: for experiments
+    bool operator==(const RenderDescription&) const = default;
+};
+
+struct OutputDescription {
+    std::vector<std::filesystem::path> files;  ///< by extension: exr, png, jpg
+    std::vector<std::string> layers;           ///< depth, transmittance, samples, error
+    bool half = false;                         ///< EXR colour in half instead of float
+    std::string display, view, look;           ///< OpenColorIO names; empty: the config's default
+    double exposure = 0;                       ///< stops, before the display transform
+    bool operator==(const OutputDescription&) const = default;
+};
+
+/// What is absent (lights, the camera's pose, a density's scale) is chosen by completeScene() of
+/// scene/defaults.h, which says what it chose.
+struct SceneDescription {
+    std::vector<VolumeDescription> volumes;
+    std::vector<LightDescription> lights;
+    CameraDescription camera;
+    RenderDescription render;
+    OutputDescription output;
+    std::filesystem::path ocio;  ///< OpenColorIO config of this scene; empty: $OCIO, then built-in
+    bool operator==(const SceneDescription&) const = default;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/load.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "woodcock/base/error.h"
+#include "woodcock/grid/grid_roles.h"
+#include "woodcock/grid/vdb_load.h"
+#include "woodcock/image/read_image.h"
+#include "woodcock/scene/load_albedo.h"
+
+namespace woodcock {
+namespace {
+
+/// What a grid is read for.
+enum class Purpose { Density, Coefficient, Albedo };
+
+/// Reads files and grids, each once.
+class Loader {
+public:
+    const VdbFile& file(const std::filesystem::path& path) {
+        const auto found = files_.find(path);
+        return found != files_.end() ? found->second : files_[path] = listGrids(path);
+    }
+
+    LoadedField field(const VolumeDescription& volume, const std::string& name, Purpose purpose) {
+        const VdbFile& vdb = file(volume.file);
+        FoundGrid found = name.empty() ? findGrid(vdb, GridRole::Density) : findGrid(vdb, name);
+        const bool albedo = purpose == Purpose::Albedo;
+        const auto key = std::tuple(volume.file, found.grid.uniqueName, volume.storage,
+                                    volume.repair, purpose);
+        if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
+        note(std::move(found.note));
+        const LoadOptions options{
+            .use = purpose == Purpose::Density ? GridUse::Scalar : GridUse::Colour,
+            .storage = volume.storage,
+            .repair = volume.repair};
+        LoadedGrid grid = loadGrid(vdb, found.grid, options);
+        for (std::string& text : grid.notes) note(std::move(text));
+        if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
+        const LoadedField loaded{std::make_shared<Field>(std::move(grid.field)),
+                                 grid.worldFromIndex};
+        return fields_[key] = loaded;
+    }
+
+    std::vector<std::string> takeNotes() { return std::move(notes_); }
+
+private:
+    void note(std::string text) {
+        const bool known = std::find(notes_.begin(), notes_.end(), text) != notes_.end();
+        if (!text.empty() && !known) notes_.push_back(std::move(text));
+    }
+
+    std::map<std::filesystem::path, VdbFile> files_;
+    std::map<std::tuple<std::filesystem::path, std::string, Storage, bool, Purpose>, LoadedField>
+        fields_;
+    std::vector<std::string> notes_;
+};
+
+/// Blender is the one writer of VDB whose up axis is z; its gas simulations give themselves away by
+/// this key, everything else by its name.
+bool writtenByBlender(const VdbFile& file) {
+    for (const GridListing& grid : file.grids)
+        for (const auto& [key, value] : grid.metadata)
+            if (key == "file_base_resolution" || value.find("Blender") != std::string::npos)
+                return true;
+    return false;
+}
+
+LoadedVolume loadVolume(const VolumeDescription& volume, Loader& loader) {
+    LoadedVolume loaded;
+    if (std::holds_alternative<HomogeneousBox>(volume.coefficients)) return loaded;
+    if (const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients)) {
+        loaded.density = loader.field(volume, c->density, Purpose::Density);
+        if (!c->albedoGrid.empty())
+            loaded.albedo = loader.field(volume, c->albedoGrid, Purpose::Albedo);
+    } else {
+        const auto& separate = std::get<SeparateCoefficients>(volume.coefficients);
+        const auto load = [&](const std::optional<GridCoefficient>& sigma) {
+            return sigma ? loader.field(volume, sigma->grid, Purpose::Coefficient) : LoadedField();
+        };
+        loaded.sigmaA = load(separate.sigmaA);
+        loaded.sigmaS = load(separate.sigmaS);
+    }
+    if (writtenByBlender(loader.file(volume.file))) loaded.up = UpAxis::Z;
+    return loaded;
+}
+
+EnvironmentMap loadMap(const LightDescription& light) {
+    const auto* environment = std::get_if<EnvironmentDescription>(&light.light);
+    if (!environment || environment->image.empty()) return {};
+    Image image = readImage(environment->image);
+    return {image.width, image.height, std::move(image.rgb)};
+}
+
+/// What `load` returns; its errors gain the place in the scene file.
+template <class Load>
+auto at(const std::string& where, Load load) {
+    try {
+        return load();
+    } catch (const Error& e) {
+        if (where.empty()) throw;
+        throw Error(e.kind(), fmt::format("{}: {}", where, e.what()));
+    }
+}
+
+}  // namespace
+
+LoadedScene loadScene(const SceneDescription& scene) {
+    LoadedScene loaded;
+    Loader loader;
+    for (const VolumeDescription& volume : scene.volumes)
+        loaded.volumes.push_back(at(volume.where, [&] { return loadVolume(volume, loader); }));
+    for (const LightDescription& light : scene.lights)
+        loaded.environmentMaps.push_back(at(light.where, [&] { return loadMap(light); }));
+    loaded.notes = loader.takeNotes();
+    return loaded;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/grid/field.h"
+#include "woodcock/light/environment_map.h"
+#include "woodcock/scene/description.h"
+
+namespace woodcock {
+
+/// A grid in memory; several volumes may share its field.
+struct LoadedField {
+    std::shared_ptr<const Field> field;
+    Affine3d objectFromIndex;  ///< the grid's own transform
+
+    explicit operator bool() const { return field != nullptr; }
+};
+
+/// What a volume's description names; the rest is null.
+struct LoadedVolume {
+    LoadedField density, albedo;   ///< of DensityCoefficients
+    LoadedField sigmaA, sigmaS;    ///< of SeparateCoefficients; one field where one grid is both
+    UpAxis up = UpAxis::Y;         ///< Z where the file's metadata say that Blender wrote it
+};
+
+/// All that a scene reads from disk.
+struct LoadedScene {
+    std::vector<LoadedVolume> volumes;              ///< one for each volume of the description
+    std::vector<EnvironmentMap> environmentMaps;    ///< one for each light; empty for most
+    std::vector<std::string> notes;                 ///< what the user should know
+};
+
+/// Reads the grids that the scene uses, each once, and its images. Throws Error{Input} that names
+/// the place in the scene, the file and the grid.
+LoadedScene loadScene(const SceneDescription& scene);
+
+}  // namespace woodcock

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "woodcock/grid/vdb_load.h"
+
+namespace woodcock {
+
+/// Sees to it that an albedo grid, loaded as `field`, holds nothing above 1: throws Error{Input}
+/// with the count of such voxels, or, where the options say repair, sets them to 1 and returns a
+/// note. Empty where there was nothing to do.
+std::string limitAlbedo(const VdbFile& file, const GridListing& grid, const LoadOptions& options,
+                        Field& field);
+
+}  // namespace woodcock

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/outline.h"
+
+#include <cmath>
+
+namespace woodcock {
+namespace {
+
+constexpr float wisp = 0.01f;
+constexpr double mostBlocks = 1 << 24;  // in a field whose blocks are looked at one by one
+
+void addCorners(const Box3d& box, const Affine3d& toWorld, std::vector<Vec3d>& points) {
+    for (int i = 0; i < 8; ++i) points.push_back(toWorld.point(box.corner(i)));
+}
+
+Vec3i blockOf(Vec3d p) {
+    return Vec3d{std::floor(p.x / 8), std::floor(p.y / 8), std::floor(p.z / 8)}.as<int>();
+}
+
+/// The part of the box that lies in the row of blocks along x through (y, z), if any of it is more
+/// than a wisp.
+Box3d occupiedPart(const Field& field, Vec3i first, Vec3i last) {
+    const float least = wisp * field.range().max;
+    Box3d part;
+    for (Vec3i b = first; b.x <= last.x; ++b.x)
+        if (field.findBlock(b).value->range.max > least) {
+            const Vec3d corner = b.as<double>() * 8;
+            part.add(Box3d{corner, corner + Vec3d{8, 8, 8}});
+        }
+    return part;
+}
+
+void addField(const Field& field, const Affine3d& worldFromIndex, std::vector<Vec3d>& points) {
+    const Box3d support = field.support();
+    if (support.empty()) return;
+    const Vec3d size = support.size() / 8 + Vec3d{1, 1, 1};
+    if (size.x * size.y * size.z > mostBlocks) return addCorners(support, worldFromIndex, points);
+    const Vec3i first = blockOf(support.lower), last = blockOf(support.upper);
+    // A row of blocks is as convex as its two ends.
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y) {
+            Box3d part = occupiedPart(field, {first.x, y, z}, {last.x, y, z});
+            part.lower = max(part.lower, support.lower);
+            part.upper = min(part.upper, support.upper);
+            if (!part.empty()) addCorners(part, worldFromIndex, points);
+        }
+}
+
+}  // namespace
+
+std::vector<Vec3d> sceneOutline(const SceneDescription& description, const LoadedScene& loaded) {
+    std::vector<Vec3d> points;
+    for (size_t i = 0; i < description.volumes.size(); ++i) {
+        const VolumeDescription& volume = description.volumes[i];
+        const LoadedVolume& fields = loaded.volumes[i];
+        if (const auto* box = std::get_if<HomogeneousBox>(&volume.coefficients))
+            addCorners(box->box, volume.worldFromObject, points);
+        for (const LoadedField* grid : {&fields.density, &fields.sigmaA, &fields.sigmaS})
+            if (*grid)
+                addField(*grid->field, volume.worldFromObject * grid->objectFromIndex, points);
+    }
+    if (points.empty()) addCorners({{0, 0, 0}, {1, 1, 1}}, {}, points);
+    return points;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/overrides.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <variant>
+#include <vector>
+
+#include "woodcock/base/error.h"
+#include "woodcock/scene/toml_reader.h"
+#include "woodcock/scene/toml_text.h"
+
+namespace woodcock {
+namespace {
+
+/// A key of a table, or an index into an array.
+using Step = std::variant<std::string, size_t>;
+
+bool isKeyLetter(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+}
+
+/// "volume[0].scale" -> volume, 0, scale; empty where it is not written so.
+std::vector<Step> parseSteps(std::string_view path) {
+    std::vector<Step> steps;
+    size_t i = 0;
+    while (i < path.size()) {
+        if (path[i] == '[') {
+            size_t index = 0;
+            const char* const end = path.data() + path.size();
+            const auto [stop, failed] = std::from_chars(path.data() + i + 1, end, index);
+            if (failed != std::errc() || stop == end || *stop != ']' || steps.empty()) return {};
+            steps.emplace_back(index);
+            i = static_cast<size_t>(stop - path.data()) + 1;
+        } else {
+            if (!steps.empty() && path[i++] != '.') return {};
+            const size_t begin = i;
+            while (i < path.size() && isKeyLetter(path[i])) ++i;
+            if (i == begin) return {};
+            steps.emplace_back(std::string(path.substr(begin, i - begin)));
+        }
+    }
+    return steps;
+}
+
+/// The table {key = value}, its values placed at `place`.
+toml::table parseAssignment(const std::string& key, const std::string& value,
+                            const std::string& place) {
+    if (value.find_first_of("\r\n") == std::string::npos) {
+        try {
+            return toml::parse(key + " = " + value, place);
+        } catch (const toml::parse_error&) {
+            // No TOML: a bare word.
+        }
+    }
+    return toml::parse(key + " = " + tomlText(value), place);
+}
+
+/// One override on its way down the scene.
+class Override {
+public:
+    explicit Override(const std::string& text) : place_(std::string(overrideMark) + text) {
+        const size_t equals = text.find('=');
+        std::string path = text.substr(0, equals);
+        std::erase(path, ' ');
+        steps_ = parseSteps(path);
+        if (equals == std::string::npos || steps_.empty())
+            throw usageError("{}: expected KEY=VALUE, such as volume[0].scale=2", place_);
+        value_ = text.substr(equals + 1);
+    }
+
+    void apply(toml::table& scene) const {
+        toml::node* node = &scene;
+        std::string name;
+        for (size_t i = 0; i < steps_.size(); ++i) {
+            const bool last = i + 1 == steps_.size();
+            if (const auto* key = std::get_if<std::string>(&steps_[i])) {
+                toml::table& table = asTable(*node, name, *key);
+                toml::node* const next = table.get(*key);
+                if (last || !next) return insert(table, i);
+                node = next;
+                name += (name.empty() ? "" : ".") + *key;
+            } else {
+                const size_t index = std::get<size_t>(steps_[i]);
+                toml::array& array = asArray(*node, name, index);
+                if (last) return replace(array, index);
+                node = array.get(index);
+                name += fmt::format("[{}]", index);
+            }
+        }
+    }
+
+private:
+    toml::table& asTable(toml::node& node, const std::string& name, const std::string& key) const {
+        if (toml::table* table = node.as_table()) return *table;
+        if (node.is_array())
+            throw inputError("{}: {} is a list; say which, as in {}[0].{}", place_, name, name, key);
+        throw inputError("{}: {} is a single value and has no key '{}'", place_, name, key);
+    }
+
+    toml::array& asArray(toml::node& node, const std::string& name, size_t index) const {
+        toml::array* const array = node.as_array();
+        if (!array) throw inputError("{}: {} is not a list", place_, name);
+        if (index >= array->size()) throw missing(name, array->size());
+        return *array;
+    }
+
+    /// `name` is a list too short for the index that was asked for.
+    Error missing(const std::string& name, size_t size) const {
+        if (name != "volume" && name != "light")
+            return inputError("{}: {} has {} elements", place_, name, size);
+        const std::string owned = size == 0 ? "no " + name
+                                            : fmt::format("{} {}{}", size, name, size > 1 ? "s" : "");
+        return inputError("{}: the scene has {}{}", place_, owned,
+                          size > 1 ? fmt::format(", {}[0] to {}[{}]", name, name, size - 1) : "");
+    }
+
+    /// Sets what steps_[first] and the keys after it lead to, in `table`.
+    void insert(toml::table& table, size_t first) const {
+        std::string keys;
+        for (size_t i = first; i < steps_.size(); ++i) {
+            const auto* key = std::get_if<std::string>(&steps_[i]);
+            if (!key) throw missing(std::get<std::string>(steps_[i - 1]), 0);
+            keys += (keys.empty() ? "" : ".") + *key;
+        }
+        toml::table parsed = parseAssignment(keys, value_, place_);
+        const toml::key key = parsed.begin()->first;
+        // Moved, never copied: a copy of a node forgets its place.
+        std::move(*parsed.get(key)).visit([&](auto&& node) {
+            table.erase(key);  // or the old key would keep its place in the file
+            table.insert(key, std::move(node));
+        });
+    }
+
+    void replace(toml::array& array, size_t index) const {
+        toml::table parsed = parseAssignment("value", value_, place_);
+        std::move(*parsed.get("value")).visit([&](auto&& node) {
+            array.replace(array.begin() + static_cast<std::ptrdiff_t>(index), std::move(node));
+        });
+    }
+
+    std::string place_, value_;
+    std::vector<Step> steps_;
+};
+
+}  // namespace
+
+void applyOverride(toml::table& scene, const std::string& text) { Override(text).apply(scene); }
+
+}  // namespace woodcock

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "woodcock/base/parse.h"
+#include "woodcock/image/image_format.h"
+#include "woodcock/scene/parse_sections.h"
+
+namespace woodcock {
+namespace {
+
+constexpr int largestSide = 65536;
+constexpr int largestCount = std::numeric_limits<int>::max();
+
+/// What `read` makes of a value's text; its complaints gain the value's place.
+template <class Read>
+auto readText(const SceneValue& value, Read read) {
+    const std::string text = value.text();
+    try {
+        return read(text);
+    } catch (const Error& e) {
+        throw inputError("{}: {}: {}", value.place(), value.name(), e.what());
+    }
+}
+
+std::vector<std::string> parseLayers(const SceneValue& value) {
+    const std::array<std::string, 4> known{"depth", "transmittance", "samples", "error"};
+    std::vector<std::string> layers;
+    for (const SceneValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
+        const std::string& layer = known[element.choice("layer", known)];
+        if (std::find(layers.begin(), layers.end(), layer) != layers.end())
+            throw element.error("repeats the layer '{}'", layer);
+        layers.push_back(layer);
+    }
+    return layers;
+}
+
+std::filesystem::path parseOutputFile(const SceneValue& value, const std::filesystem::path& base) {
+    readText(value, [](const std::string& text) { return imageFormat(text); });
+    return value.path(base);
+}
+
+}  // namespace
+
+RenderDescription parseRender(const SceneTable& table) {
+    table.allowOnly({"resolution", "spp", "seed", "max_scatterings", "time_limit", "noise",
+                     "majorant_scale"},
+                    "[render]");
+    RenderDescription render;
+    if (const auto v = table.find("resolution")) {
+        const auto sides = v->elements("[width, height]", 2);
+        render.width = sides[0].integer(1, largestSide);
+        render.height = sides[1].integer(1, largestSide);
+    }
+    if (const auto v = table.find("spp")) render.spp = v->integer(1, largestCount);
+    if (const auto v = table.find("seed")) render.seed = v->count();
+    if (const auto v = table.find("max_scatterings"))
+        render.maxScatterings = v->integer(0, largestCount);
+    if (const auto v = table.find("time_limit"))
+        render.timeLimit = v->isText() ? readText(*v, parseDuration) : v->number(notNegative);
+    if (const auto v = table.find("noise"))
+        render.noise = v->isText() ? readText(*v, parseFraction) : v->number(notNegative);
+    if (const auto v = table.find("majorant_scale")) render.majorantScale = v->number({1});
+    return render;
+}
+
+OutputDescription parseOutput(const SceneTable& table, const std::filesystem::path& base) {
+    table.allowOnly({"files", "layers", "half", "display", "view", "look", "exposure"}, "[output]");
+    OutputDescription output;
+    if (const auto v = table.find("files"))
+        for (const SceneValue& file : v->elements("a list of files, such as [\"smoke.exr\"]"))
+            output.files.push_back(parseOutputFile(file, base));
+    if (const auto v = table.find("layers")) output.layers = parseLayers(*v);
+    if (const auto v = table.find("half")) output.half = v->flag();
+    if (const auto v = table.find("display")) output.display = v->text();
+    if (const auto v = table.find("view")) output.view = v->text();
+    if (const auto v = table.find("look")) output.look = v->text();
+    if (const auto v = table.find("exposure")) output.exposure = v->number();
+    return output;
+}
+
+}  // namespace woodcock

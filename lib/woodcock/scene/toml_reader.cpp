@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/toml_reader.h"
+
+#include <cmath>
+
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/scene/path_variables.h"
+
+namespace woodcock {
+namespace {
+
+std::string_view typeName(const toml::node& node) {
+    switch (node.type()) {
+        case toml::node_type::table: return "a table";
+        case toml::node_type::array: return "an array";
+        case toml::node_type::string: return "a string";
+        case toml::node_type::integer: return "an integer";
+        case toml::node_type::floating_point: return "a float";
+        case toml::node_type::boolean: return "a boolean";
+        default: return "a date or time";
+    }
+}
+
+bool contains(NumberRange range, double v) {
+    return range.strict ? v > range.lower && v < range.upper : v >= range.lower && v <= range.upper;
+}
+
+/// What a number outside the range must do, such as "must not be negative".
+std::string demand(NumberRange range, double v) {
+    const NumberRange all;
+    if (range.lower != all.lower && range.upper < std::numeric_limits<float>::max())
+        return fmt::format("must lie {} {} and {}", range.strict ? "strictly between" : "between",
+                           range.lower, range.upper);
+    if (v > range.lower)
+        return fmt::format("must be {} {}", range.strict ? "less than" : "at most", range.upper);
+    if (range.lower == 0) return range.strict ? "must be positive" : "must not be negative";
+    return fmt::format("must be {} {}", range.strict ? "more than" : "at least", range.lower);
+}
+
+}  // namespace
+
+std::string placeOf(const toml::source_region& source) {
+    const std::string path = source.path ? *source.path : std::string();
+    if (path.starts_with(overrideMark)) return path;
+    return fmt::format("{}:{}:{}", path, source.begin.line, source.begin.column);
+}
+
+Error SceneValue::wrongType(std::string_view expected) const {
+    return error("is {}; expected {}", typeName(*node_), expected);
+}
+
+double SceneValue::number(NumberRange range) const {
+    double v = 0;
+    if (const auto* integer = node_->as_integer())
+        v = static_cast<double>(integer->get());
+    else if (const auto* real = node_->as_floating_point())
+        v = real->get();
+    else
+        throw wrongType("a number");
+    if (!std::isfinite(v)) throw error("is {}; it must be finite", v);
+    if (!contains(range, v)) throw error("is {}; it {}", v, demand(range, v));
+    return v;
+}
+
+int SceneValue::integer(int lower, int upper) const {
+    const auto* value = node_->as_integer();
+    if (!value) throw wrongType("an integer");
+    if (value->get() < lower || value->get() > upper)
+        throw error("is {}; it must lie between {} and {}", value->get(), lower, upper);
+    return static_cast<int>(value->get());
+}
+
+std::uint64_t SceneValue::count() const {
+    const auto* value = node_->as_integer();
+    if (!value) throw wrongType("an integer");
+    if (value->get() < 0) throw error("is {}; it must not be negative", value->get());
+    return static_cast<std::uint64_t>(value->get());
+}
+
+bool SceneValue::flag() const {
+    const auto* value = node_->as_boolean();
+    if (!value) throw wrongType("true or false");
+    return value->get();
+}
+
+std::string SceneValue::text() const {
+    const auto* value = node_->as_string();
+    if (!value) throw wrongType("a string");
+    if (value->get().empty()) throw error("is empty; give a name or leave the key out");
+    return value->get();
+}
+
+SceneValue SceneValue::element(size_t i) const {
+    return {*node_->as_array()->get(i), fmt::format("{}[{}]", name_, i)};
+}
+
+std::vector<SceneValue> SceneValue::elements(std::string_view expected,
+                                             std::optional<size_t> size) const {
+    const auto* array = node_->as_array();
+    if (!array) throw wrongType(expected);
+    if (size && array->size() != *size)
+        throw error("has {} element{}; expected {}", array->size(), array->size() == 1 ? "" : "s",
+                    expected);
+    std::vector<SceneValue> values;
+    for (size_t i = 0; i < array->size(); ++i) values.push_back(element(i));
+    return values;
+}
+
+Vec3d SceneValue::vector() const {
+    const auto v = elements("[x, y, z]", 3);
+    return {v[0].number(), v[1].number(), v[2].number()};
+}
+
+Rgb SceneValue::colour(NumberRange range) const {
+    range.upper = std::min<double>(range.upper, std::numeric_limits<float>::max());
+    if (node_->is_number()) return Rgb(static_cast<float>(number(range)));
+    const auto v = elements("a number or [r, g, b]", 3);
+    return Rgb::map([&](int i) {
+        return static_cast<float>(v[static_cast<size_t>(i)].number(range));
+    });
+}
+
+Affine3d SceneValue::affine() const {
+    const auto rows = elements("four rows of four numbers", 4);
+    double m[4][4];
+    for (size_t i = 0; i < 4; ++i) {
+        const auto row = rows[i].elements("a row of four numbers", 4);
+        for (size_t j = 0; j < 4; ++j) m[i][j] = row[j].number();
+    }
+    if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
+        throw error("is not affine: its last row is [{}, {}, {}, {}] instead of [0, 0, 0, 1] "
+                    "(translation stands in the last column)",
+                    m[3][0], m[3][1], m[3][2], m[3][3]);
+    Affine3d map;
+    for (size_t j = 0; j < 3; ++j) map.column[j] = {m[0][j], m[1][j], m[2][j]};
+    map.translation = {m[0][3], m[1][3], m[2][3]};
+    const double bound = length(map.column[0]) * length(map.column[1]) * length(map.column[2]);
+    const double det = map.determinant();
+    // Below this, what is left of the smallest axis is rounding.
+    if (!std::isfinite(det) || !(std::abs(det) > 1e-12 * bound))
+        throw error("is singular: it flattens space (its determinant is {:.3g})", det);
+    return map;
+}
+
+std::filesystem::path SceneValue::path(const std::filesystem::path& base) const {
+    const std::string written = text();
+    std::filesystem::path expanded;
+    try {
+        expanded = expandPath(written);
+    } catch (const Error& e) {
+        throw error("is '{}': {}", written, e.what());
+    }
+    const bool overridden = place().starts_with(overrideMark);
+    return (overridden ? expanded : base / expanded).lexically_normal();
+}
+
+size_t SceneValue::choice(std::string_view what, std::span<const std::string> known) const {
+    const std::string word = text();
+    for (size_t i = 0; i < known.size(); ++i)
+        if (known[i] == word) return i;
+    throw inputError("{}: unknown {} '{}'; known: {}", place(), what, word, joinNames(known));
+}
+
+SceneTable SceneValue::table() const {
+    const auto* table = node_->as_table();
+    if (!table) throw wrongType("a table");
+    return {*table, name_};
+}
+
+std::optional<SceneValue> SceneTable::find(std::string_view key) const {
+    const toml::node* node = table_->get(key);
+    if (!node) return std::nullopt;
+    return SceneValue(*node, fmt::format("{}{}{}", name_, name_.empty() ? "" : ".", key));
+}
+
+SceneValue SceneTable::need(std::string_view key, std::string_view example) const {
+    if (const auto value = find(key)) return *value;
+    throw error("has no {}; give one, such as {}", key, example);
+}
+
+void SceneTable::allowOnly(const std::vector<std::string>& known, std::string_view where) const {
+    // The table is sorted by name: the user wants the first in the file.
+    const toml::key* first = nullptr;
+    const auto position = [](const toml::key& k) {
+        return std::pair(k.source().begin.line, k.source().begin.column);
+    };
+    for (const auto& [key, node] : *table_) {
+        const bool isKnown = std::find(known.begin(), known.end(), key.str()) != known.end();
+        if (!isKnown && (!first || position(key) < position(*first))) first = &key;
+    }
+    if (first)
+        throw inputError("{}: unknown key '{}' in {}{}", placeOf(first->source()), first->str(),
+                         where, suggestName(first->str(), "known keys", known));
+}
+
+void SceneTable::exclude(std::string_view key, std::string_view other,
+                         std::string_view why) const {
+    if (has(key) && has(other))
+        throw find(key)->error("stands beside {}; give one of them: {}", other, why);
+}
+
+}  // namespace woodcock

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <toml++/toml.h>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/spectrum.h"
+
+namespace woodcock {
+
+// How the scene parser reads TOML: every value knows its place in the file and the name that
+// messages call it by, and throws Error{Input} when it is not what was expected. Of scene/ only.
+
+/// The source path of values that come from an override starts with this.
+inline constexpr std::string_view overrideMark = "--set ";
+
+/// "scene.toml:12:9", or the whole override ("--set volume[0].g=1.5") where the text is one.
+std::string placeOf(const toml::source_region& source);
+
+/// The numbers that a key accepts; the default accepts every finite number.
+struct NumberRange {
+    double lower = std::numeric_limits<double>::lowest();
+    double upper = std::numeric_limits<double>::max();
+    bool strict = false;  ///< the bounds themselves are left out
+};
+inline constexpr NumberRange notNegative{0};
+inline constexpr NumberRange positive{.lower = 0, .strict = true};
+
+class SceneTable;
+
+/// A value of the scene file, named by its path of keys, such as "volume[0].scale".
+class SceneValue {
+public:
+    SceneValue(const toml::node& node, std::string name) : node_(&node), name_(std::move(name)) {}
+
+    const std::string& name() const { return name_; }
+    std::string place() const { return placeOf(node_->source()); }
+    bool isTable() const { return node_->is_table(); }
+    bool isText() const { return node_->is_string(); }
+    bool isArray() const { return node_->is_array(); }
+
+    double number(NumberRange range = {}) const;
+    int integer(int lower, int upper) const;
+    std::uint64_t count() const;  ///< a non-negative integer
+    bool flag() const;
+    std::string text() const;  ///< not empty
+    Vec3d vector() const;
+    Rgb colour(NumberRange range) const;  ///< from a number or [r, g, b]
+    Affine3d affine() const;        ///< from four rows of four, regular
+    /// With ~ and variables expanded, relative to `base` (an override: to the working directory).
+    std::filesystem::path path(const std::filesystem::path& base) const;
+    /// The index in `known` of this text; `what` names the kind of thing ("light type").
+    size_t choice(std::string_view what, std::span<const std::string> known) const;
+    SceneValue element(size_t i) const;
+    /// The elements of an array, `size` of them if given; `expected` says what is, where it is not.
+    std::vector<SceneValue> elements(std::string_view expected,
+                                     std::optional<size_t> size = {}) const;
+    SceneTable table() const;
+
+    /// "place: name message".
+    template <class... A>
+    Error error(fmt::format_string<A...> message, A&&... args) const {
+        return inputError("{}: {} {}", place(), name_,
+                          fmt::format(message, std::forward<A>(args)...));
+    }
+
+private:
+    Error wrongType(std::string_view expected) const;
+
+    const toml::node* node_;
+    std::string name_;
+};
+
+/// A table of the scene file.
+class SceneTable {
+public:
+    /// `name` is empty for the file itself.
+    SceneTable(const toml::table& table, std::string name)
+        : table_(&table), name_(std::move(name)) {}
+
+    const std::string& name() const { return name_; }
+    std::string place() const { return placeOf(table_->source()); }
+    bool has(std::string_view key) const { return table_->contains(key); }
+    std::optional<SceneValue> find(std::string_view key) const;
+    /// Throws when there is no such key; `example` shows how to give it.
+    SceneValue need(std::string_view key, std::string_view example) const;
+    /// Throws on the first key of the file that is not `known`; `where` names the table to the user.
+    void allowOnly(const std::vector<std::string>& known, std::string_view where) const;
+    /// Throws when both keys are there.
+    void exclude(std::string_view key, std::string_view other, std::string_view why) const;
+
+    template <class... A>
+    Error error(fmt::format_string<A...> message, A&&... args) const {
+        return inputError("{}: {} {}", place(), name_,
+                          fmt::format(message, std::forward<A>(args)...));
+    }
+
+private:
+    const toml::table* table_;
+    std::string name_;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/toml_text.h"
+
+#include <fmt/format.h>
+
+namespace woodcock {
+
+std::string tomlText(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            quoted += '\\', quoted += c;
+        else if (byte < 0x20 || byte == 0x7f)
+            quoted += fmt::format("\\u{:04x}", byte);
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
+std::string tomlNumber(double v) { return fmt::format("{}", v); }
+
+std::string tomlVector(Vec3d v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string tomlColour(Rgb v) {
+    if (isGrey(v)) return fmt::format("{}", v[0]);
+    return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
+}
+
+std::string tomlMatrix(const Affine3d& m) {
+    std::string rows = "[";
+    for (int i = 0; i < 3; ++i)
+        rows += fmt::format("\n    [{}, {}, {}, {}],", m.column[0][i], m.column[1][i],
+                            m.column[2][i], m.translation[i]);
+    return rows + "\n    [0, 0, 0, 1],\n]";
+}
+
+}  // namespace woodcock

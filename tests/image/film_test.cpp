@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/film.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+namespace {
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+Film smallFilm() { return Film(4, 3, {0, 0, 4, 3}); }
+
+TEST(Film, MeansAndStandardErrorOfAFewSamples) {
+    Film film = smallFilm();
+    for (float v : {1.0f, 2.0f, 3.0f, 6.0f}) film.add(2, 1, FilmSample{Rgb(v, 2 * v, 5), v / 8});
+    EXPECT_EQ(film.radiance(2, 1), Rgb(3, 6, 5));
+    EXPECT_EQ(film.alpha(2, 1), 0.375f);
+    // Squares of the deviations: 4 + 1 + 0 + 9; variance 14/3; of the mean 14/12.
+    EXPECT_FLOAT_EQ(film.standardError(2, 1)[0], std::sqrt(14.0f / 12));
+    EXPECT_FLOAT_EQ(film.standardError(2, 1)[1], 2 * std::sqrt(14.0f / 12));
+    EXPECT_EQ(film.standardError(2, 1)[2], 0.0f);
+    EXPECT_EQ(film.at(2, 1).samples, 4u);
+    EXPECT_EQ(film.radiance(1, 1), Rgb(0.0f));
+}
+
+TEST(Film, NothingIsNaNWithoutSamples) {
+    Film film = smallFilm();
+    film.add(0, 0, FilmSample{Rgb(1.0f), 1});
+    for (int x : {0, 1}) {
+        EXPECT_TRUE(film.radiance(x, 0).isFinite());
+        EXPECT_EQ(film.standardError(x, 0), Rgb(0.0f));
+        EXPECT_TRUE(film.transmittance(x, 0).isFinite());
+        EXPECT_EQ(film.depth(x, 0), Film::noDepth);
+    }
+    EXPECT_EQ(film.noise(), 0.0);
+}
+
+TEST(Film, EqualSamplesHaveNoErrorWhateverTheirRounding) {
+    Film film = smallFilm();
+    for (int i = 0; i < 1000; ++i) film.add(0, 0, FilmSample{Rgb(0.1f, 1e-20f, 3e18f), 1});
+    const Rgb error = film.standardError(0, 0);
+    EXPECT_TRUE(error.isFinite());
+    EXPECT_LT(error[0], 1e-8f * 0.1f);
+    EXPECT_LT(error[1], 1e-8f * 1e-20f);
+    EXPECT_LT(error[2], 1e-8f * 3e18f);
+}
+
+TEST(Film, SamplesThatAreNotFiniteAreCountedAndDropped) {
+    Film film = smallFilm();
+    film.add(1, 2, FilmSample{Rgb(1, 2, 3), 0.5f});
+    film.add(1, 2, FilmSample{Rgb(1, nan, 3), 0.5f});
+    film.add(1, 2, FilmSample{Rgb(1, 2, -inf), 0.5f});
+    film.add(1, 2, FilmSample{Rgb(1, 2, 3), nan});
+    film.add(1, 2, DepthSample{Rgb(0.5f), 3, 0.5f});
+    film.add(1, 2, DepthSample{Rgb(0.5f), inf, 0.5f});
+    film.add(3, 0, DepthSample{Rgb(nan), 1, 0.5f});
+    EXPECT_EQ(film.nonFiniteCount(), 5u);
+    EXPECT_EQ(film.at(1, 2).samples, 1u);
+    EXPECT_EQ(film.radiance(1, 2), Rgb(1, 2, 3));
+    EXPECT_EQ(film.transmittance(1, 2), Rgb(0.5f));
+    EXPECT_EQ(film.depth(1, 2), 6.0f);
+}
+
+TEST(Film, DepthIsWeightedByWhatTheRayMeets) {
+    Film film = smallFilm();
+    film.add(0, 0, DepthSample{Rgb(0.25f), 0.75f * 10, 0.75f});
+    film.add(0, 0, DepthSample{Rgb(0.75f), 0.25f * 30, 0.25f});
+    film.add(0, 0, DepthSample{Rgb(1.0f), 0, 0});
+    EXPECT_FLOAT_EQ(film.depth(0, 0), 15.0f);
+    EXPECT_FLOAT_EQ(film.transmittance(0, 0)[0], 2.0f / 3);
+}
+
+TEST(Film, MergedHalvesEqualTheWholeToAFloatsLastPlace) {
+    const Film::Window crop{2, 1, 7, 5};
+    Film whole(9, 6, crop), first(9, 6, crop), second(9, 6, crop);
+    std::mt19937 random(7);
+    std::lognormal_distribution<float> light(0, 4);  // over many magnitudes, as fireflies are
+    for (int sample = 0; sample < 64; ++sample)
+        for (int y = crop.y0; y < crop.y1; ++y)
+            for (int x = crop.x0; x < crop.x1; ++x) {
+                const FilmSample s{Rgb(light(random), light(random), light(random)),
+                                   std::generate_canonical<float, 24>(random)};
+                const DepthSample d{s.radiance, light(random), s.alpha};
+                Film& half = sample < 32 ? first : second;
+                whole.add(x, y, s), half.add(x, y, s);
+                whole.add(x, y, d), half.add(x, y, d);
+            }
+    first.merge(second);
+    const auto near = [](Rgb a, Rgb b) {
+        for (int i = 0; i < 3; ++i)
+            if (a[i] < std::nextafter(b[i], -inf) || a[i] > std::nextafter(b[i], inf)) return false;
+        return true;
+    };
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            EXPECT_TRUE(near(first.radiance(x, y), whole.radiance(x, y)));
+            EXPECT_TRUE(near(first.standardError(x, y), whole.standardError(x, y)));
+            EXPECT_TRUE(near(first.transmittance(x, y), whole.transmittance(x, y)));
+            EXPECT_TRUE(near(Rgb(first.alpha(x, y)), Rgb(whole.alpha(x, y))));
+            EXPECT_TRUE(near(Rgb(first.depth(x, y)), Rgb(whole.depth(x, y))));
+            EXPECT_EQ(first.at(x, y).samples, 64u);
+        }
+}
+
+TEST(Film, NoiseIsTheMeanRelativeErrorOfLitPixels) {
+    Film film = smallFilm();
+    // Samples 1 and 3: mean 2, standard error 1. Samples 5 and 5: no error.
+    for (float v : {1.0f, 3.0f}) film.add(0, 0, FilmSample{Rgb(v), 1});
+    for (float v : {5.0f, 5.0f}) film.add(1, 0, FilmSample{Rgb(v), 1});
+    for (float v : {0.0f, 0.0f}) film.add(2, 0, FilmSample{Rgb(v), 1});  // dark
+    film.add(3, 0, FilmSample{Rgb(9.0f), 1});                            // too few
+    EXPECT_DOUBLE_EQ(film.noise(), 0.25);
+}
+
+TEST(Film, NoiseFallsWithTheRootOfTheSamples) {
+    std::mt19937 random(3);
+    std::exponential_distribution<float> light(1);
+    const auto noiseOf = [&](int samples) {
+        Film film(16, 16, {0, 0, 16, 16});
+        for (int i = 0; i < samples; ++i)
+            for (int p = 0; p < 256; ++p)
+                film.add(p % 16, p / 16, FilmSample{Rgb(light(random)), 1});
+        return film.noise();
+    };
+    // An exponential variate's deviation is its mean: 1 / sqrt(n); 256 pixels tell it to a percent.
+    EXPECT_NEAR(noiseOf(400) * 20, 1, 0.02);
+    EXPECT_NEAR(noiseOf(1600) * 40, 1, 0.02);
+}
+
+TEST(Film, RefusesEmptyImagesAndCropsOutside) {
+    EXPECT_THROW(Film(0, 3, {0, 0, 0, 3}), Error);
+    EXPECT_THROW(Film(4, 3, {1, 1, 1, 2}), Error);
+    EXPECT_THROW(Film(4, 3, {0, 0, 5, 3}), Error);
+    EXPECT_THROW(Film(4, 3, {-1, 0, 4, 3}), Error);
+    Film film = smallFilm();
+    EXPECT_THROW(film.merge(Film(4, 3, {0, 0, 4, 2})), Error);
+}
+
+}  // namespace
+}  // namespace woodcock

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/outputs.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/environment_variable.h"
+#include "tests/support/paths.h"
+#include "tests/support/read_back.h"
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+namespace {
+
+/// One grey that a Standard sRGB view shows as byte 118 (0.18), one half as bright behind half the
+/// alpha, one black.
+class OutputsTest : public testing::Test {
+protected:
+    OutputsTest() : film_(5, 3, {1, 1, 4, 2}) {
+        film_.add(1, 1, FilmSample{Rgb(0.18f), 1});
+        film_.add(2, 1, FilmSample{Rgb(0.09f), 0.5f});
+        settings_.display = {"sRGB", "Standard", "", 0};
+    }
+
+    test::ReadBack write(const char* name) {
+        settings_.files = {dir_ / name};
+        Outputs(settings_).write(film_, {});
+        return test::readBack(dir_ / name);
+    }
+
+    template <class F>
+    std::string messageOf(ErrorKind kind, F f) {
+        try {
+            f();
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), kind);
+            return e.what();
+        }
+        return "no error";
+    }
+
+    std::string refusal(std::vector<std::filesystem::path> files) {
+        settings_.files = std::move(files);
+        return messageOf(ErrorKind::Usage, [&] { Outputs outputs(settings_); });
+    }
+
+    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const test::TempDir dir_;
+    Film film_;
+    OutputSettings settings_;
+};
+
+TEST_F(OutputsTest, PngIsOpaqueByDefault) {
+    const test::ReadBack image = write("a.png");
+    EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
+    EXPECT_EQ(image.width, 3);
+    EXPECT_EQ(image.height, 1);
+    EXPECT_EQ(image.at(0, 0, "R"), 118.0f);
+    EXPECT_EQ(image.at(1, 0, "G"), 85.0f);  // 0.09: 85.03
+    EXPECT_EQ(image.at(2, 0, "B"), 0.0f);
+}
+
+TEST_F(OutputsTest, PngAlphaIsStraight) {
+    settings_.withAlpha = true;
+    const test::ReadBack image = write("a.png");
+    EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+    for (const char* channel : {"R", "G", "B"}) {
+        EXPECT_EQ(image.at(0, 0, channel), 118.0f);
+        EXPECT_EQ(image.at(1, 0, channel), 118.0f);
+        EXPECT_EQ(image.at(2, 0, channel), 0.0f);
+    }
+    EXPECT_EQ(image.at(0, 0, "A"), 255.0f);
+    EXPECT_EQ(image.at(1, 0, "A"), 128.0f);
+    EXPECT_EQ(image.at(2, 0, "A"), 0.0f);
+}
+
+TEST_F(OutputsTest, JpegIsOnBlack) {
+    settings_.withAlpha = true;
+    const test::ReadBack image = write("a.JPG");
+    EXPECT_EQ(image.channels.size(), 3u);
+    EXPECT_NEAR(image.at(0, 0, "R"), 118, 2);
+    EXPECT_NEAR(image.at(1, 0, "R"), 85, 2);
+    EXPECT_NEAR(image.at(2, 0, "R"), 0, 2);
+}
+
+TEST_F(OutputsTest, ExposureBrightensPicturesAndLeavesExrAlone) {
+    settings_.display.exposure = 1;
+    EXPECT_EQ(write("a.png").at(1, 0, "R"), 118.0f);
+    EXPECT_EQ(write("a.exr").at(2, 1, "R"), 0.09f);
+}
+
+TEST_F(OutputsTest, ExrHasTheWorkingSpacesChromaticities) {
+    EXPECT_EQ(write("a.exr").attributes.at("chromaticities"),
+              "0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329");
+}
+
+TEST_F(OutputsTest, SeveralFilesInOneRun) {
+    settings_.files = {dir_ / "a.exr", dir_ / "a.png", dir_ / "b.jpeg"};
+    Outputs(settings_).write(film_, {});
+    for (const auto& file : settings_.files) EXPECT_TRUE(exists(file)) << file;
+}
+
+TEST_F(OutputsTest, OneThatFailsLetsTheOthersBeWritten) {
+    create_directory(dir_ / "sub");
+    settings_.files = {dir_ / "sub/a.exr", dir_ / "a.png"};
+    const Outputs outputs(settings_);
+    remove(dir_ / "sub");
+    const std::string message = messageOf(ErrorKind::Failure, [&] { outputs.write(film_, {}); });
+    EXPECT_EQ(message,
+              "cannot write '" + (dir_ / "sub/a.exr").string() + "': No such file or directory");
+    EXPECT_TRUE(exists(dir_ / "a.png"));
+}
+
+TEST_F(OutputsTest, WhatCannotWorkIsRefusedBeforehand) {
+    EXPECT_EQ(refusal({"a.tga"}),
+              "cannot write 'a.tga': unknown image extension '.tga'; known: "
+              ".exr, .png, .jpg, .jpeg");
+    EXPECT_EQ(refusal({"image"}),
+              "cannot write 'image': it has no extension to tell the format; "
+              "known: .exr, .png, .jpg, .jpeg");
+    EXPECT_EQ(refusal({dir_ / "a.exr", dir_ / "b.exr", dir_ / "a.exr"}),
+              "output '" + (dir_ / "a.exr").string() + "' is named twice");
+    EXPECT_NE(refusal({dir_ / "none/a.exr"}).find("there is no directory"), std::string::npos);
+
+    settings_.display.view = "Filmic";
+    EXPECT_NE(refusal({dir_ / "a.png"}).find("view 'Filmic' not found"), std::string::npos);
+    EXPECT_EQ(refusal({dir_ / "a.exr"}), "no error");  // nothing is shown
+}
+
+}  // namespace
+}  // namespace woodcock

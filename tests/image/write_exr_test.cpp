@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/write_exr.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/paths.h"
+#include "tests/support/read_back.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/version.h"
+
+namespace woodcock {
+namespace {
+
+class WriteExr : public testing::Test {
+protected:
+    WriteExr() : film_(6, 4, {1, 2, 4, 4}) {
+        for (int y = 2; y < 4; ++y)
+            for (int x = 1; x < 4; ++x) {
+                const float v = static_cast<float>(x) + 0.1f * static_cast<float>(y);
+                film_.add(x, y, FilmSample{Rgb(v, 2 * v, 3 * v), 0.25f * static_cast<float>(x)});
+            }
+        film_.add(1, 2, FilmSample{Rgb(3.2f, 0, 0), 0.75f});
+    }
+
+    test::ReadBack write(const ExrSettings& settings) {
+        writeExr(dir_ / "a.exr", film_, metadata_, settings);
+        return test::readBack(dir_ / "a.exr");
+    }
+
+    test::TempDir dir_;
+    Film film_;
+    RenderMetadata metadata_{16, 80, 0xfedcba9876543210u, 12.5, "digest", "woodcock render a"};
+};
+
+TEST_F(WriteExr, KeepsFloatsAndTheCropsPlace) {
+    const test::ReadBack image = write({});
+    EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+    EXPECT_EQ(image.x, 1);
+    EXPECT_EQ(image.y, 2);
+    EXPECT_EQ(image.width, 3);
+    EXPECT_EQ(image.height, 2);
+    EXPECT_EQ(image.fullWidth, 6);
+    EXPECT_EQ(image.fullHeight, 4);
+    for (int y = 2; y < 4; ++y)
+        for (int x = 1; x < 4; ++x) {
+            EXPECT_EQ(image.at(x, y, "R"), film_.radiance(x, y)[0]);
+            EXPECT_EQ(image.at(x, y, "G"), film_.radiance(x, y)[1]);
+            EXPECT_EQ(image.at(x, y, "B"), film_.radiance(x, y)[2]);
+            EXPECT_EQ(image.at(x, y, "A"), film_.alpha(x, y));
+        }
+    for (const auto& [channel, type] : image.types) EXPECT_EQ(type, "float") << channel;
+}
+
+TEST_F(WriteExr, HalfIsForColourAndFinite) {
+    film_.add(3, 3, FilmSample{Rgb(1e9f, 0, 0), 1});
+    ExrSettings settings;
+    settings.half = true;
+    settings.layers.depth = settings.layers.error = true;
+    const test::ReadBack image = write(settings);
+    for (const char* channel : {"R", "G", "B", "A"}) EXPECT_EQ(image.types.at(channel), "half");
+    for (const char* channel : {"Z", "error.R", "error.G", "error.B"})
+        EXPECT_EQ(image.types.at(channel), "float");
+    EXPECT_EQ(image.at(3, 3, "R"), 65504.0f);
+    EXPECT_EQ(image.at(3, 3, "error.R"), film_.standardError(3, 3)[0]);
+    EXPECT_NEAR(image.at(2, 2, "G"), 4.4f, 4.4f / 2048);
+}
+
+TEST_F(WriteExr, LayersOnRequest) {
+    film_.add(2, 3, DepthSample{Rgb(0.5f, 0.25f, 0.125f), 6, 0.5f});
+    const test::ReadBack image =
+        write({false, layersFromNames({"samples", "depth", "transmittance", "error"}), {}});
+    EXPECT_EQ(image.at(2, 3, "Z"), 12.0f);
+    EXPECT_EQ(image.at(1, 3, "Z"), Film::noDepth);
+    EXPECT_EQ(image.at(2, 3, "transmittance.R"), 0.5f);
+    EXPECT_EQ(image.at(2, 3, "transmittance.G"), 0.25f);
+    EXPECT_EQ(image.at(2, 3, "transmittance.B"), 0.125f);
+    EXPECT_EQ(image.at(1, 2, "samples"), 2.0f);
+    EXPECT_EQ(image.at(2, 2, "samples"), 1.0f);
+    // Two samples: half of their distance. Red was 1.2 and 3.2, green 2.4 and 0.
+    EXPECT_FLOAT_EQ(image.at(1, 2, "error.R"), 1.0f);
+    EXPECT_FLOAT_EQ(image.at(1, 2, "error.G"), 1.2f);
+}
+
+TEST_F(WriteExr, HeaderSaysHowItWasMade) {
+    film_.add(1, 3, FilmSample{Rgb(std::nanf("")), 0});
+    ExrSettings settings;
+    settings.chromaticities = chromaticitiesFromName("ACEScg");
+    const auto attributes = write(settings).attributes;
+    EXPECT_EQ(attributes.at("woodcock/version"), version());
+    EXPECT_EQ(attributes.at("woodcock/samples"), "64");
+    EXPECT_EQ(attributes.at("woodcock/sampleRange"), "16:80");
+    EXPECT_EQ(attributes.at("woodcock/seed"), "18364758544493064720");
+    EXPECT_EQ(attributes.at("woodcock/sceneDigest"), "digest");
+    EXPECT_EQ(attributes.at("woodcock/renderSeconds"), "12.5");
+    EXPECT_EQ(attributes.at("woodcock/nonFinite"), "1");
+    EXPECT_EQ(attributes.at("woodcock/commandLine"), "woodcock render a");
+    EXPECT_EQ(attributes.at("compression"), "zip");
+    EXPECT_EQ(attributes.at("chromaticities"),
+              "0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767");
+}
+
+TEST(ExrLayers, UnknownNamesListTheKnown) {
+    try {
+        layersFromNames({"depth", "sample"});
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::Usage);
+        EXPECT_STREQ(e.what(),
+                     "unknown layer 'sample'; did you mean 'samples'? known layers: depth, "
+                     "transmittance, samples, error");
+    }
+}
+
+TEST(Chromaticities, KnowTheNamesThatConfigsUse) {
+    const auto red = [](const char* name) { return chromaticitiesFromName(name).value()[0]; };
+    for (const char* name :
+         {"Linear Rec.709 (sRGB)", "lin_rec709", "Utility - Linear - Rec.709", "Linear Rec.709"})
+        EXPECT_EQ(red(name), 0.64f) << name;
+    for (const char* name : {"ACEScg", "ACES - ACEScg", "lin_ap1"})
+        EXPECT_EQ(red(name), 0.713f) << name;
+    for (const char* name : {"ACES2065-1", "ACES - ACES2065-1", "lin_ap0"})
+        EXPECT_EQ(red(name), 0.7347f) << name;
+    EXPECT_EQ(red("Linear Rec.2020"), 0.708f);
+    EXPECT_FALSE(chromaticitiesFromName("Linear FilmLight E-Gamut"));
+}
+
+}  // namespace
+}  // namespace woodcock

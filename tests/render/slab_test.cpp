@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// A slab of voxels, as wide as infinite, against numbers of radiative transfer.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/paths.h"
+#include "tests/support/read_back.h"
+#include "tests/support/render_scene.h"
+#include "tests/support/run_program.h"
+#include "tests/support/write_vdb.h"
+
+namespace woodcock::test {
+namespace {
+
+/// Layers of voxels in y, each of optical thickness proportional to `weights`, `depth` in all. The
+/// linear ramps beyond the first and last layer belong to it: the sum over voxels is the integral.
+/// One voxel is 1 high and `width` wide.
+void writeSlab(const std::filesystem::path& file, double depth, const std::vector<double>& weights,
+               double width) {
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    GridSpec grid;
+    grid.box = {{0, 0, 0}, {15, static_cast<int>(weights.size()) - 1, 15}};
+    grid.value = [=](Vec3i p) { return depth * weights[static_cast<std::size_t>(p.y)] / sum; };
+    grid.worldFromIndex =
+        Affine3d::translate({-7.5 * width, 0, -7.5 * width}) * Affine3d::scale({width, 1, width});
+    writeVdb(file, {grid});
+}
+const std::vector<double> even{1, 1, 1, 1};
+const std::vector<double> layered{5, 0, 1, 0.125, 0, 0, 8, 3, 0.5, 2, 0, 4};
+constexpr double wide = 1e6;
+
+/// A sky that is red above the horizon and blue below. Bilinear interpolation smears the horizon
+/// over a row, an angle a = pi / rows. What leaves (or enters) a slab within a / 2 of its plane is
+/// below sin^2(a / 2) of the flux: 4e-5 of the answer with 256 rows.
+void writeSky(const std::filesystem::path& file) {
+    constexpr int rows = 256, columns = 4;
+    std::vector<float> rgb;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            for (const float v : {y < rows / 2 ? 1.0f : 0.0f, 0.0f, y < rows / 2 ? 0.0f : 1.0f})
+                rgb.push_back(v);
+    writeFloats(file, columns, rows, 3, rgb);
+}
+
+std::string slabScene(double albedo, double g, const std::string& light, int samples) {
+    return fmt::format("[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = {}\ng = {}\n"
+                       "{}[render]\nresolution = [32, 32]\nspp = {}\n",
+                       albedo, g, light, samples) +
+           pencilCamera({0, 50, 0}, {0, -1, 0});
+}
+const std::string sky = "[[light]]\ntype = \"environment\"\nimage = \"sky.exr\"\n";
+
+/// Reflectance and transmittance as the program renders them, from pixels that all look straight
+/// down: by reciprocity the radiance seen is the slab's answer to a beam.
+struct Answer {
+    Estimate reflected, transmitted;
+};
+Answer throughTheProgram(const TempDir& dir, const std::string& scene) {
+    writeText(dir / "slab.toml", scene);
+    const ProgramResult run = runProgram({"render", (dir / "slab.toml").string(), "-o",
+                                          (dir / "slab.exr").string(), "--quiet"});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ReadBack image = readBack(dir / "slab.exr");
+    Moments red, blue;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            red.add(image.at(x, y, "R")), blue.add(image.at(x, y, "B"));
+    return {Estimate(red), Estimate(blue)};
+}
+
+struct Row {
+    double g, depth, albedo, reflected, transmitted;
+    int samples;
+};
+void PrintTo(const Row& r, std::ostream* out) {
+    *out << "g = " << r.g << ", depth " << r.depth << ", albedo " << r.albedo;
+}
+class Slab : public testing::TestWithParam<Row> {};
+
+/// Adding-doubling with 64 nodes per hemisphere, beam at normal incidence, transmittance with the
+/// unscattered part; g = 0.75, depth 2, albedo 0.9 is also in van de Hulst 1980.
+INSTANTIATE_TEST_SUITE_P(
+    AddingDoubling, Slab,
+    testing::Values(Row{0, 0.1, 1, .047689, .952311, 512}, Row{0, 1, 0.5, .099119, .446058, 256},
+                    Row{0, 1, 0.99, .332922, .650978, 128}, Row{0, 4, 0.9, .408142, .128524, 256},
+                    Row{0, 4, 1, .690926, .309074, 128}, Row{0, 16, 1, .903632, .096368, 256},
+                    Row{0.5, 1, 0.9, .129793, .739091, 256},
+                    Row{0.5, 4, 0.99, .469796, .452650, 128},
+                    Row{0.75, 1, 0.5, .015109, .564612, 2048},
+                    Row{0.75, 2, 0.9, .097395, .660958, 512},
+                    Row{0.75, 8, 1, .506415, .493585, 128}));
+
+TEST_P(Slab, ReflectsAndTransmitsAsTheTablesSay) {
+    const Row& row = GetParam();
+    const TempDir dir;
+    writeSky(dir / "sky.exr");
+    // Optical depth is the only coordinate of a slab: any layers of the same sum answer alike.
+    for (const auto& layers : {even, layered}) {
+        writeSlab(dir / "slab.vdb", row.depth, layers, wide);
+        const Answer a =
+            throughTheProgram(dir, slabScene(row.albedo, row.g, sky, row.samples));
+        expectAgrees(a.reflected, row.reflected, 5e-3);
+        expectAgrees(a.transmitted, row.transmitted, 5e-3);
+    }
+}
+
+TEST(Slab, IsWideEnough) {
+    const TempDir dir;
+    writeSky(dir / "sky.exr");
+    const auto reflected = [&](double width) {
+        writeSlab(dir / "slab.vdb", 4, even, width);
+        return throughTheProgram(dir, slabScene(1, 0, sky, 256)).reflected;
+    };
+    const Estimate infinite = reflected(wide);
+    expectAgree(reflected(10 * wide), infinite, 5e-3);
+    // The comparison can tell: at a width of eight heights, light leaks from the sides.
+    EXPECT_GT(infinite.mean - reflected(2).mean, 0.01);
+}
+
+TEST(Slab, AbsorptionIsBeerLambert) {
+    const TempDir dir;
+    writeSlab(dir / "slab.vdb", 2, layered, wide);
+    for (const double tilt : {0.0, 1.0, 3.0}) {
+        const double cosine = 1 / std::hypot(1, tilt);
+        const Scene scene = sceneFrom("[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = 0\n"
+                                      "[[light]]\ntype = \"environment\"\nradiance = [1, 2, 4]\n" +
+                                          pencilCamera({0, 50, 0}, {tilt, -1, 0}),
+                                      dir.path());
+        const Film film = renderScene(scene, {32, 32, 64}).film;
+        const double t = std::exp(-2 / cosine);
+        expectAgrees(evenRadiance(film), {t, 2 * t, 4 * t}, 5e-3);
+        expectAgrees(evenAlpha(film), 1 - t, 5e-3);
+    }
+}
+
+double henyeyGreensteinByTheBook(double cosine, double g) {
+    return (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+}
+
+/// Single scattering of a beam with cosine mu0 (irradiance 1 across it) into a view of cosine mu, by
+/// a slab of this depth: Chandrasekhar 1960, sec. 44.
+double onceReflected(double depth, double mu0, double mu) {
+    return mu0 / (mu + mu0) * (1 - std::exp(-depth * (1 / mu + 1 / mu0)));
+}
+double onceTransmitted(double depth, double mu0, double mu) {
+    if (std::abs(mu - mu0) < 1e-9) return depth / mu0 * std::exp(-depth / mu0);
+    return mu0 / (mu0 - mu) * (std::exp(-depth / mu0) - std::exp(-depth / mu));
+}
+
+TEST(Slab, ScattersOnceAsTheClosedFormSays) {
+    const TempDir dir;
+    const double depth = 1.5, albedo = 0.8, mu0 = 0.8, mu = 0.6;
+    writeSlab(dir / "slab.vdb", depth, layered, wide);
+    // The view goes down towards +x; the sun comes down from the side, or up from below.
+    const Vec3d view{0.8, -0.6, 0};
+    for (const double g : {0.0, 0.5, -0.3})
+        for (const double side : {-1.0, 1.0}) {
+            const Vec3d travel{0, side * mu0, -0.6};
+            const Scene scene = sceneFrom(
+                fmt::format("[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = {}\ng = {}\n"
+                            "[[light]]\ntype = \"sun\"\nirradiance = [1, 2, 3]\n"
+                            "direction = [{}, {}, {}]\n",
+                            albedo, g, travel.x, travel.y, travel.z) +
+                    pencilCamera({0, 50, 0}, view),
+                dir.path());
+            const double scattered = albedo * henyeyGreensteinByTheBook(dot(travel, -view), g) *
+                                     (side < 0 ? onceReflected(depth, mu0, mu)
+                                               : onceTransmitted(depth, mu0, mu));
+            expectAgrees(evenRadiance(renderScene(scene, {32, 32, 128, 0, 1}).film),
+                         {scattered, 2 * scattered, 3 * scattered}, 5e-3);
+        }
+}
+
+}  // namespace
+}  // namespace woodcock::test

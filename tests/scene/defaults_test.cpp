@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/defaults.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/paths.h"
+#include "tests/support/write_vdb.h"
+#include "woodcock/medium/tracking.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/parse.h"
+#include "woodcock/scene/write.h"
+
+namespace woodcock {
+namespace {
+
+using test::GridSpec;
+using test::TempDir;
+using test::writeVdb;
+
+/// A ball of even density, 24 voxels wide.
+GridSpec ball(const Affine3d& worldFromIndex) {
+    GridSpec grid;
+    grid.box = {{0, 0, 0}, {24, 24, 24}};
+    grid.value = [](Vec3i v) {
+        return length(v.as<double>() - Vec3d{12, 12, 12}) < 12 ? 0.25 : 0.0;
+    };
+    grid.worldFromIndex = worldFromIndex;
+    return grid;
+}
+
+struct Completed {
+    SceneDescription description;
+    LoadedScene loaded;
+    std::vector<std::string> notes;
+
+    explicit Completed(const std::string& text, const std::filesystem::path& base = ".")
+        : description(parseSceneText(text, "scene.toml", base)), loaded(loadScene(description)),
+          notes(completeScene(description, loaded)) {}
+    Scene scene() const { return buildScene(description, loaded); }
+};
+
+std::string box(const std::string& lower, const std::string& upper) {
+    return "[[volume]]\nbox = { min = " + lower + ", max = " + upper + " }\nscale = 1\n";
+}
+
+/// The smallest box around the points on the film, in half heights and half widths of the picture
+/// from its centre: within [-1, 1] lies what is in the picture. Fails where one is behind the camera.
+Box3d onFilm(const Completed& c, const std::vector<Vec3d>& points) {
+    const Camera camera = c.scene().camera;
+    const Affine3d cameraFromWorld = camera.worldFromCamera.inverse();
+    const double aspect = double(c.description.render.width) / c.description.render.height;
+    Box3d film;
+    for (const Vec3d& point : points) {
+        const Vec3d p = cameraFromWorld.point(point);
+        EXPECT_LT(p.z, 0);
+        const double half = camera.kind == Camera::Kind::Orthographic
+                                ? camera.height / 2
+                                : -p.z * std::tan(camera.fovY * pi / 360);
+        film.add(Vec3d{p.x / (half * aspect), p.y / half, 0});
+    }
+    return film;
+}
+
+/// All is in the picture, with a margin of 8 % of it on either side of the tighter axis.
+void expectFramed(const Completed& c, const std::vector<Vec3d>& points, double slack = 0.01) {
+    const Box3d film = onFilm(c, points);
+    const std::string scene = writeScene(c.description);
+    for (int axis = 0; axis < 2; ++axis) {
+        EXPECT_GT(film.lower[axis], -0.845) << scene;
+        EXPECT_LT(film.upper[axis], 0.845) << scene;
+    }
+    EXPECT_NEAR(std::max(film.upper.x - film.lower.x, film.upper.y - film.lower.y), 1.68, slack)
+        << scene;
+}
+
+std::vector<Vec3d> cornersOfBoxes(const SceneDescription& description) {
+    std::vector<Vec3d> points;
+    for (const VolumeDescription& volume : description.volumes)
+        for (int i = 0; i < 8; ++i)
+            points.push_back(std::get<HomogeneousBox>(volume.coefficients).box.corner(i));
+    return points;
+}
+
+TEST(Defaults, FrameTheWholeVolumeTightly) {
+    const std::vector<std::string> boxes{
+        box("[0, 0, 0]", "[1, 1, 1]"),
+        box("[-100, 0, -1]", "[100, 1, 1]"),
+        box("[0, -500, 0]", "[1, 500, 1]"),
+        box("[1e7, 1e7, 1e7]", "[1.0000001e7, 1.0000002e7, 1.0000001e7]"),
+        box("[0, 0, 0]", "[1e-6, 1e-6, 1e-6]"),
+        box("[0, 0, 0]", "[1e12, 1e6, 1e6]"),
+        box("[0, 0, 0]", "[1, 1, 1]") + box("[5, 5, 5]", "[6, 7, 8]"),
+    };
+    const std::vector<std::string> cameras{
+        "", "[camera]\nfov = 5\n", "[camera]\ntype = \"orthographic\"\n",
+        "[render]\nresolution = [100, 700]\n"};
+    for (const std::string& volumes : boxes)
+        for (const std::string& camera : cameras) {
+            const Completed c(volumes + camera);
+            expectFramed(c, cornersOfBoxes(c.description));
+        }
+}
+
+TEST(Defaults, KeepAWideAngleAwayFromTheVolume) {
+    const Completed c(box("[0, 0, 0]", "[1, 1, 1]") + "[camera]\nfov = 150\n");
+    const auto corners = cornersOfBoxes(c.description);
+    expectFramed(c, corners, 1.68);
+    for (const Vec3d& corner : corners)
+        EXPECT_GT(length(c.scene().camera.worldFromCamera.translation - corner), 0.3);
+}
+
+TEST(Defaults, FrameWhatIsThereOfAGrid) {
+    // Two balls at far corners of their box, with a wisp in a third one.
+    const TempDir dir;
+    const auto inBall = [](Vec3i v, double centre) {
+        return length(v.as<double>() - Vec3d{1, 1, 1} * centre) < 20;
+    };
+    GridSpec grid;
+    grid.box = {{0, 0, 0}, {127, 127, 127}};
+    grid.value = [&](Vec3i v) {
+        return inBall(v, 20) || inBall(v, 107) ? 0.5 : v == Vec3i{0, 127, 0} ? 0.001 : 0;
+    };
+    grid.worldFromIndex = Affine3d::translate({5, 6, 7}) * Affine3d::rotate(1, 30) *
+                          Affine3d::scale({0.1, 0.2, 0.1});
+    writeVdb(dir / "a.vdb", {grid});
+    std::vector<Vec3d> occupied;
+    for (int i = 0; i < 128 * 128 * 128; ++i) {
+        const Vec3i v{i & 127, i >> 7 & 127, i >> 14};
+        if (inBall(v, 20) || inBall(v, 107))
+            occupied.push_back(grid.worldFromIndex.point(v.as<double>()));
+    }
+    for (const char* camera : {"", "[camera]\ntype = \"orthographic\"\n"})
+        // The outline is made of blocks of 8 voxels, some of which the balls only touch.
+        expectFramed(Completed("[[volume]]\nfile = \"a.vdb\"\n" + std::string(camera), dir.path()),
+                     occupied, 0.2);
+}
+
+TEST(Defaults, FitAnOrthographicPictureToAGivenPose) {
+    const Completed c(box("[0, 0, 0]", "[4, 1, 1]") +
+                      "[camera]\ntype = \"orthographic\"\neye = [2, 0.5, 9]\nlook_at = [2, 0.5, 0]\n"
+                      "[render]\nresolution = [200, 100]\n");
+    // 4 wide at 2:1 is a height of 2, and 84 % of the picture are filled.
+    EXPECT_NEAR(*c.description.camera.height, 2 / 0.84, 0.01);
+}
+
+TEST(Defaults, LookDownALittleWithYUp) {
+    const Completed c(box("[0, 0, 0]", "[1, 1, 1]"));
+    const Affine3d camera = c.scene().camera.worldFromCamera;
+    EXPECT_GT(camera.column[2].y, 0.1);  // backwards is up: the view goes down
+    EXPECT_LT(camera.column[2].y, 0.5);
+    EXPECT_GT(camera.column[1].y, 0.8);
+    EXPECT_GT(std::abs(camera.column[2].x), 0.3);  // from the side as well
+}
+
+TEST(Defaults, BlendersVolumesStandOnZ) {
+    const TempDir dir;
+    GridSpec grid = ball({});
+    grid.metadata = {{"creator", "Blender/OpenVDBWriter"}};
+    writeVdb(dir / "blender.vdb", {grid});
+    writeVdb(dir / "other.vdb", {ball({})});
+    const std::string blender = "[[volume]]\nfile = \"blender.vdb\"\n";
+    const Completed z(blender, dir.path());
+    EXPECT_GT(z.scene().camera.worldFromCamera.column[1].z, 0.8);
+    EXPECT_LT(std::get<SunDescription>(z.description.lights[0].light).direction.z, -0.3);
+    const Completed both(blender + "[[volume]]\nfile = \"other.vdb\"\n", dir.path());
+    EXPECT_GT(both.scene().camera.worldFromCamera.column[1].y, 0.8);
+}
+
+TEST(Defaults, ScaleGivesATypicalRayItsOpticalDepth) {
+    for (const double voxel : {1.0, 1e-3, 1e4}) {
+        const TempDir dir;
+        writeVdb(dir / "a.vdb", {ball(Affine3d::translate({3, 4, 5}) *
+                                      Affine3d::scale(Vec3d{1, 1, 1} * voxel))});
+        const Completed c("[[volume]]\nfile = \"a.vdb\"\n", dir.path());
+        const Scene scene = c.scene();
+        // Through a ball of radius r, half of parallel rays that are spread evenly over its disc
+        // pass within r sqrt(1/2) of the centre: the median chord is r sqrt(2).
+        const Vec3d centre = Vec3d{3, 4, 5} + Vec3d{12, 12, 12} * voxel;
+        const Vec3d start = centre + Vec3d{0, 12 * std::sqrt(0.5), -30} * voxel;
+        const Rgb depth = exactOpticalDepth(scene.medium, start, {0, 0, 1}, 0, 60 * voxel);
+        EXPECT_NEAR(depth[0], 10, 1) << "voxel " << voxel;
+    }
+}
+
+TEST(Defaults, LightFromTheCamerasUpperLeft) {
+    const std::string volume = box("[0, 0, 0]", "[1, 1, 1]");
+    for (const char* camera : {"", "[camera]\neye = [-5, 1, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n",
+                               "[camera]\neye = [0.5, 9, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n"
+                               "up = [1, 0, 0]\n"}) {
+        const Completed c(volume + camera);
+        ASSERT_EQ(c.description.lights.size(), 2u);
+        const Vec3d sun =
+            -normalize(std::get<SunDescription>(c.description.lights[0].light).direction);
+        const Affine3d pose = c.scene().camera.worldFromCamera;
+        EXPECT_NEAR(std::asin(sun.y) * 180 / pi, 40, 1.5);
+        EXPECT_LT(dot(sun, pose.column[0]), -0.5);
+        EXPECT_TRUE(std::holds_alternative<EnvironmentDescription>(c.description.lights[1].light));
+    }
+}
+
+TEST(Defaults, ChooseOnlyWhatIsOpen) {
+    const std::string text = box("[0, 0, 0]", "[1, 1, 1]") +
+                             "[[light]]\ntype = \"environment\"\n"
+                             "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+    const Completed c(text);
+    EXPECT_TRUE(c.notes.empty());
+    EXPECT_EQ(c.description, parseSceneText(text, "scene.toml", "."));
+}
+
+TEST(Defaults, AreFixedByTheSceneTheyWrite) {
+    const TempDir dir;
+    writeVdb(dir / "a.vdb", {ball({})});
+    const auto text = defaultSceneText({dir / "a.vdb", dir / "a.vdb"});
+    Completed chosen(text, "");
+    EXPECT_EQ(chosen.description.volumes.size(), 2u);
+    EXPECT_EQ(chosen.notes.size(), 4u);  // two scales, the camera, the lights
+    const Completed again(writeScene(chosen.description));
+    EXPECT_TRUE(again.notes.empty());
+    EXPECT_EQ(sceneDigest(again.description), sceneDigest(chosen.description));
+}
+
+TEST(Defaults, NotesAreTheTomlThatFixesThem) {
+    const Completed c(box("[0, 0, 0]", "[1, 1, 1]"));
+    ASSERT_EQ(c.notes.size(), 2u);
+    std::string toml = box("[0, 0, 0]", "[1, 1, 1]");
+    for (const std::string& note : c.notes) toml += note.substr(note.find('\n') + 1) + "\n";
+    const Completed fixed(toml);
+    EXPECT_TRUE(fixed.notes.empty()) << toml;
+    EXPECT_EQ(sceneDigest(fixed.description), sceneDigest(c.description));
+}
+
+TEST(Defaults, SurviveAVolumeWithoutDensity) {
+    const TempDir dir;
+    GridSpec grid;
+    grid.voxels = {{{0, 0, 0}, {0, 0, 0}, true}};
+    writeVdb(dir / "a.vdb", {grid});
+    const Completed c("[[volume]]\nfile = \"a.vdb\"\n", dir.path());
+    EXPECT_EQ(std::get<DensityCoefficients>(c.description.volumes[0].coefficients).scale, Rgb(1));
+    EXPECT_NO_THROW(c.scene());
+}
+
+}  // namespace
+}  // namespace woodcock

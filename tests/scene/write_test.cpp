@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/write.h"
+
+#include <gtest/gtest.h>
+
+#include "woodcock/base/error.h"
+#include "woodcock/scene/parse.h"
+
+namespace woodcock {
+namespace {
+
+/// As read back, without the places that only a file gives.
+SceneDescription readBack(const SceneDescription& scene) {
+    SceneDescription read = parseSceneText(writeScene(scene), "written.toml", ".");
+    for (auto& volume : read.volumes) volume.where.clear();
+    for (auto& light : read.lights) light.where.clear();
+    return read;
+}
+
+VolumeDescription fileVolume(
+    std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients) {
+    VolumeDescription volume;
+    volume.file = "dir/smoke \"1\" $5.vdb";
+    volume.coefficients = std::move(coefficients);
+    return volume;
+}
+
+/// Every field away from its default, with numbers that need all their digits.
+SceneDescription fullScene() {
+    SceneDescription scene;
+    scene.ocio = "~odd/config.ocio";
+
+    VolumeDescription volume =
+        fileVolume(DensityCoefficients{"name[2]", Rgb(0.1f, 1e-12f, 3e12f), Rgb(0.3f, 0, 1), "Cd"});
+    volume.g = 0.1f;
+    volume.worldFromObject = {{Vec3d{0.1, 0.2, 1.0 / 3}, {-1e-7, 2, 0}, {0.5, 0, 1e7}},
+                              {1e7 + 1.0 / 3, -0.1, 5}};
+    volume.storage = Storage::Half;
+    volume.repair = true;
+    scene.volumes.push_back(volume);
+    scene.volumes.push_back(fileVolume(DensityCoefficients{}));
+    scene.volumes.back().storage = Storage::Float;
+    scene.volumes.push_back(fileVolume(SeparateCoefficients{GridCoefficient{"soot", Rgb(0.7f)},
+                                                            GridCoefficient{"", Rgb(1, 2, 3)}}));
+    VolumeDescription box;
+    box.coefficients =
+        HomogeneousBox{{{-1.0 / 3, 0, 0}, {1, 2, 3}}, Rgb(0.1f, 0.2f, 0.3f), Rgb(0.7f)};
+    scene.volumes.push_back(box);
+
+    scene.lights = {
+        {SunDescription{{1.0 / 3, -2, 3}, Rgb(3, 2, 1), 0.53, true}, ""},
+        {EnvironmentDescription{Rgb(0.1f), "sky.hdr", UpAxis::Z, 33.3, false}, ""},
+        {PointDescription{{1, 2, 1.0 / 3}, Rgb(0.1f, 0.2f, 0.3f)}, ""},
+        {SphereDescription{{1, 2, 3}, 1.0 / 7, Rgb(9), false}, ""},
+    };
+    scene.camera = {CameraDescription::Kind::Perspective,
+                    LookAt{{1.0 / 3, 2, 3}, {0, 0.1, 0}, {0, 0, 1}}, 33.3, {}};
+    scene.render = {321, 123, 7, 42, 0, 1.5, 0.01, 2.5};
+    scene.output = {{"a.exr", "b.png"}, {"error", "depth"}, true, "d", "v\\w", "l\n", -0.5};
+    return scene;
+}
+
+TEST(WriteScene, ReadsBackEqual) {
+    const SceneDescription scene = fullScene();
+    EXPECT_EQ(readBack(scene), scene) << writeScene(scene);
+}
+
+TEST(WriteScene, ReadsBackEqualWithAnOrthographicMatrixCamera) {
+    SceneDescription scene = fullScene();
+    scene.camera = {CameraDescription::Kind::Orthographic,
+                    Affine3d::translate({1, 2, 1.0 / 3}) * Affine3d::rotate(1, 33) *
+                        Affine3d::rotate(0, 21),
+                    40, 1.0 / 3};
+    EXPECT_EQ(readBack(scene), scene) << writeScene(scene);
+}
+
+TEST(WriteScene, ReadsBackEqualWhereEverythingIsLeftToTheProgram) {
+    SceneDescription scene;
+    scene.volumes.push_back(fileVolume(DensityCoefficients{}));
+    EXPECT_EQ(readBack(scene), scene) << writeScene(scene);
+}
+
+TEST(WriteScene, PathsFollowTheDirectoryOfTheText) {
+    SceneDescription scene;
+    scene.volumes.resize(2);
+    scene.volumes[0].file = "data/a.vdb";
+    scene.volumes[1].file = "/abs/b.vdb";
+    const auto read = parseSceneText(writeScene(scene, "scenes/new"), "x.toml", "scenes/new");
+    EXPECT_EQ(read.volumes[0].file, "data/a.vdb");
+    EXPECT_EQ(read.volumes[1].file, "/abs/b.vdb");
+}
+
+TEST(WriteScene, RefusesASeedThatTomlCannotHold) {
+    SceneDescription scene = fullScene();
+    scene.render.seed = std::uint64_t{1} << 63;
+    EXPECT_THROW(writeScene(scene), Error);
+}
+
+TEST(SceneDigest, IsTheSameForEveryWayOfWriting) {
+    const auto parse = [](const char* text) { return parseSceneText(text, "x", ".", {}); };
+    const auto a = parse("[[volume]]\nfile = \"a.vdb\"\nscale = 2.0 # thick\ng = 0.5");
+    const auto b = parse("volume = [{g = 5e-1, scale = [2, 2, 2], file = './a.vdb'}]");
+    EXPECT_EQ(sceneDigest(a), sceneDigest(b));
+    EXPECT_EQ(sceneDigest(a).size(), 16u);
+}
+
+TEST(SceneDigest, ChangesWithAllThatTheImageShows) {
+    const SceneDescription scene = fullScene();
+    const std::string digest = sceneDigest(scene);
+    const auto changed = [&](auto change) {
+        SceneDescription other = scene;
+        change(other);
+        return sceneDigest(other) != digest;
+    };
+    using S = SceneDescription&;
+    EXPECT_TRUE(changed([](S s) { s.volumes[0].file = "other.vdb"; }));
+    EXPECT_TRUE(changed([](S s) { s.volumes[0].g = 0.2f; }));
+    EXPECT_TRUE(changed([](S s) { s.volumes[1].repair = true; }));
+    EXPECT_TRUE(changed([](S s) { std::get<SunDescription>(s.lights[0].light).visible = false; }));
+    EXPECT_TRUE(changed([](S s) { s.lights.pop_back(); }));
+    EXPECT_TRUE(changed([](S s) { s.camera.fovY = 30; }));
+    EXPECT_TRUE(changed([](S s) { s.render.width = 1; }));
+    EXPECT_TRUE(changed([](S s) { s.render.maxScatterings.reset(); }));
+
+    EXPECT_FALSE(changed([](S s) { s.output = {}; }));
+    EXPECT_FALSE(changed([](S s) { s.ocio.clear(); }));
+    EXPECT_FALSE(changed([](S s) { s.render.spp = 1; }));
+    EXPECT_FALSE(changed([](S s) { s.render.seed = 1; }));
+    EXPECT_FALSE(changed([](S s) { s.render.timeLimit = 1; }));
+    EXPECT_FALSE(changed([](S s) { s.render.noise = 1; }));
+    EXPECT_FALSE(changed([](S s) { s.volumes[0].where = "elsewhere"; }));
+}
+
+}  // namespace
+}  // namespace woodcock

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace woodcock::test {
+
+struct ProgramResult {
+    int exitCode = -1;  ///< 128 + signal where one ended it
+    std::string out, err;
+};
+
+/// Runs the `woodcock` program to its end, with no input. `fileSizeLimit`: bytes that each of its
+/// files may grow to; writes beyond fail as on a full disk.
+ProgramResult runProgram(const std::vector<std::string>& arguments,
+                         std::optional<std::size_t> fileSizeLimit = {});
+
+/// A `woodcock` program at work.
+class RunningProgram {
+public:
+    explicit RunningProgram(const std::vector<std::string>& arguments);
+    ~RunningProgram();  ///< kills one that has not been waited for
+    RunningProgram(const RunningProgram&) = delete;
+    RunningProgram& operator=(const RunningProgram&) = delete;
+
+    /// The next line of stderr that holds `text`, as soon as it is there; empty when it never
+    /// comes.
+    std::string awaitLine(const std::string& text);
+    void signal(int number);
+    /// Waits for the end; `err` is what awaitLine() did not take, `out` is not kept.
+    ProgramResult wait();
+
+private:
+    pid_t process_ = -1;
+    FILE* err_ = nullptr;
+};
+
+}  // namespace woodcock::test

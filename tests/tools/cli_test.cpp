@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mount.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+#include "tests/support/write_vdb.h"
+
+namespace woodcock::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+GridSpec cube(const std::string& name = "density") {
+    GridSpec grid;
+    grid.name = name;
+    grid.box = {{0, 0, 0}, {15, 15, 15}};
+    grid.value = [](Vec3i p) { return 0.5 + 0.03 * p.x; };
+    return grid;
+}
+
+/// Runs in a directory of its own that holds `smoke.vdb`.
+class Cli : public testing::Test {
+protected:
+    void SetUp() override { writeVdb(dir / "smoke.vdb", {cube(), cube("flame")}); }
+
+    std::string file(const std::string& name) const { return (dir / name).string(); }
+
+    /// `render` of an input in the directory to out.exr there, small and quick.
+    std::vector<std::string> render(const std::string& input,
+                                    std::vector<std::string> more = {}) const {
+        std::vector<std::string> arguments{"render",        file(input), "-o",
+                                           file("out.exr"), "--set",     "render.resolution=[16,8]",
+                                           "--threads",     "2"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    }
+    std::vector<std::string> quick(std::vector<std::string> more = {}) const {
+        more.insert(more.end(), {"--spp", "2"});
+        return render("smoke.vdb", more);
+    }
+
+    void expectFailure(const std::vector<std::string>& arguments, int exitCode,
+                       const std::vector<std::string>& said) const {
+        fs::remove(file("out.exr"));
+        const ProgramResult result = runProgram(arguments);
+        const std::string line = fmt::format("{}", fmt::join(arguments, " "));
+        EXPECT_EQ(result.exitCode, exitCode) << line << "\n" << result.err;
+        for (const std::string& words : said)
+            EXPECT_NE(result.err.find(words), std::string::npos)
+                << line << "\nsays:     " << result.err << "expected: " << words;
+        EXPECT_FALSE(fs::exists(file("out.exr"))) << line;
+    }
+
+    const TempDir dir;
+};
+
+TEST_F(Cli, RendersAVolumeToSeveralFiles) {
+    const ProgramResult result =
+        runProgram(quick({"-o", file("out.png"), "--stats", file("stats.json")}));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(readText(file("out.exr")).substr(0, 4), "\x76\x2f\x31\x01");
+    EXPECT_EQ(readText(file("out.png")).substr(1, 3), "PNG");
+    const auto stats = nlohmann::json::parse(readText(file("stats.json")));
+    EXPECT_EQ(stats.at("width"), 16);
+    EXPECT_EQ(stats.at("end_sample"), 2);
+    EXPECT_EQ(stats.at("non_finite"), 0);
+    EXPECT_GE(stats.at("counters").at("paths"), 16 * 8 * 2);
+}
+
+TEST_F(Cli, SaysWhatItChoseAsTheSceneThatWouldFixIt) {
+    const ProgramResult result = runProgram(quick({"--write-scene", file("scene.toml")}));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    for (const char* said : {"scale = ", "[camera]", "[[light]]", "left out"})
+        EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
+
+    // Two ways to the same picture, but for the command and the time in its header.
+    const ProgramResult again =
+        runProgram({"render", file("scene.toml"), "-o", file("again.exr"), "--threads", "1",
+                    "--stats", file("again.json"), "--quiet"});
+    EXPECT_EQ(again.exitCode, 0) << again.err;
+    EXPECT_EQ(again.err, "");
+    EXPECT_EQ(runProgram(quick({"--stats", file("stats.json")})).exitCode, 0);
+    const auto digest = [&](const char* name) {
+        return nlohmann::json::parse(readText(file(name))).at("scene_digest");
+    };
+    EXPECT_EQ(digest("again.json"), digest("stats.json"));
+}
+
+TEST_F(Cli, AWidthAloneKeepsTheShape) {
+    const ProgramResult result = runProgram(quick({"--res", "32", "--stats", file("stats.json")}));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(nlohmann::json::parse(readText(file("stats.json"))).at("height"), 16);
+}
+
+TEST_F(Cli, ProgressForFarmsIsOneJsonObjectOnEachLine) {
+    const ProgramResult result = runProgram(quick({"--progress", "json"}));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    std::istringstream lines(result.err);
+    std::vector<nlohmann::json> events;
+    for (std::string line; std::getline(lines, line);) {
+        const auto json = nlohmann::json::parse(line, nullptr, false);
+        ASSERT_TRUE(json.is_object()) << line;
+        if (json.at("event") != "log") events.push_back(json);
+    }
+    ASSERT_GE(events.size(), 3u);
+    EXPECT_EQ(events.front().at("event"), "start");
+    EXPECT_EQ(events.back().at("event"), "done");
+    EXPECT_EQ(events.back().at("reason"), "complete");
+    const nlohmann::json& last = events[events.size() - 2];
+    EXPECT_EQ(last.at("event"), "progress");
+    EXPECT_EQ(last.at("fraction"), 1.0);
+    EXPECT_EQ(last.at("samples"), 2);
+    for (const char* key : {"seconds", "seconds_left", "noise"})
+        EXPECT_TRUE(last.at(key).is_number()) << key;
+}
+
+TEST_F(Cli, ErrorsAreJsonTooWhereProgressIs) {
+    const ProgramResult result =
+        runProgram(render("missing.vdb", {"--spp", "1", "--progress", "json"}));
+    EXPECT_EQ(result.exitCode, 3);
+    const auto line = nlohmann::json::parse(result.err);
+    EXPECT_EQ(line.at("level"), "error");
+    EXPECT_NE(line.at("message").get<std::string>().find("missing.vdb"), std::string::npos);
+}
+
+class CliInterrupt : public Cli, public testing::WithParamInterface<int> {};
+
+TEST_P(CliInterrupt, WritesWhatIsThere) {
+    RunningProgram running(render(
+        "smoke.vdb", {"--spp", "1000000000", "--progress", "json", "--stats", file("stats.json")}));
+    std::string line;
+    do line = running.awaitLine("\"event\":\"progress\"");
+    while (!line.empty() && nlohmann::json::parse(line).at("samples") == 0);
+    ASSERT_FALSE(line.empty());
+    running.signal(GetParam());
+    const ProgramResult result = running.wait();
+    EXPECT_EQ(result.exitCode, 130) << result.err;
+    EXPECT_TRUE(fs::exists(file("out.exr")));
+    const auto stats = nlohmann::json::parse(readText(file("stats.json")));
+    EXPECT_EQ(stats.at("reason"), "interrupted");
+    EXPECT_GE(stats.at("end_sample"), nlohmann::json::parse(line).at("samples"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, CliInterrupt, testing::Values(SIGINT, SIGTERM));
+
+TEST_F(Cli, TheProgramKnowsItsVersionAndOptions) {
+    EXPECT_EQ(runProgram({"--version"}).out, "woodcock 0.1.0\n");
+    const ProgramResult help = runProgram({"render", "--help"});
+    EXPECT_EQ(help.exitCode, 0);
+    EXPECT_NE(help.out.find("--time-limit"), std::string::npos);
+}
+
+TEST_F(Cli, WrongUsage) {
+    expectFailure({}, 2, {"no command", "render", "info"});
+    expectFailure({"rendr", "a.vdb"}, 2, {"'rendr'", "did you mean 'render'?"});
+    expectFailure({"render"}, 2, {"INPUT"});
+    expectFailure({"render", file("smoke.vdb")}, 2, {"no output", "-o"});
+    const auto wrong = [&](std::vector<std::string> options, std::vector<std::string> said) {
+        expectFailure(render("smoke.vdb", options), 2, said);
+    };
+    wrong({"--progess", "bar"}, {"--progess", "did you mean '--progress'?"});
+    wrong({"--progress", "baz"}, {"'baz'", "auto, bar, json, none"});
+    wrong({"--spp", "0"}, {"--spp", "'0'", "from 1"});
+    wrong({"--seed", "-1"}, {"--seed", "'-1'"});
+    wrong({"--res", "0x8"}, {"--res", "'0x8'", "WIDTHxHEIGHT"});
+    wrong({"--samples", "4:4"}, {"--samples", "'4:4'", "FIRST:END"});
+    wrong({"--crop", "4,4,4,8"}, {"--crop", "'4,4,4,8'", "X0,Y0,X1,Y1"});
+    wrong({"--crop", "0,0,17,8"}, {"--crop", "16x8"});
+    wrong({"--time-limit", "soon"}, {"--time-limit", "'soon'"});
+    wrong({"--noise", "0"}, {"--noise", "'0'"});
+    wrong({"--set", "volume"}, {"volume", "KEY=VALUE"});
+    wrong({"--layers", "dept"}, {"'dept'", "did you mean 'depth'?"});
+    wrong({"-o", file("a.png"), "--view", "Filmish"}, {"'Filmish'", "Standard"});
+}
+
+TEST_F(Cli, ContradictoryOptions) {
+    const auto wrong = [&](std::vector<std::string> options, std::vector<std::string> said) {
+        expectFailure(render("smoke.vdb", options), 2, said);
+    };
+    wrong({"--spp", "4", "--samples", "0:4"}, {"--spp and --samples"});
+    wrong({"--quiet", "--progress", "json"}, {"--quiet and --progress"});
+    wrong({"--quiet", "--log-level", "debug"}, {"--quiet and --log-level"});
+    expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--layers", "depth"}, 2,
+                  {"--layers", "EXR"});
+    wrong({file("scene.toml")}, {"a scene file is rendered alone"});
+    wrong({"--stats", file("out.exr")}, {"out.exr", "named twice"});
+    wrong({"-o", file("smoke.vdb")}, {"smoke.vdb", "an input and an output"});
+}
+
+TEST_F(Cli, UnwritableOutputsFailBeforeRendering) {
+    fs::create_directory(file("folder.exr"));
+    // A render this long would time the test out.
+    const auto wrong = [&](const std::string& option, const std::string& path,
+                           std::vector<std::string> said) {
+        said.push_back(path);
+        expectFailure(
+            {"render", file("smoke.vdb"), "-o", file("a.exr"), "--spp", "1000000000", option, path},
+            2, said);
+    };
+    wrong("-o", file("nowhere/b.exr"), {"no directory"});
+    wrong("-o", file("folder.exr"), {"is a directory"});
+    wrong("-o", file("b.tga"), {".tga", ".exr, .png"});
+    wrong("-o", file("b"), {".exr, .png"});
+    wrong("-o", "/proc/b.exr", {"/proc"});
+    wrong("--stats", file("nowhere/s.json"), {"no directory"});
+    wrong("--write-scene", file("nowhere/s.toml"), {"no directory"});
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator()), 2);
+}
+
+TEST_F(Cli, BadVolumes) {
+    const auto bad = [&](const std::string& name, std::vector<std::string> said,
+                         std::vector<std::string> options = {}) {
+        said.push_back(name);
+        expectFailure(render(name, options), 3, said);
+    };
+    const auto withVoxel = [&](const std::string& name, double value, const std::string& faults) {
+        GridSpec grid = cube();
+        grid.voxels = {{{1, 2, 3}, {value}}};
+        writeVdb(file(name), {grid});
+        bad(name, {"density", faults, "1, 2, 3", "--repair"});
+    };
+    bad("missing.vdb", {"does not exist"});
+    writeText(file("text.vdb"), "not a volume at all");
+    bad("text.vdb", {"is not a VDB file"});
+    writeText(file("nothing.vdb"), "");
+    bad("nothing.vdb", {"is not a VDB file"});
+    fs::copy_file(file("smoke.vdb"), file("short.vdb"));
+    truncateFile(file("short.vdb"), fs::file_size(file("short.vdb")) - 100);
+    bad("short.vdb", {"cut short"});
+    bad("smoke.vdb", {"'densty'", "did you mean 'density'?", "density (float), flame (float)"},
+        {"--set", "volume[0].density=densty"});
+
+    GridSpec velocity = cube("velocity");
+    velocity.type = VdbType::Vec3s;
+    velocity.value = {};
+    velocity.colour = [](Vec3i) { return Vec3d{1, 2, 3}; };
+    writeVdb(file("vector.vdb"), {velocity, cube("smoke")});
+    bad("vector.vdb", {"velocity", "vec3s", "scalar", "smoke"},
+        {"--set", "volume[0].density=velocity"});
+
+    GridSpec empty;
+    writeVdb(file("empty.vdb"), {empty});
+    bad("empty.vdb", {"density", "no active voxels"});
+    GridSpec inactive;
+    inactive.voxels = {{{0, 0, 0}, {1}, false}, {{1, 0, 0}, {2}, false}};
+    writeVdb(file("inactive.vdb"), {inactive});
+    bad("inactive.vdb", {"density", "no active voxels", "2 inactive"});
+
+    withVoxel("nan.vdb", std::numeric_limits<double>::quiet_NaN(), "NaN");
+    withVoxel("infinite.vdb", std::numeric_limits<double>::infinity(), "infinite");
+    withVoxel("negative.vdb", -0.25, "negative");
+    EXPECT_EQ(runProgram(render("nan.vdb", {"--repair", "--spp", "1"})).exitCode, 0);
+}
+
+TEST_F(Cli, BadScenes) {
+    const auto bad = [&](const std::string& line, std::vector<std::string> said) {
+        writeText(file("scene.toml"), "[[volume]]\nfile = \"smoke.vdb\"\n" + line + "\n");
+        said.push_back(file("scene.toml"));
+        expectFailure(render("scene.toml"), 3, said);
+    };
+    bad("g = 1.5", {":3:", "1.5", "between -1 and 1"});
+    bad("scal = 2", {":3:", "'scal'", "did you mean 'scale'?"});
+    bad("scale = \"two\"", {":3:", "scale", "number"});
+    bad("albedo = [1, 2, 3]", {":3:", "albedo", "between 0 and 1"});
+    bad("albedo = ", {":3:"});
+    bad("[render]\nspp = 0", {":4:", "spp"});
+    bad("density = \"dens\"", {"'dens'", "smoke.vdb", "density (float), flame (float)"});
+    expectFailure(render("smoke.vdb", {"--set", "render.resolution=[0,8]"}), 3,
+                  {"--set", "resolution[0] is 0"});
+    expectFailure(render("missing.toml"), 3, {"missing.toml", "does not exist"});
+}
+
+TEST_F(Cli, AFullDiskLeavesNoPartOfAnImage) {
+    writeText(file("out.png"), "yesterday's");
+    const ProgramResult result =
+        runProgram({"render", file("smoke.vdb"), "-o", file("out.exr"), "-o", file("out.png"),
+                    "--res", "64x64", "--spp", "1", "--threads", "2"},
+                   1000);
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    for (const char* said : {"out.exr", "out.png", "File too large"})
+        EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
+    EXPECT_EQ(readText(file("out.png")), "yesterday's");
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator()), 2);
+}
+
+TEST_F(Cli, AFullFileSystemLeavesNoPartOfAnImage) {
+    const fs::path small = dir / "small";
+    fs::create_directory(small);
+    if (mount("tmpfs", small.c_str(), "tmpfs", 0, "size=8k") != 0)
+        GTEST_SKIP() << "mounting a small file system needs more rights";
+    const ProgramResult result =
+        runProgram({"render", file("smoke.vdb"), "-o", (small / "out.exr").string(), "--res",
+                    "64x64", "--spp", "1", "--threads", "2"});
+    const auto left = std::distance(fs::directory_iterator(small), fs::directory_iterator());
+    umount(small.c_str());
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_NE(result.err.find("No space left"), std::string::npos) << result.err;
+    EXPECT_EQ(left, 0);
+}
+
+}  // namespace
+}  // namespace woodcock::test

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace woodcock::tool {
+
+// One file per subcommand. Each adds its options and the callback that does the work; a callback
+// reports what goes wrong by throwing, and another exit code than 0 by throwing CLI::RuntimeError.
+
+CLI::App& addInfoCommand(CLI::App& app);
+/// `commandLine` goes into the images' headers.
+CLI::App& addRenderCommand(CLI::App& app, const std::string& commandLine);
+
+}  // namespace woodcock::tool

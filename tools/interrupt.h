@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace woodcock::tool {
+
+/// From now on the first SIGINT or SIGTERM is remembered, and a second one ends the program at once
+/// with exit code 130.
+void catchInterrupts();
+
+bool interrupted();
+
+}  // namespace woodcock::tool

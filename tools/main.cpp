@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <new>
+#include <vector>
+
+#include "commands.h"
+#include "log.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/base/version.h"
+
+namespace {
+
+using namespace woodcock;
+
+int exitCode(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::Failure:
+            return 1;
+        case ErrorKind::Usage:
+            return 2;
+        case ErrorKind::Input:
+            return 3;
+    }
+    return 1;
+}
+
+std::string commandLine(int argc, char** argv) {
+    std::string line;
+    for (int i = 0; i < argc; ++i) {
+        const std::string word = argv[i];
+        const bool plain = word.find_first_of(" \t\n'\"\\$&|;<>()*?[]{}`") == std::string::npos;
+        line += (i ? " " : "") + (plain ? word : '"' + word + '"');
+    }
+    return line;
+}
+
+std::vector<std::string> namesOf(const std::vector<const CLI::Option*>& options) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : options)
+        if (!option->get_lnames().empty()) names.push_back("--" + option->get_lnames().front());
+    return names;
+}
+
+/// The mistake in words that help.
+Error explain(const CLI::ParseError& error, const CLI::App& app) {
+    const std::vector<CLI::App*> commands = app.get_subcommands();
+    if (commands.empty()) {
+        std::vector<std::string> known;
+        for (const CLI::App* command : app.get_subcommands(nullptr))
+            known.push_back(command->get_name());
+        const std::vector<std::string> words = app.remaining();
+        if (words.empty())
+            return usageError("no command is given; there are: {}", joinNames(known));
+        return usageError("unknown command '{}'{}", words.front(),
+                          suggestName(words.front(), "known", known));
+    }
+    const CLI::App& command = *commands.front();
+    for (const std::string& word : command.remaining())
+        if (word.starts_with("-"))
+            return usageError("woodcock {}: unknown option {}{}", command.get_name(), word,
+                              suggestName(word, "known", namesOf(command.get_options())));
+    return usageError("woodcock {}: {}", command.get_name(), error.what());
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Renders OpenVDB volumes.", "woodcock");
+    app.set_version_flag("--version", fmt::format("woodcock {}", version()));
+    app.require_subcommand(1);
+    app.failure_message(CLI::FailureMessage::simple);
+    app.footer(
+        "Exit codes: 0 done, 1 failed while working, 2 wrong usage, 3 bad input, 130 interrupted.");
+    tool::addRenderCommand(app, commandLine(argc, argv));
+    tool::addInfoCommand(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // Help, the version and codes that a command asks for are no mistakes.
+        if (error.get_exit_code() == 0 || dynamic_cast<const CLI::RuntimeError*>(&error))
+            return app.exit(error);
+        throw explain(error, app);
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        tool::setUpLog(tool::LogStyle::Text, "info");
+        return run(argc, argv);
+    } catch (const Error& error) {
+        spdlog::error("{}", error.what());
+        return exitCode(error.kind());
+    } catch (const std::bad_alloc&) {
+        spdlog::error("out of memory");
+    } catch (const std::exception& error) {
+        spdlog::error("{}", error.what());
+    }
+    return 1;
+}

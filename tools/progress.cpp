@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "woodcock/base/parse.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void printLine(const Json& json) {
+    fmt::print(stderr, "{}\n", json.dump());
+    std::fflush(stderr);
+}
+
+}  // namespace
+
+ProgressStyle progressStyle(const std::string& name) {
+    if (name == "bar") return ProgressStyle::Bar;
+    if (name == "json") return ProgressStyle::Json;
+    if (name == "auto" && isatty(STDERR_FILENO)) return ProgressStyle::Bar;
+    return ProgressStyle::None;
+}
+
+void Progress::start(const RenderSettings& settings) {
+    if (style_ == ProgressStyle::Json)
+        printLine({{"event", "start"},
+                   {"width", settings.width},
+                   {"height", settings.height},
+                   {"first_sample", settings.firstSample},
+                   {"end_sample", settings.endSample},
+                   {"seed", settings.seed}});
+}
+
+void Progress::update(const RenderProgress& progress) {
+    if (style_ == ProgressStyle::Json) {
+        printLine({{"event", "progress"},
+                   {"fraction", progress.fraction},
+                   {"seconds", progress.seconds},
+                   {"seconds_left", progress.secondsLeft},
+                   {"samples", progress.samples},
+                   {"noise", progress.noise}});
+    } else if (style_ == ProgressStyle::Bar) {
+        constexpr int width = 30;
+        const int full = static_cast<int>(progress.fraction * width);
+        const std::string noise =
+            progress.noise > 0 ? fmt::format(", noise {:.2f} %", 100 * progress.noise) : "";
+        // Carriage return, and erase to the end of the line.
+        fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %, {} left, {} samples{}\x1b[K", "", full,
+                   "", width - full, 100 * progress.fraction, formatDuration(progress.secondsLeft),
+                   progress.samples, noise);
+        std::fflush(stderr);
+    }
+}
+
+void Progress::finish(const RenderResult& result) {
+    if (style_ == ProgressStyle::Json)
+        printLine({{"event", "done"},
+                   {"reason", stopReasonName(result.reason)},
+                   {"seconds", result.seconds},
+                   {"end_sample", result.endSample},
+                   {"noise", result.film.noise()},
+                   {"non_finite", result.film.nonFiniteCount()}});
+    else if (style_ == ProgressStyle::Bar)
+        fmt::print(stderr, "\r\x1b[K");
+}
+
+std::string stopReasonName(StopReason reason) {
+    switch (reason) {
+        case StopReason::Complete:
+            return "complete";
+        case StopReason::TimeLimit:
+            return "time-limit";
+        case StopReason::NoiseReached:
+            return "noise-reached";
+        case StopReason::Interrupted:
+            return "interrupted";
+    }
+    return {};
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_options.h"
+
+#include <algorithm>
+#include <climits>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+/// An option whose word `parse` turns into `value`; mistakes name the option.
+template <class T, class Parse>
+CLI::Option* addParsed(CLI::App& command, const std::string& name, T& value, Parse parse,
+                       const std::string& help) {
+    return command.add_option_function<std::string>(
+        name,
+        [name, &value, parse](const std::string& text) {
+            try {
+                value = parse(text);
+            } catch (const Error& error) {
+                throw usageError("{}: {}", name, error.what());
+            }
+        },
+        help);
+}
+
+/// An option with a whole number from `lowest` to `highest`.
+template <class T>
+CLI::Option* addCount(CLI::App& command, const std::string& name, std::optional<T>& value,
+                      std::uint64_t lowest, std::uint64_t highest, const std::string& help) {
+    const auto parse = [=](const std::string& text) {
+        return static_cast<T>(parseCount(text, lowest, highest));
+    };
+    return addParsed(command, name, value, parse, help)->type_name("COUNT");
+}
+
+/// An option with one of the words `known`.
+template <class T>
+CLI::Option* addChoice(CLI::App& command, const std::string& name, T& value,
+                       const std::vector<std::string>& known, const std::string& help) {
+    const auto parse = [known](const std::string& word) {
+        if (std::find(known.begin(), known.end(), word) == known.end())
+            throw usageError("unknown word '{}'{}", word, suggestName(word, "known", known));
+        return word;
+    };
+    return addParsed(command, name, value, parse, fmt::format("{} {}", help, joinNames(known)));
+}
+
+/// An option that may be given again, for one more value each time.
+template <class T>
+CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<T>& values,
+                     const std::string& help) {
+    return command.add_option(name, values, help + "; may be repeated")->allow_extra_args(false);
+}
+
+void addOutput(CLI::App& command, RenderOptions& o) {
+    std::vector<CLI::Option*> options{
+        addList(command, "-o,--output", o.outputs, "Image to write: .exr, .png or .jpg")
+            ->type_name("FILE"),
+        addList(command, "--layers", o.layers,
+                "Further EXR layers: depth, transmittance, samples, error")
+            ->delimiter(',')
+            ->type_name("LAYER,..."),
+        command.add_flag("--half", o.half, "EXR colour in half precision"),
+        command.add_option("--display", o.display, "OpenColorIO display of PNG and JPEG files")
+            ->type_name("NAME"),
+        command.add_option("--view", o.view, "OpenColorIO view")->type_name("NAME"),
+        command.add_option("--look", o.look, "OpenColorIO look, instead of the view's own")
+            ->type_name("NAME"),
+        addParsed(command, "--exposure", o.exposure, parseNumber,
+                  "Stops, before the display transform")
+            ->type_name("NUMBER"),
+        command.add_option("--ocio", o.ocio, "OpenColorIO config, before the scene's and $OCIO")
+            ->type_name("FILE")};
+    for (CLI::Option* option : options) option->group("Output");
+}
+
+void addRendering(CLI::App& command, RenderOptions& o) {
+    std::vector<CLI::Option*> options{
+        addParsed(command, "--res", o.size, parseImageSize,
+                  "Image size; a width alone keeps the scene's shape")
+            ->type_name("WIDTHxHEIGHT"),
+        addParsed(command, "--crop", o.crop, parsePixelRectangle,
+                  "Render only pixels [X0, X1) x [Y0, Y1), y down")
+            ->type_name("X0,Y0,X1,Y1"),
+        addCount(command, "--spp", o.spp, 1, INT_MAX, "Samples per pixel"),
+        addParsed(command, "--samples", o.samples, parseSampleRange,
+                  "Samples FIRST to END - 1 of each pixel, for farms that merge")
+            ->type_name("FIRST:END"),
+        addCount(command, "--seed", o.seed, 0, UINT64_MAX, "Of the random numbers"),
+        addParsed(command, "--time-limit", o.timeLimit, parseDuration,
+                  "Stop after this long, such as 90s, 5m, 2h")
+            ->type_name("TIME"),
+        addParsed(command, "--noise", o.noise, parseFraction,
+                  "Stop when the mean relative standard error is below this, such as 1%")
+            ->type_name("FRACTION"),
+        addCount(command, "--threads", o.threads, 0, 4096, "0: one for each core")};
+    for (CLI::Option* option : options) option->group("Rendering");
+}
+
+void addScene(CLI::App& command, RenderOptions& o) {
+    const std::vector<std::string> storages{"auto", "half", "float"};
+    std::vector<CLI::Option*> options{
+        addList(command, "--set", o.overrides,
+                "Set a value of the scene, such as volume[0].scale=2")
+            ->type_name("KEY=VALUE"),
+        command
+            .add_option("--write-scene", o.writeScene,
+                        "Save the scene as rendered; without an output, save it only")
+            ->type_name("FILE"),
+        command.add_flag("--repair", o.repair,
+                         "Set NaN, infinite and negative voxels to zero instead of stopping"),
+        addChoice(command, "--storage", o.storage, storages, "Of voxels in memory:")
+            ->type_name("KIND")};
+    for (CLI::Option* option : options) option->group("Scene");
+}
+
+void addReports(CLI::App& command, RenderOptions& o) {
+    const std::vector<std::string> styles{"auto", "bar", "json", "none"};
+    const std::vector<std::string> levels{"trace", "debug", "info", "warning", "error", "off"};
+    std::vector<CLI::Option*> options{
+        addChoice(command, "--progress", o.progress, styles, "How to show it:")->type_name("STYLE"),
+        command.add_option("--stats", o.stats, "Write counts and times as JSON")->type_name("FILE"),
+        addChoice(command, "--log-level", o.logLevel, levels, "The least to report:")
+            ->type_name("LEVEL"),
+        command.add_flag("--quiet", o.quiet, "Report warnings and errors only")};
+    for (CLI::Option* option : options) option->group("Reports");
+}
+
+bool hasExtension(const std::filesystem::path& file, const char* extension) {
+    return CLI::detail::to_lower(file.extension().string()) == extension;
+}
+bool isSceneFile(const std::filesystem::path& file) { return hasExtension(file, ".toml"); }
+bool isExrFile(const std::filesystem::path& file) { return hasExtension(file, ".exr"); }
+
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code missing;
+    return a.lexically_normal() == b.lexically_normal() ||
+           std::filesystem::equivalent(a, b, missing);
+}
+
+void exclude(bool first, bool second, const char* names) {
+    if (first && second) throw usageError("{} contradict each other; give one of them", names);
+}
+
+}  // namespace
+
+void RenderOptions::addTo(CLI::App& command) {
+    command.add_option("INPUT", inputs, "A scene (.toml), or one or more volumes (.vdb)")
+        ->required()
+        ->type_name("FILE");
+    addOutput(command, *this);
+    addRendering(command, *this);
+    addScene(command, *this);
+    addReports(command, *this);
+}
+
+bool RenderOptions::inputIsScene() const { return isSceneFile(inputs.front()); }
+
+void RenderOptions::check() const {
+    if (inputs.size() > 1 && std::any_of(inputs.begin(), inputs.end(), isSceneFile))
+        throw usageError("a scene file is rendered alone, but {} inputs are given", inputs.size());
+    exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
+    exclude(quiet, logLevel.has_value(), "--quiet and --log-level");
+    exclude(quiet, progress == "bar" || progress == "json", "--quiet and --progress");
+    if (!layers.empty() && !outputs.empty() &&
+        std::none_of(outputs.begin(), outputs.end(), isExrFile))
+        throw usageError("--layers is for EXR files, and no output is one");
+
+    std::vector<std::filesystem::path> written = outputs;
+    if (!stats.empty()) written.push_back(stats);
+    if (!writeScene.empty()) written.push_back(writeScene);
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        for (const std::filesystem::path& input : inputs)
+            if (sameFile(written[i], input))
+                throw usageError("'{}' is an input and an output", input.string());
+        for (std::size_t j = 0; j < i; ++j)
+            if (sameFile(written[i], written[j]))
+                throw usageError("'{}' is named twice as an output", written[i].string());
+    }
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "woodcock/base/parse.h"
+#include "woodcock/scene/description.h"
+
+namespace woodcock::tool {
+
+/// What the command line of `woodcock render` says; what is absent is left to the scene.
+struct RenderOptions {
+    std::vector<std::filesystem::path> inputs, outputs;
+    std::filesystem::path writeScene, stats;
+
+    std::optional<ImageSize> size;
+    std::optional<PixelRectangle> crop;
+    std::optional<int> spp;
+    std::optional<SampleRange> samples;
+    std::optional<std::uint64_t> seed;
+    std::optional<double> timeLimit, noise;
+    std::optional<int> threads;
+    std::vector<std::string> overrides;
+    std::optional<std::string> storage;
+    bool repair = false;
+
+    std::optional<std::string> display, view, look;
+    std::optional<double> exposure;
+    std::filesystem::path ocio;
+    std::vector<std::string> layers;
+    bool half = false;
+
+    std::string progress = "auto";
+    std::optional<std::string> logLevel;
+    bool quiet = false;
+
+    void addTo(CLI::App& command);
+    /// Throws Error{Usage} where options contradict each other.
+    void check() const;
+    /// One .toml, rather than .vdb files.
+    bool inputIsScene() const;
+};
+
+}  // namespace woodcock::tool

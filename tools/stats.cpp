@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stats.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "progress.h"
+#include "woodcock/base/version.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+std::uint64_t peakMemoryBytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kilobytes
+}
+
+}  // namespace
+
+std::string statsText(const RenderResult& result, const RenderSettings& settings,
+                      const std::string& sceneDigest, double loadSeconds) {
+    const Film::Window crop = result.film.crop();
+    const RenderCounters& counters = result.counters;
+    const nlohmann::ordered_json stats{{"version", version()},
+                                       {"scene_digest", sceneDigest},
+                                       {"width", settings.width},
+                                       {"height", settings.height},
+                                       {"crop", {crop.x0, crop.y0, crop.x1, crop.y1}},
+                                       {"seed", settings.seed},
+                                       {"first_sample", settings.firstSample},
+                                       {"end_sample", result.endSample},
+                                       {"reason", stopReasonName(result.reason)},
+                                       {"load_seconds", loadSeconds},
+                                       {"render_seconds", result.seconds},
+                                       {"peak_memory_bytes", peakMemoryBytes()},
+                                       {"noise", result.film.noise()},
+                                       {"non_finite", result.film.nonFiniteCount()},
+                                       {"needs", result.needs.describe()},
+                                       {"counters",
+                                        {{"paths", counters.paths},
+                                         {"scatterings", counters.scatterings},
+                                         {"shadow_rays", counters.shadowRays},
+                                         {"distance_segments", counters.distanceSegments},
+                                         {"distance_collisions", counters.distanceCollisions},
+                                         {"shadow_segments", counters.shadowSegments},
+                                         {"shadow_collisions", counters.shadowCollisions}}}};
+    return stats.dump(4) + "\n";
+}
+
+}  // namespace woodcock::tool
