@@ -17,10 +17,10 @@ using namespace woodcock;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 
-constexpr double voxel = 4;  // metres
-constexpr double blend = 30;   // metres over which neighbouring puffs melt into each other
+constexpr double voxel = 4;     // metres
+constexpr double blend = 30;    // metres over which neighbouring puffs melt into each other
 constexpr double relief = 110;  // metres, height of the cauliflower
-constexpr double edge = 16;    // metres from clear air to full density
+constexpr double edge = 16;     // metres from clear air to full density
 
 struct Puff {
     Vec3d centre;

@@ -185,12 +185,12 @@ void run(const RenderOptions& options, const std::string& commandLine) {
 
     const RenderResult result = renderWithProgress(scene, settings, style);
     const std::string digest = sceneDigest(description);
-    if (result.endSample > settings.firstSample) {
+    if (result.film.mostSamples() > 0) {
         outputs.write(result.film, {settings.firstSample, result.endSample, settings.seed,
                                     result.seconds, digest, commandLine});
         for (const std::filesystem::path& file : files) spdlog::info("wrote {}", file.string());
     } else {
-        spdlog::warn("interrupted before every pixel had a sample: nothing is written");
+        spdlog::warn("interrupted before anything was rendered: nothing is written");
     }
     if (!options.stats.empty())
         writeTextFile(options.stats, statsText(result, settings, digest, loading.count()));

@@ -38,8 +38,7 @@ TEST(NearestName, ListsNamesForMessages) {
     EXPECT_EQ(joinNames(std::vector<std::string>{}), "none");
     EXPECT_EQ(suggestName("scal", "known keys", std::vector<std::string>{"scale", "g"}),
               "; did you mean 'scale'? known keys: scale, g");
-    EXPECT_EQ(suggestName("xyz", "it has", std::vector<std::string>{"scale"}),
-              "; it has: scale");
+    EXPECT_EQ(suggestName("xyz", "it has", std::vector<std::string>{"scale"}), "; it has: scale");
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ Answer throughTheProgram(const TempDir& dir, const std::string& scene) {
 
 struct Row {
     double g, depth, albedo, reflected, transmitted;
+    const std::vector<double>& layers;
     int samples;
 };
 void PrintTo(const Row& r, std::ostream* out) {
@@ -79,30 +80,31 @@ void PrintTo(const Row& r, std::ostream* out) {
 class Slab : public testing::TestWithParam<Row> {};
 
 /// Adding-doubling with 64 nodes per hemisphere, beam at normal incidence, transmittance with the
-/// unscattered part; g = 0.75, depth 2, albedo 0.9 is also in van de Hulst 1980.
+/// unscattered part; g = 0.75, depth 2, albedo 0.9 is also in van de Hulst 1980. Optical depth is
+/// the only coordinate of a slab: any layers of the same sum answer alike.
 INSTANTIATE_TEST_SUITE_P(
     AddingDoubling, Slab,
-    testing::Values(Row{0, 0.1, 1, .047689, .952311, 512}, Row{0, 1, 0.5, .099119, .446058, 256},
-                    Row{0, 1, 0.99, .332922, .650978, 128}, Row{0, 4, 0.9, .408142, .128524, 256},
-                    Row{0, 4, 1, .690926, .309074, 128}, Row{0, 16, 1, .903632, .096368, 256},
-                    Row{0.5, 1, 0.9, .129793, .739091, 256},
-                    Row{0.5, 4, 0.99, .469796, .452650, 128},
-                    Row{0.75, 1, 0.5, .015109, .564612, 2048},
-                    Row{0.75, 2, 0.9, .097395, .660958, 512},
-                    Row{0.75, 8, 1, .506415, .493585, 128}));
+    testing::Values(Row{0, 0.1, 1, .047689, .952311, even, 256},
+                    Row{0, 1, 0.5, .099119, .446058, layered, 256},
+                    Row{0, 1, 0.99, .332922, .650978, even, 128},
+                    Row{0, 4, 0.9, .408142, .128524, layered, 256},
+                    Row{0, 4, 1, .690926, .309074, even, 64},
+                    Row{0.5, 1, 0.9, .129793, .739091, layered, 256},
+                    Row{0.5, 4, 0.99, .469796, .452650, layered, 64},
+                    Row{0.5, 16, 1, .820976, .179024, even, 128},
+                    Row{0.75, 1, 0.5, .015109, .564612, even, 512},
+                    Row{0.75, 2, 0.9, .097395, .660958, even, 256},
+                    Row{0.75, 2, 0.9, .097395, .660958, layered, 256},
+                    Row{0.75, 8, 1, .506415, .493585, layered, 64}));
 
 TEST_P(Slab, ReflectsAndTransmitsAsTheTablesSay) {
     const Row& row = GetParam();
     const TempDir dir;
     writeSky(dir / "sky.exr");
-    // Optical depth is the only coordinate of a slab: any layers of the same sum answer alike.
-    for (const auto& layers : {even, layered}) {
-        writeSlab(dir / "slab.vdb", row.depth, layers, wide);
-        const Answer a =
-            throughTheProgram(dir, slabScene(row.albedo, row.g, sky, row.samples));
-        expectAgrees(a.reflected, row.reflected, 5e-3);
-        expectAgrees(a.transmitted, row.transmitted, 5e-3);
-    }
+    writeSlab(dir / "slab.vdb", row.depth, row.layers, wide);
+    const Answer a = throughTheProgram(dir, slabScene(row.albedo, row.g, sky, row.samples));
+    expectAgrees(a.reflected, row.reflected, 5e-3);
+    expectAgrees(a.transmitted, row.transmitted, 5e-3);
 }
 
 TEST(Slab, IsWideEnough) {
@@ -110,25 +112,25 @@ TEST(Slab, IsWideEnough) {
     writeSky(dir / "sky.exr");
     const auto reflected = [&](double width) {
         writeSlab(dir / "slab.vdb", 4, even, width);
-        return throughTheProgram(dir, slabScene(1, 0, sky, 256)).reflected;
+        return throughTheProgram(dir, slabScene(1, 0, sky, 64)).reflected;
     };
     const Estimate infinite = reflected(wide);
     expectAgree(reflected(10 * wide), infinite, 5e-3);
-    // The comparison can tell: at a width of eight heights, light leaks from the sides.
-    EXPECT_GT(infinite.mean - reflected(2).mean, 0.01);
+    // The comparison can tell: of a slab as wide as high, light leaks through the sides.
+    EXPECT_GT(infinite.mean - reflected(0.25).mean, 0.05);
 }
 
 TEST(Slab, AbsorptionIsBeerLambert) {
     const TempDir dir;
-    writeSlab(dir / "slab.vdb", 2, layered, wide);
-    for (const double tilt : {0.0, 1.0, 3.0}) {
+    writeSlab(dir / "slab.vdb", 1, layered, wide);
+    for (const double tilt : {0.0, 2.0}) {
         const double cosine = 1 / std::hypot(1, tilt);
         const Scene scene = sceneFrom("[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = 0\n"
                                       "[[light]]\ntype = \"environment\"\nradiance = [1, 2, 4]\n" +
                                           pencilCamera({0, 50, 0}, {tilt, -1, 0}),
                                       dir.path());
-        const Film film = renderScene(scene, {32, 32, 64}).film;
-        const double t = std::exp(-2 / cosine);
+        const Film film = renderScene(scene, {32, 32, 512}).film;
+        const double t = std::exp(-1 / cosine);
         expectAgrees(evenRadiance(film), {t, 2 * t, 4 * t}, 5e-3);
         expectAgrees(evenAlpha(film), 1 - t, 5e-3);
     }

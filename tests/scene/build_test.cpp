@@ -50,8 +50,7 @@ struct Built {
 
 /// Builds a scene beside the VDBs of `dir`.
 Built build(const TempDir& dir, const std::string& text) {
-    const SceneDescription description =
-        parseSceneText(text + rest, "scene.toml", dir.path(), {});
+    const SceneDescription description = parseSceneText(text + rest, "scene.toml", dir.path(), {});
     const LoadedScene loaded = loadScene(description);
     return {buildScene(description, loaded), loaded};
 }
@@ -97,8 +96,8 @@ TEST(BuildScene, DensityWithScaleAndAlbedo) {
 TEST(BuildScene, AlbedoGridsMultiply) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 2), evenColour("Cd", {0.5, 1, 0.25})});
-    const Built b = build(
-        dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 3\nalbedo = 0.5\nalbedo_grid = \"Cd\"");
+    const Built b =
+        build(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 3\nalbedo = 0.5\nalbedo_grid = \"Cd\"");
     expectNear(sigmaT(b.scene.medium, inside), Rgb(6));
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1.5f, 3, 0.75f));
 }
@@ -116,9 +115,10 @@ TEST(BuildScene, SigmasOfOneGridAreOnePart) {
 TEST(BuildScene, SigmasOfTwoGridsAreTwoPartsThatAdd) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("soot", 2), evenColour("steam", {1, 2, 3})});
-    const Built b = build(dir, "[[volume]]\nfile = \"a.vdb\"\n"
-                               "sigma_a = { grid = \"soot\", scale = 3 }\n"
-                               "sigma_s = { grid = \"steam\", scale = [1, 10, 100] }");
+    const Built b = build(dir,
+                          "[[volume]]\nfile = \"a.vdb\"\n"
+                          "sigma_a = { grid = \"soot\", scale = 3 }\n"
+                          "sigma_s = { grid = \"steam\", scale = [1, 10, 100] }");
     ASSERT_EQ(b.scene.medium.parts.size(), 2u);
     expectNear(sigmaT(b.scene.medium, inside), Rgb(7, 26, 306));
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1, 20, 300));
@@ -126,9 +126,10 @@ TEST(BuildScene, SigmasOfTwoGridsAreTwoPartsThatAdd) {
 
 TEST(BuildScene, HomogeneousBoxesFillTheirTransformedBox) {
     const TempDir dir;
-    const Built b = build(dir, "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n"
-                               "sigma_a = 1\nsigma_s = [2, 3, 4]\n"
-                               "transform = { translate = [10, 0, 0], scale = [2, 1, 1] }");
+    const Built b = build(dir,
+                          "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n"
+                          "sigma_a = 1\nsigma_s = [2, 3, 4]\n"
+                          "transform = { translate = [10, 0, 0], scale = [2, 1, 1] }");
     expectNear(sigmaT(b.scene.medium, {11.9, 0.5, 0.5}), Rgb(3, 4, 5));
     expectNear(sigmaS(b.scene.medium, {11.9, 0.5, 0.5}), Rgb(2, 3, 4));
     EXPECT_EQ(sigmaT(b.scene.medium, {12.1, 0.5, 0.5}), Rgb(0));
@@ -140,8 +141,9 @@ TEST(BuildScene, TransformsComeAfterTheGridsOwn) {
     GridSpec grid = even("density", 0);
     grid.value = [](Vec3i v) { return v == Vec3i{4, 2, 1} ? 1.0 : 0.0; };
     writeVdb(dir / "a.vdb", {grid});
-    const Built b = build(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 7\n"
-                               "transform = { rotate = [0, 0, 90], translate = [0, 0, 5] }");
+    const Built b = build(dir,
+                          "[[volume]]\nfile = \"a.vdb\"\nscale = 7\n"
+                          "transform = { rotate = [0, 0, 90], translate = [0, 0, 5] }");
     // Voxel [4, 2, 1] stands at (2, 1, 0.5) in the file; a quarter turn about z: (-1, 2, 0.5).
     expectNear(sigmaT(b.scene.medium, {-1, 2, 5.5}), Rgb(7));
     EXPECT_EQ(sigmaT(b.scene.medium, {2, 1, 5.5}), Rgb(0));
@@ -161,8 +163,9 @@ TEST(BuildScene, VolumesShareGrids) {
 TEST(BuildScene, VolumesOfNothingLeaveNoPart) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 1)});
-    const Built b = build(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 0\n"
-                               "[[volume]]\nfile = \"a.vdb\"\nsigma_a = 0\nsigma_s = 1\n");
+    const Built b = build(dir,
+                          "[[volume]]\nfile = \"a.vdb\"\nscale = 0\n"
+                          "[[volume]]\nfile = \"a.vdb\"\nsigma_a = 0\nsigma_s = 1\n");
     ASSERT_EQ(b.scene.medium.parts.size(), 1u);
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1));
 }
@@ -210,7 +213,8 @@ TEST(BuildScene, EnvironmentImagesTurnAboutTheUpAxis) {
         const SceneDescription description = parseSceneText(
             "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nscale = 1\n"
             "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n"
-            "[[light]]\ntype = \"environment\"\nimage = \"sky.pfm\"\nradiance = 2\n" + lines,
+            "[[light]]\ntype = \"environment\"\nimage = \"sky.pfm\"\nradiance = 2\n" +
+                lines,
             "scene.toml", dir.path());
         const Scene scene = buildScene(description, loadScene(description));
         return std::get<Environment>(scene.lights.lights()[0]).radiance(direction);
@@ -267,12 +271,13 @@ TEST(LoadScene, AlbedosAboveOneAreRefusedOrRepaired) {
     writeVdb(dir / "a.vdb", {even("density", 1), colour});
     const std::string text = "[[volume]]\nfile = \"a.vdb\"\nscale = 1\nalbedo_grid = \"Cd\"\n";
     // Two crossing planes of 8 x 8 voxels share 8.
-    const std::string found = "albedo grid 'Cd' in " + (dir / "a.vdb").string() +
-                              " holds 120 voxels above 1 (up to 2)";
-    EXPECT_EQ(loadMistake(dir, text),
-              "scene.toml:1:1: " + found +
-                  "; an albedo lies between 0 and 1: --repair (in a scene file: repair = true) sets "
-                  "them to 1");
+    const std::string found =
+        "albedo grid 'Cd' in " + (dir / "a.vdb").string() + " holds 120 voxels above 1 (up to 2)";
+    EXPECT_EQ(
+        loadMistake(dir, text),
+        "scene.toml:1:1: " + found +
+            "; an albedo lies between 0 and 1: --repair (in a scene file: repair = true) sets "
+            "them to 1");
     const Built b = build(dir, text + "repair = true\n");
     ASSERT_EQ(b.loaded.notes.size(), 1u);
     EXPECT_EQ(b.loaded.notes[0], found + ": set to 1");

@@ -34,7 +34,8 @@ struct Completed {
     std::vector<std::string> notes;
 
     explicit Completed(const std::string& text, const std::filesystem::path& base = ".")
-        : description(parseSceneText(text, "scene.toml", base)), loaded(loadScene(description)),
+        : description(parseSceneText(text, "scene.toml", base)),
+          loaded(loadScene(description)),
           notes(completeScene(description, loaded)) {}
     Scene scene() const { return buildScene(description, loaded); }
 };
@@ -44,7 +45,8 @@ std::string box(const std::string& lower, const std::string& upper) {
 }
 
 /// The smallest box around the points on the film, in half heights and half widths of the picture
-/// from its centre: within [-1, 1] lies what is in the picture. Fails where one is behind the camera.
+/// from its centre: within [-1, 1] lies what is in the picture. Fails where one is behind the
+/// camera.
 Box3d onFilm(const Completed& c, const std::vector<Vec3d>& points) {
     const Camera camera = c.scene().camera;
     const Affine3d cameraFromWorld = camera.worldFromCamera.inverse();
@@ -91,9 +93,9 @@ TEST(Defaults, FrameTheWholeVolumeTightly) {
         box("[0, 0, 0]", "[1e12, 1e6, 1e6]"),
         box("[0, 0, 0]", "[1, 1, 1]") + box("[5, 5, 5]", "[6, 7, 8]"),
     };
-    const std::vector<std::string> cameras{
-        "", "[camera]\nfov = 5\n", "[camera]\ntype = \"orthographic\"\n",
-        "[render]\nresolution = [100, 700]\n"};
+    const std::vector<std::string> cameras{"", "[camera]\nfov = 5\n",
+                                           "[camera]\ntype = \"orthographic\"\n",
+                                           "[render]\nresolution = [100, 700]\n"};
     for (const std::string& volumes : boxes)
         for (const std::string& camera : cameras) {
             const Completed c(volumes + camera);
@@ -120,8 +122,8 @@ TEST(Defaults, FrameWhatIsThereOfAGrid) {
     grid.value = [&](Vec3i v) {
         return inBall(v, 20) || inBall(v, 107) ? 0.5 : v == Vec3i{0, 127, 0} ? 0.001 : 0;
     };
-    grid.worldFromIndex = Affine3d::translate({5, 6, 7}) * Affine3d::rotate(1, 30) *
-                          Affine3d::scale({0.1, 0.2, 0.1});
+    grid.worldFromIndex =
+        Affine3d::translate({5, 6, 7}) * Affine3d::rotate(1, 30) * Affine3d::scale({0.1, 0.2, 0.1});
     writeVdb(dir / "a.vdb", {grid});
     std::vector<Vec3d> occupied;
     for (int i = 0; i < 128 * 128 * 128; ++i) {
@@ -136,9 +138,10 @@ TEST(Defaults, FrameWhatIsThereOfAGrid) {
 }
 
 TEST(Defaults, FitAnOrthographicPictureToAGivenPose) {
-    const Completed c(box("[0, 0, 0]", "[4, 1, 1]") +
-                      "[camera]\ntype = \"orthographic\"\neye = [2, 0.5, 9]\nlook_at = [2, 0.5, 0]\n"
-                      "[render]\nresolution = [200, 100]\n");
+    const Completed c(
+        box("[0, 0, 0]", "[4, 1, 1]") +
+        "[camera]\ntype = \"orthographic\"\neye = [2, 0.5, 9]\nlook_at = [2, 0.5, 0]\n"
+        "[render]\nresolution = [200, 100]\n");
     // 4 wide at 2:1 is a height of 2, and 84 % of the picture are filled.
     EXPECT_NEAR(*c.description.camera.height, 2 / 0.84, 0.01);
 }
@@ -169,8 +172,8 @@ TEST(Defaults, BlendersVolumesStandOnZ) {
 TEST(Defaults, ScaleGivesATypicalRayItsOpticalDepth) {
     for (const double voxel : {1.0, 1e-3, 1e4}) {
         const TempDir dir;
-        writeVdb(dir / "a.vdb", {ball(Affine3d::translate({3, 4, 5}) *
-                                      Affine3d::scale(Vec3d{1, 1, 1} * voxel))});
+        writeVdb(dir / "a.vdb",
+                 {ball(Affine3d::translate({3, 4, 5}) * Affine3d::scale(Vec3d{1, 1, 1} * voxel))});
         const Completed c("[[volume]]\nfile = \"a.vdb\"\n", dir.path());
         const Scene scene = c.scene();
         // Through a ball of radius r, half of parallel rays that are spread evenly over its disc

@@ -14,8 +14,7 @@ namespace {
 
 std::vector<std::filesystem::path> exampleFiles() {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(test::sourceDir() / "data/scenes"))
+    for (const auto& entry : std::filesystem::directory_iterator(test::sourceDir() / "data/scenes"))
         if (entry.path().extension() == ".toml") files.push_back(entry.path());
     return files;
 }

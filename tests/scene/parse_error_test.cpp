@@ -47,12 +47,14 @@ TEST(ParseErrors, NameTheNearestKnownKey) {
               "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
               "keys: file, box, density, scale, albedo, albedo_grid, sigma_a, sigma_s, g, "
               "transform, matrix, storage, repair");
-    EXPECT_EQ(sectionMistake("[rendr]\nspp = 1"),
-              "scene.toml:3:2: unknown key 'rendr' in the scene; did you mean 'render'? known keys: "
-              "volume, light, camera, render, output, ocio");
-    EXPECT_EQ(lightMistake("type = \"point\"\nposition = [0, 0, 0]\nradius = 1"),
-              "scene.toml:6:1: unknown key 'radius' in a [[light]] of type point; known keys: type, "
-              "position, intensity, power");
+    EXPECT_EQ(
+        sectionMistake("[rendr]\nspp = 1"),
+        "scene.toml:3:2: unknown key 'rendr' in the scene; did you mean 'render'? known keys: "
+        "volume, light, camera, render, output, ocio");
+    EXPECT_EQ(
+        lightMistake("type = \"point\"\nposition = [0, 0, 0]\nradius = 1"),
+        "scene.toml:6:1: unknown key 'radius' in a [[light]] of type point; known keys: type, "
+        "position, intensity, power");
 }
 
 TEST(ParseErrors, ReportTheFirstUnknownKeyOfTheFile) {
@@ -96,21 +98,25 @@ TEST(ParseErrors, OfTypes) {
 }
 
 TEST(ParseErrors, OfVolumes) {
-    EXPECT_EQ(mistakeIn(""), "scene.toml: the scene has no [[volume]]; the least is\n"
-                             "[[volume]]\nfile = \"smoke.vdb\"");
-    EXPECT_EQ(mistakeIn("[[volume]]\ng = 0"),
-              "scene.toml:1:1: volume[0] has neither file nor box; give file = \"smoke.vdb\" or box "
-              "= { min = [0, 0, 0], max = [1, 1, 1] }");
-    EXPECT_EQ(volumeMistake("sigma_s = 1\nscale = 2"),
-              "scene.toml:3:11: volume[0].sigma_s stands beside scale; give one of them: sigma_a and "
-              "sigma_s say what scale and albedo say (sigma_t = scale x density, sigma_s = albedo x "
-              "sigma_t)");
+    EXPECT_EQ(mistakeIn(""),
+              "scene.toml: the scene has no [[volume]]; the least is\n"
+              "[[volume]]\nfile = \"smoke.vdb\"");
+    EXPECT_EQ(
+        mistakeIn("[[volume]]\ng = 0"),
+        "scene.toml:1:1: volume[0] has neither file nor box; give file = \"smoke.vdb\" or box "
+        "= { min = [0, 0, 0], max = [1, 1, 1] }");
+    EXPECT_EQ(
+        volumeMistake("sigma_s = 1\nscale = 2"),
+        "scene.toml:3:11: volume[0].sigma_s stands beside scale; give one of them: sigma_a and "
+        "sigma_s say what scale and albedo say (sigma_t = scale x density, sigma_s = albedo x "
+        "sigma_t)");
     EXPECT_EQ(volumeMistake("albedo_grid = \"Cd\"\nsigma_a = 1").substr(0, 56),
               "scene.toml:4:11: volume[0].sigma_a stands beside albedo_");
     EXPECT_EQ(volumeMistake("scale = -1"),
               "scene.toml:3:9: volume[0].scale is -1; it must not be negative");
-    EXPECT_EQ(volumeMistake("scale = 1e39"),
-              "scene.toml:3:9: volume[0].scale is 1e+39; it must be at most 3.4028234663852886e+38");
+    EXPECT_EQ(
+        volumeMistake("scale = 1e39"),
+        "scene.toml:3:9: volume[0].scale is 1e+39; it must be at most 3.4028234663852886e+38");
     EXPECT_EQ(volumeMistake("sigma_a = [0, -0.5, 0]"),
               "scene.toml:3:15: volume[0].sigma_a[1] is -0.5; it must not be negative");
     EXPECT_EQ(volumeMistake("sigma_a = { scale = 2 }"),
@@ -127,8 +133,9 @@ TEST(ParseErrors, OfVolumes) {
 
 TEST(ParseErrors, OfBoxes) {
     const std::string box = "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n";
-    EXPECT_EQ(mistakeIn(box), "scene.toml:1:1: volume[0] is a box of nothing; give sigma_a and "
-                              "sigma_s, or scale and albedo");
+    EXPECT_EQ(mistakeIn(box),
+              "scene.toml:1:1: volume[0] is a box of nothing; give sigma_a and "
+              "sigma_s, or scale and albedo");
     EXPECT_EQ(mistakeIn(box + "albedo = 1"),
               "scene.toml:3:10: volume[0].albedo needs a scale: sigma_t = scale in a box");
     EXPECT_EQ(mistakeIn(box + "scale = 1\ndensity = \"d\""),
@@ -145,14 +152,17 @@ TEST(ParseErrors, OfBoxes) {
 TEST(ParseErrors, OfTransforms) {
     EXPECT_EQ(volumeMistake("transform = { scale = [1, 0, 1] }"),
               "scene.toml:3:23: volume[0].transform.scale is zero; it would flatten the volume");
-    EXPECT_EQ(volumeMistake("matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0], [0, 0, 0, 1]]"),
-              "scene.toml:3:10: volume[0].matrix is singular: it flattens space (its determinant is "
-              "0)");
-    EXPECT_EQ(volumeMistake("matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [5, 0, 0, 1]]"),
-              "scene.toml:3:10: volume[0].matrix is not affine: its last row is [5, 0, 0, 1] instead "
-              "of [0, 0, 0, 1] (translation stands in the last column)");
-    EXPECT_EQ(volumeMistake("matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
-              "scene.toml:3:10: volume[0].matrix has 3 elements; expected four rows of four numbers");
+    EXPECT_EQ(
+        volumeMistake("matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0], [0, 0, 0, 1]]"),
+        "scene.toml:3:10: volume[0].matrix is singular: it flattens space (its determinant is "
+        "0)");
+    EXPECT_EQ(
+        volumeMistake("matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [5, 0, 0, 1]]"),
+        "scene.toml:3:10: volume[0].matrix is not affine: its last row is [5, 0, 0, 1] instead "
+        "of [0, 0, 0, 1] (translation stands in the last column)");
+    EXPECT_EQ(
+        volumeMistake("matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
+        "scene.toml:3:10: volume[0].matrix has 3 elements; expected four rows of four numbers");
     EXPECT_EQ(volumeMistake("matrix = [[1, 0, 0, inf], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
               "scene.toml:3:21: volume[0].matrix[0][3] is inf; it must be finite");
     EXPECT_EQ(volumeMistake("transform = {}\nmatrix = []").substr(0, 58),
@@ -164,9 +174,10 @@ TEST(ParseErrors, OfPaths) {
     EXPECT_EQ(mistakeIn("[[volume]]\nfile = \"$WOODCOCK_TEST_UNSET/a.vdb\""),
               "scene.toml:2:8: volume[0].file is '$WOODCOCK_TEST_UNSET/a.vdb': the environment "
               "variable WOODCOCK_TEST_UNSET is not set");
-    EXPECT_EQ(mistakeIn("[[volume]]\nfile = \"a$.vdb\""),
-              "scene.toml:2:8: volume[0].file is 'a$.vdb': '$' must be followed by a variable's name "
-              "(write $$ for a dollar)");
+    EXPECT_EQ(
+        mistakeIn("[[volume]]\nfile = \"a$.vdb\""),
+        "scene.toml:2:8: volume[0].file is 'a$.vdb': '$' must be followed by a variable's name "
+        "(write $$ for a dollar)");
 }
 
 TEST(ParseErrors, OfLights) {
@@ -186,9 +197,10 @@ TEST(ParseErrors, OfLights) {
               "scene.toml:5:13: light[0].elevation is 91; it must lie between -90 and 90");
     EXPECT_EQ(lightMistake("type = \"sun\"\nelevation = 9\nangular_diameter = 91"),
               "scene.toml:6:20: light[0].angular_diameter is 91; it must lie between 0 and 90");
-    EXPECT_EQ(lightMistake("type = \"sun\"\nelevation = 9\nvisible = true"),
-              "scene.toml:6:11: light[0].visible is true, but parallel rays cannot be seen; give the "
-              "sun an angular_diameter, such as 0.53");
+    EXPECT_EQ(
+        lightMistake("type = \"sun\"\nelevation = 9\nvisible = true"),
+        "scene.toml:6:11: light[0].visible is true, but parallel rays cannot be seen; give the "
+        "sun an angular_diameter, such as 0.53");
     EXPECT_EQ(lightMistake("type = \"sun\"\nelevation = 9\nup = \"x\""),
               "scene.toml:6:6: unknown up axis 'x'; known: y, z");
     EXPECT_EQ(lightMistake("type = \"environment\"\nradiance = [1, -2, 3]"),
@@ -219,23 +231,27 @@ TEST(ParseErrors, OfCameras) {
     EXPECT_EQ(sectionMistake("[camera]\nfov = 30\nfocal_length = 50"),
               "scene.toml:5:16: camera.focal_length stands beside fov; give one of them: the angle "
               "follows from the focal length and the sensor");
-    EXPECT_EQ(sectionMistake("[camera]\nfocal_length = 50"),
-              "scene.toml:4:16: camera.focal_length needs a sensor_height or sensor_width beside it, "
-              "in millimetres");
-    EXPECT_EQ(sectionMistake("[camera]\nsensor_width = 36"),
-              "scene.toml:4:16: camera.sensor_width needs a focal_length beside it, in millimetres");
+    EXPECT_EQ(
+        sectionMistake("[camera]\nfocal_length = 50"),
+        "scene.toml:4:16: camera.focal_length needs a sensor_height or sensor_width beside it, "
+        "in millimetres");
+    EXPECT_EQ(
+        sectionMistake("[camera]\nsensor_width = 36"),
+        "scene.toml:4:16: camera.sensor_width needs a focal_length beside it, in millimetres");
     EXPECT_EQ(sectionMistake("[camera]\ntype = \"fisheye\""),
               "scene.toml:4:8: unknown camera type 'fisheye'; known: perspective, orthographic");
-    EXPECT_EQ(sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
-              "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, eye, "
-              "look_at, up, matrix, height");
     EXPECT_EQ(
-        sectionMistake("[camera]\nmatrix = [[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
+        sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
+        "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, eye, "
+        "look_at, up, matrix, height");
+    EXPECT_EQ(
+        sectionMistake(
+            "[camera]\nmatrix = [[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
         "scene.toml:4:10: camera.matrix is sheared or scaled unevenly; a camera's axes must be "
         "orthogonal and equally long");
-    EXPECT_EQ(
-        sectionMistake("[camera]\nmatrix = [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
-        "scene.toml:4:10: camera.matrix mirrors the picture (its determinant is negative)");
+    EXPECT_EQ(sectionMistake(
+                  "[camera]\nmatrix = [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
+              "scene.toml:4:10: camera.matrix mirrors the picture (its determinant is negative)");
 }
 
 TEST(ParseErrors, OfRenderSettings) {
@@ -253,8 +269,9 @@ TEST(ParseErrors, OfRenderSettings) {
               "scene.toml:4:7: render.spp is a float; expected an integer");
     EXPECT_EQ(sectionMistake("[render]\nseed = -1"),
               "scene.toml:4:8: render.seed is -1; it must not be negative");
-    EXPECT_EQ(sectionMistake("[render]\nmax_scatterings = -1"),
-              "scene.toml:4:19: render.max_scatterings is -1; it must lie between 0 and 2147483647");
+    EXPECT_EQ(
+        sectionMistake("[render]\nmax_scatterings = -1"),
+        "scene.toml:4:19: render.max_scatterings is -1; it must lie between 0 and 2147483647");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 0.5"),
               "scene.toml:4:18: render.majorant_scale is 0.5; it must be at least 1");
     EXPECT_EQ(sectionMistake("[render]\ntime_limit = -3"),

@@ -47,7 +47,7 @@ TEST(Parse, DensityWithScaleAndAlbedo) {
     const auto& c = std::get<DensityCoefficients>(v.coefficients);
     EXPECT_EQ(c.density, "smoke");
     EXPECT_EQ(c.scale, Rgb(3.0f));
-    EXPECT_EQ(c.albedo, Rgb(0.5f, 0.25f, 1.0f));
+    EXPECT_EQ(c.albedo, (Vec3d{0.5, 0.25, 1.0}));
     EXPECT_EQ(c.albedoGrid, "Cd");
     EXPECT_EQ(v.g, -0.5f);
     EXPECT_EQ(v.storage, Storage::Half);
@@ -59,12 +59,12 @@ TEST(Parse, SeparateCoefficients) {
         volume("sigma_a = { grid = \"soot\", scale = [1, 2, 3] }\nsigma_s = 4").coefficients);
     EXPECT_EQ(c.sigmaA, (GridCoefficient{"soot", Rgb(1, 2, 3)}));
     EXPECT_EQ(c.sigmaS, (GridCoefficient{"", Rgb(4)}));
-    const auto named = std::get<SeparateCoefficients>(
-        volume("density = \"d\"\nsigma_s = [1, 2, 3]").coefficients);
+    const auto named =
+        std::get<SeparateCoefficients>(volume("density = \"d\"\nsigma_s = [1, 2, 3]").coefficients);
     EXPECT_FALSE(named.sigmaA);
     EXPECT_EQ(named.sigmaS, (GridCoefficient{"d", Rgb(1, 2, 3)}));
-    const auto unscaled = std::get<SeparateCoefficients>(
-        volume("sigma_a = { grid = \"soot\" }").coefficients);
+    const auto unscaled =
+        std::get<SeparateCoefficients>(volume("sigma_a = { grid = \"soot\" }").coefficients);
     EXPECT_EQ(unscaled.sigmaA, (GridCoefficient{"soot", Rgb(1)}));
 }
 
@@ -105,10 +105,9 @@ TEST(Parse, SunStandsWhereItsAnglesSay) {
         return light<SunDescription>("type = \"sun\"\n" + lines).direction;
     };
     expectNear(direction("elevation = 90"), {0, -1, 0});
-    expectNear(direction("elevation = 0"), {0, 0, 1});                // stands at -z
+    expectNear(direction("elevation = 0"), {0, 0, 1});                 // stands at -z
     expectNear(direction("elevation = 0\nazimuth = 90"), {-1, 0, 0});  // stands at +x
-    expectNear(direction("elevation = 30\nazimuth = 180"),
-               {0, -0.5, -std::sqrt(0.75)});
+    expectNear(direction("elevation = 30\nazimuth = 180"), {0, -0.5, -std::sqrt(0.75)});
     expectNear(direction("elevation = 90\nup = \"z\""), {0, 0, -1});
     expectNear(direction("elevation = 0\nup = \"z\""), {0, -1, 0});
     expectNear(direction("elevation = 0\nazimuth = 90\nup = \"z\""), {-1, 0, 0});
@@ -161,8 +160,9 @@ TEST(Parse, Cameras) {
     EXPECT_EQ(std::get<LookAt>(*lookAt.pose), (LookAt{{0, 1, 5}, {0, 0, 0}, {0, 0, 1}}));
     EXPECT_EQ(lookAt.fovY, 30);
 
-    const auto matrix = section("[camera]\ntype = \"orthographic\"\nheight = 3\nmatrix = "
-                                "[[0, 0, 2, 4], [0, 2, 0, 5], [-2, 0, 0, 6], [0, 0, 0, 1]]")
+    const auto matrix = section(
+                            "[camera]\ntype = \"orthographic\"\nheight = 3\nmatrix = "
+                            "[[0, 0, 2, 4], [0, 2, 0, 5], [-2, 0, 0, 6], [0, 0, 0, 1]]")
                             .camera;
     EXPECT_EQ(matrix.kind, CameraDescription::Kind::Orthographic);
     EXPECT_EQ(matrix.height, 3);
@@ -188,8 +188,9 @@ TEST(Parse, FocalLengthAndSensorGiveTheAngle) {
 
 TEST(Parse, RenderSettings) {
     const auto render =
-        section("[render]\nresolution = [320, 200]\nspp = 7\nseed = 9223372036854775807\n"
-                "max_scatterings = 0\ntime_limit = \"2m\"\nnoise = \"1%\"\nmajorant_scale = 2")
+        section(
+            "[render]\nresolution = [320, 200]\nspp = 7\nseed = 9223372036854775807\n"
+            "max_scatterings = 0\ntime_limit = \"2m\"\nnoise = \"1%\"\nmajorant_scale = 2")
             .render;
     EXPECT_EQ(render.width, 320);
     EXPECT_EQ(render.height, 200);
@@ -272,8 +273,8 @@ TEST(Overrides, LaterOnesWin) {
 }
 
 TEST(Overrides, PathsCountFromTheWorkingDirectory) {
-    const auto scene = parseSceneText("[[volume]]\nfile = \"a.vdb\"", "s.toml", "jobs",
-                                      {"volume[0].file=b.vdb"});
+    const auto scene =
+        parseSceneText("[[volume]]\nfile = \"a.vdb\"", "s.toml", "jobs", {"volume[0].file=b.vdb"});
     EXPECT_EQ(scene.volumes[0].file, "b.vdb");
 }
 

@@ -54,7 +54,9 @@ SceneDescription fullScene() {
         {SphereDescription{{1, 2, 3}, 1.0 / 7, Rgb(9), false}, ""},
     };
     scene.camera = {CameraDescription::Kind::Perspective,
-                    LookAt{{1.0 / 3, 2, 3}, {0, 0.1, 0}, {0, 0, 1}}, 33.3, {}};
+                    LookAt{{1.0 / 3, 2, 3}, {0, 0.1, 0}, {0, 0, 1}},
+                    33.3,
+                    {}};
     scene.render = {321, 123, 7, 42, 0, 1.5, 0.01, 2.5};
     scene.output = {{"a.exr", "b.png"}, {"error", "depth"}, true, "d", "v\\w", "l\n", -0.5};
     return scene;
@@ -67,10 +69,10 @@ TEST(WriteScene, ReadsBackEqual) {
 
 TEST(WriteScene, ReadsBackEqualWithAnOrthographicMatrixCamera) {
     SceneDescription scene = fullScene();
-    scene.camera = {CameraDescription::Kind::Orthographic,
-                    Affine3d::translate({1, 2, 1.0 / 3}) * Affine3d::rotate(1, 33) *
-                        Affine3d::rotate(0, 21),
-                    40, 1.0 / 3};
+    scene.camera = {
+        CameraDescription::Kind::Orthographic,
+        Affine3d::translate({1, 2, 1.0 / 3}) * Affine3d::rotate(1, 33) * Affine3d::rotate(0, 21),
+        40, 1.0 / 3};
     EXPECT_EQ(readBack(scene), scene) << writeScene(scene);
 }
 

@@ -25,8 +25,8 @@ size_t editDistance(std::string_view a, std::string_view b) {
         for (size_t j = 1; j <= b.size(); ++j) {
             const size_t change = sameLetter(a[i - 1], b[j - 1]) ? 0 : 1;
             row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + change});
-            const bool swapped = i > 1 && j > 1 && sameLetter(a[i - 1], b[j - 2]) &&
-                                 sameLetter(a[i - 2], b[j - 1]);
+            const bool swapped =
+                i > 1 && j > 1 && sameLetter(a[i - 1], b[j - 2]) && sameLetter(a[i - 2], b[j - 1]);
             if (swapped) row[j] = std::min(row[j], beforeLast[j - 2] + 1);
         }
         beforeLast.swap(last);

@@ -8,7 +8,7 @@
 namespace woodcock {
 
 /// N colour channels, scene-linear. Rgb = Spectrum<3> in descriptions and films; the path loop runs
-/// on Spectrum<1> where a scene is grey in every coefficient and light.
+/// on Spectrum<1> where the medium is grey, whatever the colour of its lights.
 template <int N>
 struct Spectrum {
     std::array<float, N> c{};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "woodcock/grid/majorants.h"
 
@@ -40,14 +42,19 @@ inline bool clip(const IndexRay& ray, const Box3d& box, double& t0, double& t1) 
 /// cell comes next is decided in integers, so no step can stall.
 class CellWalk {
 public:
+    CellWalk() = default;  ///< walks nothing
     CellWalk(const MajorantGrid& majorants, const Box3d& support, const IndexRay& ray, double t0,
              double t1)
         : majorants_(&majorants), ray_(ray), t_(t0), end_(t1) {
-        const Vec3d p = ray.at(t0);
         for (int i = 0; i < 3; ++i) {
-            inverse_[i] = 1.0 / ray.direction[i];
+            const double d = ray.direction[i];
+            const bool still = std::abs(d) < 1e-290;  // its inverse might not be finite
+            if (still) ray_.direction[i] = 0;         // stays off the face ahead: 0 x inf is NaN
+            forward_[i] = still || d > 0;
+            inverse_[i] = still ? std::numeric_limits<double>::infinity() : 1 / d;
             low_[i] = static_cast<int>(support.lower[i]), high_[i] = static_cast<int>(support.upper[i]);
-            voxel_[i] = floorToInt(std::clamp(p[i], support.lower[i], support.upper[i]));
+            const double p = ray_.at(t0)[i];
+            voxel_[i] = floorToInt(std::clamp(p, support.lower[i], support.upper[i]));
         }
     }
 
@@ -56,36 +63,38 @@ public:
         if (!(t_ < end_)) return false;
         const MajorantGrid::Cell cell = majorants_->find(voxel_);
         const int size = 1 << cell.log2Size;
-        Vec3i corner;
-        double exit = end_;
-        int axis = -1;
-        for (int i = 0; i < 3; ++i) {
-            corner[i] = voxel_[i] & ~(size - 1);
-            if (ray_.direction[i] == 0) continue;
-            const double face = ray_.direction[i] > 0 ? double{1} * corner[i] + size : corner[i];
-            const double t = (face - ray_.origin[i]) * inverse_[i];
-            if (t < exit) exit = t, axis = i;
-        }
-        exit = std::max(exit, t_);
+        const Vec3i corner{voxel_.x & -size, voxel_.y & -size, voxel_.z & -size};
+        // Ray parameters of the faces ahead; without branches, as which one is first is a coin toss.
+        const double tx = (corner.x + double(forward_.x) * size - ray_.origin.x) * inverse_.x;
+        const double ty = (corner.y + double(forward_.y) * size - ray_.origin.y) * inverse_.y;
+        const double tz = (corner.z + double(forward_.z) * size - ray_.origin.z) * inverse_.z;
+        const double face = std::min(tx, std::min(ty, tz));
+        const double exit = std::max(t_, std::min(face, end_));
         segment = {t_, exit, cell.range};
         t_ = exit;
-        if (axis < 0) {
+        if (face >= end_) {
             t_ = end_;
             return true;
         }
+        const bool alongX = tx == face, alongY = !alongX && ty == face, alongZ = !alongX && !alongY;
         const Vec3d p = ray_.at(exit);
-        for (int i = 0; i < 3; ++i)
-            voxel_[i] = std::clamp(floorToInt(p[i]), corner[i], corner[i] + size - 1);
-        voxel_[axis] = ray_.direction[axis] > 0 ? corner[axis] + size : corner[axis] - 1;
-        if (voxel_[axis] < low_[axis] || voxel_[axis] > high_[axis]) end_ = t_;
+        const auto enter = [size](bool along, int forward, int from, double at) {
+            const int across = std::clamp(floorToInt(at), from, from + size - 1);
+            return along ? from + (forward ? size : -1) : across;
+        };
+        voxel_ = {enter(alongX, forward_.x, corner.x, p.x), enter(alongY, forward_.y, corner.y, p.y),
+                  enter(alongZ, forward_.z, corner.z, p.z)};
+        if (std::min({voxel_.x - low_.x, voxel_.y - low_.y, voxel_.z - low_.z, high_.x - voxel_.x,
+                      high_.y - voxel_.y, high_.z - voxel_.z}) < 0)
+            end_ = t_;
         return true;
     }
 
 private:
-    const MajorantGrid* majorants_;
+    const MajorantGrid* majorants_ = nullptr;
     IndexRay ray_;
     Vec3d inverse_;
-    Vec3i voxel_, low_, high_;
+    Vec3i voxel_, low_, high_, forward_;
     double t_, end_;
 };
 

@@ -67,7 +67,7 @@ private:
             for (std::size_t j = i * 512; j < (i + 1) * 512; ++j)
                 field_.halves_[j] = Imath::half(field_.floats_[j]).bits();
         });
-        field_.floats_ = {};
+        field_.floats_ = std::vector<float>();  // frees them, as `= {}` would not
     }
 
     void copyAsHalf() {
@@ -186,12 +186,20 @@ private:
             }
         }
     }
+    /// Region by region where a neighbour is uniform too, block by block along the face where not.
     Range hullAcrossFaces(Vec3i region, Range range) const {
-        for (int x = 0; x <= 16; ++x)
-            for (int y = 0; y <= 16; ++y)
-                for (int z = (x == 16 || y == 16) ? 0 : 16; z <= 16; ++z)
-                    range.add(ownRange(field_.table_.find(region + Vec3i{x, y, z}).value->ref,
-                                       Vec3i{8, 8, 8}));
+        for (int i = 1; i < 8; ++i) {
+            const Vec3i side{i & 1, i >> 1 & 1, i >> 2};
+            const Vec3i corner = region + side * 16;
+            const bool uniform = field_.table_.find(corner).log2Size > blockLog2;
+            const Vec3i n = uniform ? Vec3i{1, 1, 1}
+                                    : Vec3i{side.x ? 1 : 16, side.y ? 1 : 16, side.z ? 1 : 16};
+            for (int x = 0; x < n.x; ++x)
+                for (int y = 0; y < n.y; ++y)
+                    for (int z = 0; z < n.z; ++z)
+                        range.add(ownRange(field_.table_.find(corner + Vec3i{x, y, z}).value->ref,
+                                           {side.x ? 1 : 8, side.y ? 1 : 8, side.z ? 1 : 8}));
+        }
         return range;
     }
 

@@ -35,6 +35,12 @@ public:
     /// voxels of a leaf or tile that differ from it. Empty when there are none.
     const Box3d& support() const { return support_; }
 
+    /// The point of the support next to `p`, or `p` inside it: the reconstruction there is the same,
+    /// and voxel numbers fit an int.
+    Vec3d nearSupport(Vec3d p) const {
+        return support_.empty() ? Vec3d{} : max(support_.lower, min(support_.upper, p));
+    }
+
     /// The stored value of voxel `v` (any index).
     float voxel(Vec3i v, int channel = 0) const {
         const std::uint32_t ref = blockOf(v).ref;
@@ -44,7 +50,7 @@ public:
                       static_cast<size_t>(channel));
     }
 
-    /// Trilinear interpolation at index-space position `p`.
+    /// Trilinear interpolation at index-space position `p`, at most 2^31 voxels away.
     float trilinear(Vec3d p, int channel = 0) const {
         const Vec3i v = floorToInt(p);
         const Vec3d f = p - v.as<double>();

@@ -133,6 +133,12 @@ std::uint64_t Film::nonFiniteCount() const {
     return count;
 }
 
+std::uint64_t Film::mostSamples() const {
+    std::uint64_t most = 0;
+    for (const Pixel& p : pixels_) most = std::max(most, p.samples);
+    return most;
+}
+
 double Film::noise() const {
     double sum = 0;
     std::uint64_t pixels = 0;

@@ -73,6 +73,8 @@ public:
     static constexpr float noDepth = 1e10f;
 
     std::uint64_t nonFiniteCount() const;
+    /// Of all pixels; above the fewest after a render was interrupted inside a pass.
+    std::uint64_t mostSamples() const;
     /// Mean over pixels of standard error / mean radiance (channels averaged first); pixels without
     /// light or with fewer than two samples are left out; 0 when none is left.
     double noise() const;

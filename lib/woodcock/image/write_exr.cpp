@@ -77,6 +77,10 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
     set("woodcock/version", std::string(version()));
     set("woodcock/samples", metadata.endSample - metadata.firstSample);
     set("woodcock/sampleRange", fmt::format("{}:{}", metadata.firstSample, metadata.endSample));
+    // An interrupted pass leaves pixels with more: such a file does not merge by its range alone.
+    if (const auto most = static_cast<int>(film.mostSamples());
+        most > metadata.endSample - metadata.firstSample)
+        set("woodcock/samplesAtMost", most);
     // EXR has no integer of 64 bits.
     set("woodcock/seed", fmt::format("{}", metadata.seed));
     set("woodcock/nonFinite", fmt::format("{}", film.nonFiniteCount()));

@@ -51,12 +51,6 @@ Rgb EnvironmentMap::pixel(int x, int y) const {
     return {pixels_[i], pixels_[i + 1], pixels_[i + 2]};
 }
 
-bool EnvironmentMap::grey() const {
-    for (std::size_t i = 0; i < pixels_.size(); i += 3)
-        if (pixels_[i] != pixels_[i + 1] || pixels_[i] != pixels_[i + 2]) return false;
-    return true;
-}
-
 Rgb EnvironmentMap::radiance(Vec3d d) const {
     const double u = (0.5 + std::atan2(d.x, -d.z) / (2 * pi)) * width_ - 0.5;
     const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / pi * height_ - 0.5;

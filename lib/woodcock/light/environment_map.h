@@ -19,7 +19,6 @@ public:
     bool empty() const { return width_ == 0; }
     Rgb radiance(Vec3d direction) const;
     Rgb meanRadiance() const { return mean_; }  ///< over the sphere
-    bool grey() const;
 
     struct Sample {
         Vec3d direction;

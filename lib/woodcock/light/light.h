@@ -49,7 +49,6 @@ public:
     bool constant() const { return map_.empty(); }
     bool visible() const { return visible_; }
     const EnvironmentMap& map() const { return map_; }
-    Rgb scale() const { return scale_; }
     Rgb meanRadiance() const;  ///< over the sphere
 
     Rgb radiance(Vec3d direction) const;

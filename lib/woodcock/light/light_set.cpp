@@ -112,19 +112,4 @@ float LightSet::typicalRadiance(const Box3d& bounds) const {
     return static_cast<float>(sum);
 }
 
-bool LightSet::chromatic() const {
-    for (const Light& light : lights_) {
-        const bool grey = std::visit(
-            Overloaded{[](const Sun& l) { return isGrey(l.irradiance()); },
-                       [](const Environment& l) {
-                           return isGrey(l.scale()) && (l.constant() || l.map().grey());
-                       },
-                       [](const PointLight& l) { return isGrey(l.intensity); },
-                       [](const SphereLight& l) { return isGrey(l.radiance); }},
-            light);
-        if (!grey) return true;
-    }
-    return false;
-}
-
 }  // namespace woodcock

@@ -44,8 +44,6 @@ public:
     /// of Russian roulette. It steers cost only.
     float typicalRadiance(const Box3d& bounds) const;
 
-    bool chromatic() const;
-
 private:
     std::vector<Light> lights_;
     std::vector<int> sampled_, local_;

@@ -46,7 +46,7 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
 float MediumPart::value(Vec3d world, int channel) const {
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? 1.0f : 0.0f;
-    return d_.field->trilinear(p, d_.field->channels() == 1 ? 0 : channel);
+    return d_.field->trilinear(d_.field->nearSupport(p), d_.field->channels() == 1 ? 0 : channel);
 }
 
 Rgb MediumPart::sigmaT(Vec3d world) const {
@@ -55,9 +55,10 @@ Rgb MediumPart::sigmaT(Vec3d world) const {
 
 Rgb MediumPart::sigmaS(Vec3d world) const {
     return Rgb::map([&](int c) {
-        const float a = d_.albedo ? d_.albedo->trilinear(albedoIndex(world),
-                                                         d_.albedo->channels() == 1 ? 0 : c)
-                                  : 1.0f;
+        const Field* const albedo = d_.albedo.get();
+        const float a = albedo ? albedo->trilinear(albedo->nearSupport(albedoIndex(world)),
+                                                   albedo->channels() == 1 ? 0 : c)
+                               : 1.0f;
         return d_.scattering[c] * value(world, c) * a;
     });
 }

@@ -91,8 +91,16 @@ struct Medium {
 class PartWalk {
 public:
     PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
-        : background_(part.background()), end_(tMax), enter_(0), leave_(tMax),
-          cells_(makeCells(part, ray)) {}
+        : background_(part.background()), homogeneous_(!part.field()), end_(tMax), enter_(0),
+          leave_(tMax) {
+        if (part.support().empty() || !clip(ray, part.support(), enter_, leave_))
+            enter_ = leave_ = end_;  // all background
+        else if (!homogeneous_)
+            cells_ = CellWalk(part.majorants(), part.support(), ray, enter_, leave_);
+    }
+
+    /// False for segments of the background before and after.
+    bool insideSupport(const Segment& s) const { return s.t0 >= enter_ && s.t1 <= leave_; }
 
     bool next(Segment& segment) {
         if (stage_ == Stage::Before) {
@@ -123,15 +131,8 @@ public:
 private:
     enum class Stage { Before, Inside, After, Done };
 
-    CellWalk makeCells(const MediumPart& part, const IndexRay& ray) {
-        homogeneous_ = !part.field();
-        if (part.support().empty() || !clip(ray, part.support(), enter_, leave_))
-            enter_ = leave_ = end_;  // all background
-        return {part.majorants(), part.support(), ray, enter_, homogeneous_ ? enter_ : leave_};
-    }
-
     Range background_;
-    bool homogeneous_ = false;
+    bool homogeneous_;
     Stage stage_ = Stage::Before;
     double end_, enter_, leave_;
     CellWalk cells_;

@@ -7,7 +7,6 @@ namespace woodcock {
 
 Needs findNeeds(const Scene& scene) {
     Needs n;
-    n.chromatic = scene.lights.chromatic();
     for (const MediumPart& p : scene.medium.parts) {
         n.chromatic |= p.chromatic();
         n.scattering |= p.scatters();

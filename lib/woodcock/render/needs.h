@@ -10,7 +10,7 @@ struct Scene;
 
 /// What a scene requires of the path loop. Found once; only what is needed is run.
 struct Needs {
-    bool chromatic = false;   ///< channels differ somewhere: three are traced instead of one
+    bool chromatic = false;   ///< the medium's channels differ: three are tracked instead of one
     bool overlap = false;     ///< more than one medium component
     bool scattering = false;  ///< sigma_s > 0 somewhere: otherwise camera rays only
     bool lightSampling = false;  ///< a light that phase sampling alone would miss or sample badly

@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Throughput below which paths play Russian roulette (absorption is a weight).
 constexpr float pathRoulette = 0.1f;
 /// Shadow rays play it below this part of the radiance that the scene's lights typically make.
-constexpr float shadowRoulette = 0.1f;
+constexpr float shadowRoulette = 0.05f;
 /// Scattering orders whose numbers come from the quasi-random sequence.
 constexpr int quasiRandomOrders = 4;
 /// From this order on, every doubling of the order is survived with probability 1/sqrt(2): in a
@@ -80,16 +80,18 @@ private:
         RandomStream random;
         Vec3d origin, direction;
         Spectrum<N> throughput{1.0f};
-        Spectrum<N> radiance;
+        Rgb radiance;
         std::int64_t scatterings = 0;
         ScatterPoint from;     // the last scattering event, for MIS at what its direction hits
         double phasePdf = 0;   // of that direction
         double flight = 1;     // draws the next optical depth
         bool alive = true;
     };
-    /// A query of light along one or two straight legs, and the path that it lights.
+    /// A query of light along one or two straight legs, and the path that it lights. The medium's
+    /// channels travel in the query; the light's colour, largest channel 1, waits here.
     struct ShadowRay {
         std::size_t path;
+        Rgb colour;
         bool secondLeg = false;
         Vec3d origin, direction;  // of the second leg
         double tMax = 0;
@@ -170,7 +172,7 @@ private:
                 if (!(arrived.maximum() > 0)) continue;
                 ShadowRay s = shadows_[i];
                 if (!s.secondLeg) {
-                    paths_[s.path].radiance += arrived;
+                    paths_[s.path].radiance += s.colour * toRgb(arrived);
                     continue;
                 }
                 s.secondLeg = false;
@@ -190,7 +192,7 @@ private:
                 paths_[left++] = p;
                 continue;
             }
-            p.result->film.radiance = Rgb::map([&](int c) { return p.radiance[N == 1 ? 0 : c]; });
+            p.result->film.radiance = p.radiance;
         }
         paths_.resize(left, paths_.front());
     }
@@ -207,7 +209,7 @@ private:
             if (!(radiance.maximum() > 0)) continue;
             const double weight =
                 camera ? 1 : powerHeuristic(p.phasePdf, lightPdf(static_cast<int>(i), p.from, p.direction));
-            p.radiance += p.throughput * channels<N>(radiance) * static_cast<float>(weight);
+            p.radiance += toRgb(p.throughput) * radiance * static_cast<float>(weight);
         }
     }
 
@@ -259,8 +261,7 @@ private:
         if (q.part >= 0)
             p.result->depth = {{}, weight * static_cast<float>(q.t), weight};
         else
-            p.result->depth.transmittance =
-                Rgb::map([&](int ch) { return q.throughput[N == 1 ? 0 : ch]; });
+            p.result->depth.transmittance = toRgb(q.throughput);
     }
 
     // ---- light --------------------------------------------------------------------------------
@@ -317,7 +318,7 @@ private:
         if (s.pdf > 0) weight *= powerHeuristic(s.pdf * pick_[k], phase);
         if (const auto lamp = lampPosition(sampled[k])) weight *= share(*lamp);
         addShadowRay(i, p.from.position, s.direction, s.distance,
-                     p.throughput * channels<N>(s.weight) * static_cast<float>(weight));
+                     s.weight * static_cast<float>(weight));
     }
 
     /// Sphere lights that the new direction hits: the other side of next-event estimation's MIS.
@@ -335,7 +336,7 @@ private:
                 weight = powerHeuristic(pdf, lightPdf(light, p.from, p.direction)) *
                          (*share)(sphere->position);
             addShadowRay(i, p.origin, p.direction, t,
-                         p.throughput * channels<N>(sphere->radiance) * static_cast<float>(weight));
+                         sphere->radiance * static_cast<float>(weight));
         }
     }
 
@@ -385,20 +386,28 @@ private:
                          static_cast<float>(henyeyGreenstein(dot(at.forward, s.direction), part.g()));
         // Balance heuristic against the event, over the density of this point and lamp.
         const double weight = static_cast<double>(lamps.size()) / (pdf + flightDensity(e, t));
-        addShadowRay(i, p.origin, p.direction, t,
-                     p.throughput * channels<N>(scattered * s.weight) * static_cast<float>(weight));
-        if (shadows_.empty() || shadows_.back().path != i) return;
-        shadows_.back().secondLeg = true;
-        shadows_.back().origin = at.position, shadows_.back().direction = s.direction;
-        shadows_.back().tMax = s.distance;
+        if (!addShadowRay(i, p.origin, p.direction, t,
+                          scattered * s.weight * static_cast<float>(weight)))
+            return;
+        ShadowRay& ray = shadows_.back();
+        ray.secondLeg = true;
+        ray.origin = at.position, ray.direction = s.direction, ray.tMax = s.distance;
     }
 
-    void addShadowRay(std::size_t i, Vec3d origin, Vec3d direction, double tMax,
-                      Spectrum<N> contribution) {
-        if (!(contribution.maximum() > 0)) return;
-        shadows_.push_back({i, false, {}, {}, 0});
-        shadowQueries_.push_back({origin, direction, tMax, RandomStream(paths_[i].random.bits()),
+    /// Adds a shadow ray that brings `light` times the path's throughput, unless that is nothing.
+    bool addShadowRay(std::size_t i, Vec3d origin, Vec3d direction, double tMax, Rgb light) {
+        Path& p = paths_[i];
+        const float brightest = light.maximum();
+        const Spectrum<N> contribution = p.throughput * brightest;
+        if (!(contribution.maximum() > 0)) return false;
+        shadows_.push_back({i, light * (1 / brightest), false, {}, {}, 0});
+        shadowQueries_.push_back({origin, direction, tMax, RandomStream(p.random.bits()),
                                   shadowRoulette * typicalRadiance_, contribution});
+        return true;
+    }
+
+    static Rgb toRgb(Spectrum<N> s) {
+        return Rgb::map([&](int c) { return s[N == 1 ? 0 : c]; });
     }
 
     const Scene& scene_;

@@ -45,8 +45,9 @@ struct RenderResult {
 
 /// Renders `scene`: the same scene, seed and sample range give the same film, bit for bit, whatever
 /// the number of threads. Passes over the whole crop, so that a stop leaves an even picture.
-/// `onProgress` is called a few times a second from one thread; returning false stops at once (the
-/// pass at work is dropped).
+/// `onProgress` is called a few times a second from one thread; returning false stops at once: tiles
+/// of the pass at work that are finished stay, so that some pixels may hold more samples than
+/// endSample - firstSample (Film::Pixel::samples tells), or, in the first pass, none.
 /// Throws Error{Usage} on an empty crop, image or sample range.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress = {});

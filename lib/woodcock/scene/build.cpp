@@ -19,8 +19,7 @@ std::vector<Part> parts(const VolumeDescription& volume, const DensityCoefficien
                         const LoadedVolume& loaded) {
     if (!c.scale) throw usageError("a volume's scale has not been chosen yet");
     Part part = fieldPart(volume, loaded.density);
-    part.scattering = c.albedo * *c.scale;
-    part.absorption = *c.scale - part.scattering;
+    std::tie(part.absorption, part.scattering) = splitByAlbedo(*c.scale, c.albedo);
     if (loaded.albedo) {
         part.albedo = loaded.albedo.field;
         part.albedoWorldFromIndex = volume.worldFromObject * loaded.albedo.objectFromIndex;
@@ -58,8 +57,9 @@ Medium buildMedium(const SceneDescription& description, const LoadedScene& loade
     Medium medium;
     for (size_t i = 0; i < description.volumes.size(); ++i) {
         const VolumeDescription& volume = description.volumes[i];
-        const auto all = std::visit(
-            [&](const auto& c) { return parts(volume, c, loaded.volumes[i]); }, volume.coefficients);
+        const auto all =
+            std::visit([&](const auto& c) { return parts(volume, c, loaded.volumes[i]); },
+                       volume.coefficients);
         for (Part part : all) {
             if ((part.absorption + part.scattering).maximum() == 0) continue;
             part.g = volume.g;
@@ -76,9 +76,9 @@ Light buildLight(const SunDescription& sun, EnvironmentMap&&) {
 Light buildLight(const EnvironmentDescription& environment, EnvironmentMap&& map) {
     if (map.empty()) return Environment(environment.radiance, environment.visible);
     // A quarter turn about x takes the image's up, +y, to +z.
-    const Affine3d up =
-        environment.up == UpAxis::Z ? Affine3d{{Vec3d{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {}}
-                                    : Affine3d();
+    const Affine3d up = environment.up == UpAxis::Z
+                            ? Affine3d{{Vec3d{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {}}
+                            : Affine3d();
     return Environment(std::move(map), environment.radiance,
                        up * Affine3d::rotate(1, environment.rotation), environment.visible);
 }

@@ -32,8 +32,8 @@ int magnitude(double v) { return static_cast<int>(std::floor(std::log10(v))); }
 Vec3d withUp(Vec3d v, UpAxis up) { return up == UpAxis::Z ? Vec3d{v.x, 0 - v.z, v.y} : v; }
 
 /// Median of the line integrals of the field (world units, mean of channels) over a lattice of rays
-/// along its three index axes, of those that meet more than wisps. By sums at unit steps or coarser:
-/// a choice needs no more. Zero for an empty field.
+/// along its three index axes, of those that meet more than wisps. By sums at unit steps or
+/// coarser: a choice needs no more. Zero for an empty field.
 double typicalIntegral(const Field& field, const Affine3d& worldFromIndex) {
     const Box3d box = field.support();
     if (box.empty()) return 0;
@@ -73,14 +73,16 @@ std::optional<std::string> chooseScale(VolumeDescription& volume, const LoadedVo
     const double exact = typicalDepth / integral;
     if (!(integral > 0) || !(exact < std::numeric_limits<float>::max())) {
         c->scale = Rgb(1);
-        return fmt::format("volume[{}] seems empty: no ray of a bundle through it met any density; "
-                           "chosen:\nscale = 1",
-                           index);
+        return fmt::format(
+            "volume[{}] seems empty: no ray of a bundle through it met any density; "
+            "chosen:\nscale = 1",
+            index);
     }
     c->scale = Rgb(static_cast<float>(roundTo(exact, magnitude(exact) - 2)));
-    return fmt::format("chosen for volume[{}], so that a typical ray through it has an optical "
-                       "depth of {}:\nscale = {}",
-                       index, typicalDepth, tomlColour(*c->scale));
+    return fmt::format(
+        "chosen for volume[{}], so that a typical ray through it has an optical "
+        "depth of {}:\nscale = {}",
+        index, typicalDepth, tomlColour(*c->scale));
 }
 
 /// What points span along an axis.

@@ -24,11 +24,19 @@ struct GridCoefficient {
     bool operator==(const GridCoefficient&) const = default;
 };
 
+/// sigma_a and sigma_s of an extinction and an albedo, without the cancellation of sigma_t - sigma_s.
+inline std::pair<Rgb, Rgb> splitByAlbedo(Rgb sigmaT, Vec3d albedo) {
+    const auto part = [&](auto&& share) {
+        return Rgb::map([&](int c) { return static_cast<float>(double{sigmaT[c]} * share(albedo[c])); });
+    };
+    return {part([](double a) { return 1 - a; }), part([](double a) { return a; })};
+}
+
 /// sigma_t = scale x density, sigma_s = albedo x sigma_t.
 struct DensityCoefficients {
-    std::string density;  ///< grid name; empty: found by its role
+    std::string density;       ///< grid name; empty: found by its role
     std::optional<Rgb> scale;  ///< absent: chosen for a reasonable optical depth
-    Rgb albedo{1.0f};
+    Vec3d albedo{1, 1, 1};  ///< double: 1 - albedo is what absorbs, and may be 1e-7
     std::string albedoGrid;  ///< vec3 or scalar grid that multiplies `albedo`; empty: none
     bool operator==(const DensityCoefficients&) const = default;
 };
@@ -54,25 +62,25 @@ struct VolumeDescription {
     float g = 0;               ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     Affine3d worldFromObject;  ///< applied after the grid's own transform
     Storage storage = Storage::Auto;
-    bool repair = false;   ///< NaN, infinite and negative voxels become zero instead of an error
-    std::string where;     ///< "scene.toml:12:1", for messages; empty when made by the program
+    bool repair = false;  ///< NaN, infinite and negative voxels become zero instead of an error
+    std::string where;    ///< "scene.toml:12:1", for messages; empty when made by the program
     bool operator==(const VolumeDescription&) const = default;
 };
 
 struct SunDescription {
-    Vec3d direction{0, -1, 0};  ///< the way its light travels, of any length
-    Rgb irradiance{1.0f};       ///< on a surface perpendicular to it
-    double angularDiameter = 0; ///< degrees; 0: parallel rays
-    bool visible = false;       ///< to camera rays (needs an angular diameter)
+    Vec3d direction{0, -1, 0};   ///< the way its light travels, of any length
+    Rgb irradiance{1.0f};        ///< on a surface perpendicular to it
+    double angularDiameter = 0;  ///< degrees; 0: parallel rays
+    bool visible = false;        ///< to camera rays (needs an angular diameter)
     bool operator==(const SunDescription&) const = default;
 };
 enum class UpAxis { Y, Z };
 struct EnvironmentDescription {
-    Rgb radiance{1.0f};           ///< multiplies the image where there is one
-    std::filesystem::path image;  ///< lat-long, scene-linear; empty: constant
-    UpAxis up = UpAxis::Y;        ///< Y: the image's centre is towards -z; Z: towards +y
-    double rotation = 0;          ///< degrees about the up axis, counter-clockwise from above
-    bool visible = true;          ///< to camera rays
+    Rgb radiance{1.0f};                ///< multiplies the image where there is one
+    std::filesystem::path image = {};  ///< lat-long, scene-linear; empty: constant
+    UpAxis up = UpAxis::Y;             ///< Y: the image's centre is towards -z; Z: towards +y
+    double rotation = 0;               ///< degrees about the up axis, counter-clockwise from above
+    bool visible = true;               ///< to camera rays
     bool operator==(const EnvironmentDescription&) const = default;
 };
 struct PointDescription {
@@ -100,13 +108,14 @@ struct LookAt {
     bool operator==(const LookAt&) const = default;
 };
 
-/// Where a camera stands; or the world from the camera, a rigid motion, looking along -z with +y up.
+/// Where a camera stands; or the world from the camera, a rigid motion, looking along -z with +y
+/// up.
 using CameraPose = std::variant<LookAt, Affine3d>;
 
 struct CameraDescription {
     enum class Kind { Perspective, Orthographic } kind = Kind::Perspective;
     std::optional<CameraPose> pose;  ///< absent: chosen to frame the volumes
-    double fovY = 40;              ///< full vertical angle, degrees (perspective)
+    double fovY = 40;                ///< full vertical angle, degrees (perspective)
     std::optional<double> height;  ///< world units from bottom to top (orthographic); absent: fits
     bool operator==(const CameraDescription&) const = default;
 };

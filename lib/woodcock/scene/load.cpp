@@ -29,8 +29,8 @@ public:
         const VdbFile& vdb = file(volume.file);
         FoundGrid found = name.empty() ? findGrid(vdb, GridRole::Density) : findGrid(vdb, name);
         const bool albedo = purpose == Purpose::Albedo;
-        const auto key = std::tuple(volume.file, found.grid.uniqueName, volume.storage,
-                                    volume.repair, purpose);
+        const auto key =
+            std::tuple(volume.file, found.grid.uniqueName, volume.storage, volume.repair, purpose);
         if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
         note(std::move(found.note));
         const LoadOptions options{

@@ -22,16 +22,16 @@ struct LoadedField {
 
 /// What a volume's description names; the rest is null.
 struct LoadedVolume {
-    LoadedField density, albedo;   ///< of DensityCoefficients
-    LoadedField sigmaA, sigmaS;    ///< of SeparateCoefficients; one field where one grid is both
-    UpAxis up = UpAxis::Y;         ///< Z where the file's metadata say that Blender wrote it
+    LoadedField density, albedo;  ///< of DensityCoefficients
+    LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
+    UpAxis up = UpAxis::Y;        ///< Z where the file's metadata say that Blender wrote it
 };
 
 /// All that a scene reads from disk.
 struct LoadedScene {
-    std::vector<LoadedVolume> volumes;              ///< one for each volume of the description
-    std::vector<EnvironmentMap> environmentMaps;    ///< one for each light; empty for most
-    std::vector<std::string> notes;                 ///< what the user should know
+    std::vector<LoadedVolume> volumes;            ///< one for each volume of the description
+    std::vector<EnvironmentMap> environmentMaps;  ///< one for each light; empty for most
+    std::vector<std::string> notes;               ///< what the user should know
 };
 
 /// Reads the grids that the scene uses, each once, and its images. Throws Error{Input} that names

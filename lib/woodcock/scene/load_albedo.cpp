@@ -43,13 +43,14 @@ std::string limitAlbedo(const VdbFile& file, const GridListing& grid, const Load
     };
     Field limited = buildField(source, field.storage());
 
-    const std::string found = fmt::format("albedo grid '{}' in {} holds {} voxel{} above 1 (up to {})",
-                                          grid.uniqueName, file.path.string(), count.load(),
-                                          count == 1 ? "" : "s", largest);
+    const std::string found =
+        fmt::format("albedo grid '{}' in {} holds {} voxel{} above 1 (up to {})", grid.uniqueName,
+                    file.path.string(), count.load(), count == 1 ? "" : "s", largest);
     if (!options.repair)
-        throw inputError("{}; an albedo lies between 0 and 1: --repair (in a scene file: repair = "
-                         "true) sets them to 1",
-                         found);
+        throw inputError(
+            "{}; an albedo lies between 0 and 1: --repair (in a scene file: repair = "
+            "true) sets them to 1",
+            found);
     field = std::move(limited);
     return found + ": set to 1";
 }

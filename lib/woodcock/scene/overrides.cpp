@@ -95,7 +95,8 @@ private:
     toml::table& asTable(toml::node& node, const std::string& name, const std::string& key) const {
         if (toml::table* table = node.as_table()) return *table;
         if (node.is_array())
-            throw inputError("{}: {} is a list; say which, as in {}[0].{}", place_, name, name, key);
+            throw inputError("{}: {} is a list; say which, as in {}[0].{}", place_, name, name,
+                             key);
         throw inputError("{}: {} is a single value and has no key '{}'", place_, name, key);
     }
 
@@ -110,8 +111,8 @@ private:
     Error missing(const std::string& name, size_t size) const {
         if (name != "volume" && name != "light")
             return inputError("{}: {} has {} elements", place_, name, size);
-        const std::string owned = size == 0 ? "no " + name
-                                            : fmt::format("{} {}{}", size, name, size > 1 ? "s" : "");
+        const std::string owned =
+            size == 0 ? "no " + name : fmt::format("{} {}{}", size, name, size > 1 ? "s" : "");
         return inputError("{}: the scene has {}{}", place_, owned,
                           size > 1 ? fmt::format(", {}[0] to {}[{}]", name, name, size - 1) : "");
     }

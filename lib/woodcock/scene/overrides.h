@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <toml++/toml.h>
+#include <string>
 
 namespace woodcock {
 

@@ -29,8 +29,8 @@ std::string readSceneFile(const std::filesystem::path& file) {
         throw inputError("scene file '{}' is a directory", file.string());
     if (std::filesystem::is_regular_file(status) &&
         std::filesystem::file_size(file, error) > largestFile)
-        throw inputError("scene file '{}' is larger than {} MB: is it a scene file?",
-                         file.string(), largestFile >> 20);
+        throw inputError("scene file '{}' is larger than {} MB: is it a scene file?", file.string(),
+                         largestFile >> 20);
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
@@ -44,9 +44,10 @@ std::vector<SceneTable> tablesOf(const SceneTable& scene, const std::string& key
     const auto list = scene.find(key);
     if (!list) return tables;
     if (list->isTable())
-        throw list->error("is a single table; write [[{}]] in double brackets, as there can be "
-                          "several",
-                          key);
+        throw list->error(
+            "is a single table; write [[{}]] in double brackets, as there can be "
+            "several",
+            key);
     for (const SceneValue& element : list->elements(fmt::format("a list of [[{}]] tables", key)))
         tables.push_back(element.table());
     return tables;
@@ -59,17 +60,17 @@ SceneDescription readScene(const SceneTable& table, const std::string& name,
     for (const SceneTable& volume : tablesOf(table, "volume"))
         scene.volumes.push_back(parseVolume(volume, base));
     if (scene.volumes.empty())
-        throw inputError("{}: the scene has no [[volume]]; the least is\n"
-                         "[[volume]]\nfile = \"smoke.vdb\"",
-                         name);
+        throw inputError(
+            "{}: the scene has no [[volume]]; the least is\n"
+            "[[volume]]\nfile = \"smoke.vdb\"",
+            name);
     for (const SceneTable& light : tablesOf(table, "light"))
         scene.lights.push_back(parseLight(light, base));
     if (const auto render = table.find("render")) scene.render = parseRender(render->table());
     const double aspect = double(scene.render.width) / scene.render.height;
     if (const auto camera = table.find("camera"))
         scene.camera = parseCamera(camera->table(), aspect);
-    if (const auto output = table.find("output"))
-        scene.output = parseOutput(output->table(), base);
+    if (const auto output = table.find("output")) scene.output = parseOutput(output->table(), base);
     if (const auto ocio = table.find("ocio")) scene.ocio = ocio->path(base);
     return scene;
 }

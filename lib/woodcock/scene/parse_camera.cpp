@@ -18,9 +18,10 @@ LookAt parseLookAt(const SceneTable& table) {
     if (up) pose.up = up->vector();
     const Vec3d right = cross(normalize(view), normalize(pose.up));
     if (!(length(right) > 1e-9)) {
-        const std::string message = fmt::format("[{}, {}, {}] is no direction across the view; "
-                                                "give another up, such as [0, 0, 1]",
-                                                pose.up.x, pose.up.y, pose.up.z);
+        const std::string message = fmt::format(
+            "[{}, {}, {}] is no direction across the view; "
+            "give another up, such as [0, 0, 1]",
+            pose.up.x, pose.up.y, pose.up.z);
         throw up ? up->error("= {}", message) : target.error("needs an up: {}", message);
     }
     return pose;
@@ -34,8 +35,9 @@ Affine3d parsePose(const SceneValue& value) {
     for (size_t i = 0; i < 3; ++i) {
         const Vec3d a = pose.column[i] / size, b = pose.column[(i + 1) % 3] / size;
         if (std::abs(length(a) - 1) > tolerance || std::abs(dot(a, b)) > tolerance)
-            throw value.error("is sheared or scaled unevenly; a camera's axes must be orthogonal "
-                              "and equally long");
+            throw value.error(
+                "is sheared or scaled unevenly; a camera's axes must be orthogonal "
+                "and equally long");
     }
     if (pose.determinant() < 0)
         throw value.error("mirrors the picture (its determinant is negative)");
@@ -57,7 +59,7 @@ double parseFov(const SceneTable& table, double aspect, double otherwise) {
     const auto width = table.find("sensor_width"), height = table.find("sensor_height");
     const auto focal = table.find("focal_length");
     if (!focal && (width || height))
-        throw (width ? *width : *height).error("needs a focal_length beside it, in millimetres");
+        throw(width ? *width : *height).error("needs a focal_length beside it, in millimetres");
     if (!focal) return otherwise;
     if (!width && !height)
         throw focal->error("needs a sensor_height or sensor_width beside it, in millimetres");
@@ -65,9 +67,10 @@ double parseFov(const SceneTable& table, double aspect, double otherwise) {
         height ? height->number(positive) : width->number(positive) / aspect;
     const double fov = fovOf(sensorHeight, focal->number(positive));
     if (!(fov > 0 && fov < 180))
-        throw focal->error("and the sensor give a field of view of {} degrees; it must lie "
-                           "strictly between 0 and 180",
-                           fov);
+        throw focal->error(
+            "and the sensor give a field of view of {} degrees; it must lie "
+            "strictly between 0 and 180",
+            fov);
     return fov;
 }
 

@@ -9,7 +9,7 @@ namespace {
 UpAxis parseUp(const SceneTable& table) {
     const auto up = table.find("up");
     return up && up->choice("up axis", std::array<std::string, 2>{"y", "z"}) == 1 ? UpAxis::Z
-                                                                                : UpAxis::Y;
+                                                                                  : UpAxis::Y;
 }
 
 /// The way light travels from a sun at these angles (degrees). Azimuth 0 is -z (y up) or +y (z up),
@@ -35,8 +35,9 @@ Vec3d parseDirection(const SceneTable& table) {
     }
     const auto elevation = table.find("elevation");
     if (!elevation)
-        throw table.error("is a sun without direction or elevation; give direction = [0, -1, 0] "
-                          "(the way its light travels) or elevation = 40, azimuth = 120");
+        throw table.error(
+            "is a sun without direction or elevation; give direction = [0, -1, 0] "
+            "(the way its light travels) or elevation = 40, azimuth = 120");
     const auto azimuth = table.find("azimuth");
     return sunDirection(elevation->number({-90, 90}), azimuth ? azimuth->number() : 0,
                         parseUp(table));
@@ -53,8 +54,9 @@ SunDescription parseSun(const SceneTable& table) {
     if (const auto v = table.find("visible")) {
         sun.visible = v->flag();
         if (sun.visible && sun.angularDiameter == 0)
-            throw v->error("is true, but parallel rays cannot be seen; give the sun an "
-                           "angular_diameter, such as 0.53");
+            throw v->error(
+                "is true, but parallel rays cannot be seen; give the sun an "
+                "angular_diameter, such as 0.53");
     }
     return sun;
 }
@@ -109,10 +111,18 @@ LightDescription parseLight(const SceneTable& table, const std::filesystem::path
     LightDescription light;
     light.where = table.place();
     switch (table.need("type", "type = \"sun\"").choice("light type", types)) {
-        case 0: light.light = parseSun(table); break;
-        case 1: light.light = parsePoint(table); break;
-        case 2: light.light = parseSphere(table); break;
-        default: light.light = parseEnvironment(table, base); break;
+        case 0:
+            light.light = parseSun(table);
+            break;
+        case 1:
+            light.light = parsePoint(table);
+            break;
+        case 2:
+            light.light = parseSphere(table);
+            break;
+        default:
+            light.light = parseEnvironment(table, base);
+            break;
     }
     return light;
 }

@@ -42,9 +42,9 @@ std::filesystem::path parseOutputFile(const SceneValue& value, const std::filesy
 }  // namespace
 
 RenderDescription parseRender(const SceneTable& table) {
-    table.allowOnly({"resolution", "spp", "seed", "max_scatterings", "time_limit", "noise",
-                     "majorant_scale"},
-                    "[render]");
+    table.allowOnly(
+        {"resolution", "spp", "seed", "max_scatterings", "time_limit", "noise", "majorant_scale"},
+        "[render]");
     RenderDescription render;
     if (const auto v = table.find("resolution")) {
         const auto sides = v->elements("[width, height]", 2);

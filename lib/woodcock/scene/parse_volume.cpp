@@ -35,7 +35,7 @@ DensityCoefficients parseDensity(const SceneTable& table, const std::string& den
     DensityCoefficients c;
     c.density = density;
     if (const auto v = table.find("scale")) c.scale = v->colour(notNegative);
-    if (const auto v = table.find("albedo")) c.albedo = v->colour(zeroToOne);
+    if (const auto v = table.find("albedo")) c.albedo = v->exactColour(zeroToOne);
     if (const auto v = table.find("albedo_grid")) c.albedoGrid = v->text();
     return c;
 }
@@ -68,10 +68,10 @@ HomogeneousBox parseBox(const SceneTable& table, const SceneValue& box) {
     HomogeneousBox c;
     c.box = parseBounds(box);
     if (const auto scale = table.find("scale")) {
-        const Rgb sigmaT = scale->colour(notNegative);
         const auto albedo = table.find("albedo");
-        c.sigmaS = albedo ? albedo->colour(zeroToOne) * sigmaT : sigmaT;
-        c.sigmaA = sigmaT - c.sigmaS;
+        std::tie(c.sigmaA, c.sigmaS) =
+            splitByAlbedo(scale->colour(notNegative),
+                          albedo ? albedo->exactColour(zeroToOne) : Vec3d{1, 1, 1});
     } else if (table.has("albedo")) {
         throw table.need("albedo", "").error("needs a scale: sigma_t = scale in a box");
     } else if (!table.has("sigma_a") && !table.has("sigma_s")) {
@@ -101,7 +101,7 @@ Affine3d parseTransform(const SceneValue& value) {
 
 VolumeDescription parseVolume(const SceneTable& table, const std::filesystem::path& base) {
     table.allowOnly({"file", "box", "density", "scale", "albedo", "albedo_grid", "sigma_a",
-                      "sigma_s", "g", "transform", "matrix", "storage", "repair"},
+                     "sigma_s", "g", "transform", "matrix", "storage", "repair"},
                     "[[volume]]");
     for (const char* sigma : {"sigma_a", "sigma_s"})
         for (const char* other : {"scale", "albedo", "albedo_grid"})
@@ -116,8 +116,9 @@ VolumeDescription parseVolume(const SceneTable& table, const std::filesystem::pa
     } else {
         const auto file = table.find("file");
         if (!file)
-            throw table.error("has neither file nor box; give file = \"smoke.vdb\" or "
-                              "box = {{ min = [0, 0, 0], max = [1, 1, 1] }}");
+            throw table.error(
+                "has neither file nor box; give file = \"smoke.vdb\" or "
+                "box = {{ min = [0, 0, 0], max = [1, 1, 1] }}");
         volume.file = file->path(base);
         const auto density = table.find("density");
         const std::string name = density ? density->text() : std::string();

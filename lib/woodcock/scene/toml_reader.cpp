@@ -11,13 +11,20 @@ namespace {
 
 std::string_view typeName(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table: return "a table";
-        case toml::node_type::array: return "an array";
-        case toml::node_type::string: return "a string";
-        case toml::node_type::integer: return "an integer";
-        case toml::node_type::floating_point: return "a float";
-        case toml::node_type::boolean: return "a boolean";
-        default: return "a date or time";
+        case toml::node_type::table:
+            return "a table";
+        case toml::node_type::array:
+            return "an array";
+        case toml::node_type::string:
+            return "a string";
+        case toml::node_type::integer:
+            return "an integer";
+        case toml::node_type::floating_point:
+            return "a float";
+        case toml::node_type::boolean:
+            return "a boolean";
+        default:
+            return "a date or time";
     }
 }
 
@@ -111,13 +118,16 @@ Vec3d SceneValue::vector() const {
     return {v[0].number(), v[1].number(), v[2].number()};
 }
 
-Rgb SceneValue::colour(NumberRange range) const {
+Vec3d SceneValue::exactColour(NumberRange range) const {
     range.upper = std::min<double>(range.upper, std::numeric_limits<float>::max());
-    if (node_->is_number()) return Rgb(static_cast<float>(number(range)));
+    if (node_->is_number()) return Vec3d{1, 1, 1} * number(range);
     const auto v = elements("a number or [r, g, b]", 3);
-    return Rgb::map([&](int i) {
-        return static_cast<float>(v[static_cast<size_t>(i)].number(range));
-    });
+    return {v[0].number(range), v[1].number(range), v[2].number(range)};
+}
+
+Rgb SceneValue::colour(NumberRange range) const {
+    const Vec3d v = exactColour(range);
+    return Rgb::map([&](int i) { return static_cast<float>(v[i]); });
 }
 
 Affine3d SceneValue::affine() const {
@@ -128,9 +138,10 @@ Affine3d SceneValue::affine() const {
         for (size_t j = 0; j < 4; ++j) m[i][j] = row[j].number();
     }
     if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
-        throw error("is not affine: its last row is [{}, {}, {}, {}] instead of [0, 0, 0, 1] "
-                    "(translation stands in the last column)",
-                    m[3][0], m[3][1], m[3][2], m[3][3]);
+        throw error(
+            "is not affine: its last row is [{}, {}, {}, {}] instead of [0, 0, 0, 1] "
+            "(translation stands in the last column)",
+            m[3][0], m[3][1], m[3][2], m[3][3]);
     Affine3d map;
     for (size_t j = 0; j < 3; ++j) map.column[j] = {m[0][j], m[1][j], m[2][j]};
     map.translation = {m[0][3], m[1][3], m[2][3]};
@@ -193,8 +204,7 @@ void SceneTable::allowOnly(const std::vector<std::string>& known, std::string_vi
                          where, suggestName(first->str(), "known keys", known));
 }
 
-void SceneTable::exclude(std::string_view key, std::string_view other,
-                         std::string_view why) const {
+void SceneTable::exclude(std::string_view key, std::string_view other, std::string_view why) const {
     if (has(key) && has(other))
         throw find(key)->error("stands beside {}; give one of them: {}", other, why);
 }

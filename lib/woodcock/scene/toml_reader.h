@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <toml++/toml.h>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "woodcock/base/affine.h"
@@ -54,7 +54,8 @@ public:
     std::string text() const;  ///< not empty
     Vec3d vector() const;
     Rgb colour(NumberRange range) const;  ///< from a number or [r, g, b]
-    Affine3d affine() const;        ///< from four rows of four, regular
+    Vec3d exactColour(NumberRange range) const;
+    Affine3d affine() const;              ///< from four rows of four, regular
     /// With ~ and variables expanded, relative to `base` (an override: to the working directory).
     std::filesystem::path path(const std::filesystem::path& base) const;
     /// The index in `known` of this text; `what` names the kind of thing ("light type").
@@ -92,7 +93,8 @@ public:
     std::optional<SceneValue> find(std::string_view key) const;
     /// Throws when there is no such key; `example` shows how to give it.
     SceneValue need(std::string_view key, std::string_view example) const;
-    /// Throws on the first key of the file that is not `known`; `where` names the table to the user.
+    /// Throws on the first key of the file that is not `known`; `where` names the table to the
+    /// user.
     void allowOnly(const std::vector<std::string>& known, std::string_view where) const;
     /// Throws when both keys are there.
     void exclude(std::string_view key, std::string_view other, std::string_view why) const;

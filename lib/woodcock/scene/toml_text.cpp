@@ -28,6 +28,10 @@ std::string tomlColour(Rgb v) {
     return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
 }
 
+std::string tomlColour(Vec3d v) {
+    return v.x == v.y && v.x == v.z ? tomlNumber(v.x) : tomlVector(v);
+}
+
 std::string tomlMatrix(const Affine3d& m) {
     std::string rows = "[";
     for (int i = 0; i < 3; ++i)

@@ -11,8 +11,7 @@ namespace woodcock {
 /// The scene file that parses back to an equal description; what is at its default is left out.
 /// Relative paths of `scene` count from the working directory; the text is made to lie in
 /// `directory`. Throws Error{Usage} where TOML cannot say it (a seed of 2^63 or more).
-std::string writeScene(const SceneDescription& scene,
-                       const std::filesystem::path& directory = ".");
+std::string writeScene(const SceneDescription& scene, const std::filesystem::path& directory = ".");
 
 /// One section of it, with its heading.
 std::string writeCamera(const CameraDescription& camera);

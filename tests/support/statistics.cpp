@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "woodcock/base/vec.h"
+
+namespace woodcock::test {
+
+namespace {
+
+/// Regularised upper incomplete gamma function: the series of its complement for small x, Lentz's
+/// continued fraction for large.
+double upperGamma(double a, double x) {
+    if (x <= 0) return 1;
+    const double factor = std::exp(-x + a * std::log(x) - std::lgamma(a));
+    if (x < a + 1) {
+        double term = 1 / a, sum = term;
+        for (int n = 1; n < 10000 && term > sum * 1e-15; ++n) sum += term *= x / (a + n);
+        return 1 - factor * sum;
+    }
+    double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;
+    for (int n = 1; n < 10000; ++n) {
+        const double an = -n * (n - a);
+        b += 2;
+        d = 1 / (an * d + b);
+        c = b + an / c;
+        h *= d * c;
+        if (std::abs(d * c - 1) < 1e-14) break;
+    }
+    return factor * h;
+}
+
+}  // namespace
+
+void expectMean(const Moments& samples, double expected, double largestError,
+                const std::string& what) {
+    const double error = samples.standardError();
+    EXPECT_LE(std::abs(samples.mean() - expected), 4 * error + 1e-6 * std::abs(expected))
+        << what << ": mean " << samples.mean() << " +- " << error << ", expected " << expected;
+    EXPECT_LE(error, largestError) << what << ": too noisy to mean anything";
+}
+
+double chiSquareProbability(const std::vector<double>& counts, const std::vector<double>& expected) {
+    double statistic = 0, pooledCount = 0, pooledExpected = 0;
+    int cells = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (expected[i] <= 0) {
+            if (counts[i] > 0) return 0;
+            continue;
+        }
+        pooledCount += counts[i], pooledExpected += expected[i];
+        if (pooledExpected < 10 && i + 1 < counts.size()) continue;
+        const double d = pooledCount - pooledExpected;
+        statistic += d * d / pooledExpected;
+        ++cells;
+        pooledCount = pooledExpected = 0;
+    }
+    return cells > 1 ? upperGamma((cells - 1) / 2.0, statistic / 2) : 1;
+}
+
+std::vector<std::pair<double, double>> gaussLegendre(int n) {
+    std::vector<std::pair<double, double>> rule;
+    for (int i = 0; i < n; ++i) {
+        double x = std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
+        for (int newton = 0; newton < 20; ++newton) {
+            double p = 1, before = 0;
+            for (int k = 1; k <= n; ++k)
+                before = std::exchange(p, ((2 * k - 1) * x * p - (k - 1) * before) / k);
+            slope = n * (x * p - before) / (x * x - 1);
+            x -= p / slope;
+        }
+        rule.emplace_back(x, 2 / ((1 - x * x) * slope * slope));
+    }
+    return rule;
+}
+
+}  // namespace woodcock::test
