@@ -62,15 +62,16 @@ void expectUncorrelated(A&& a, B&& b, const char* what) {
     for (std::size_t d = 0; d < 4; ++d) {
         Moments product;
         for (int y = 0; y < 200; ++y)
-            for (int x = 0; x < 200; ++x)
-                product.add(12 * (a(x, y)[d] - 0.5) * (b(x, y)[d] - 0.5));
+            for (int x = 0; x < 200; ++x) product.add(12 * (a(x, y)[d] - 0.5) * (b(x, y)[d] - 0.5));
         expectMean(product, 0, 0.006, what);
     }
 }
 
 TEST(SampleSequence, PixelsSamplesAndSetsAreUncorrelated) {
     const auto draw = [](int dx, int dy, std::uint32_t sample, std::uint32_t set) {
-        return [=](int x, int y) { return SampleSequence(3, 2 * x + dx, 2 * y + dy, sample).draw(set); };
+        return [=](int x, int y) {
+            return SampleSequence(3, 2 * x + dx, 2 * y + dy, sample).draw(set);
+        };
     };
     expectUncorrelated(draw(0, 0, 0, 0), draw(1, 0, 0, 0), "a pixel and the next one");
     expectUncorrelated(draw(0, 0, 0, 0), draw(0, 1, 0, 0), "a pixel and the one below");

@@ -10,8 +10,8 @@ namespace woodcock::test {
 namespace {
 
 void expectNear(Vec3d a, Vec3d b, double tolerance) {
-    EXPECT_LE(length(a - b), tolerance) << a.x << " " << a.y << " " << a.z << ", expected " << b.x
-                                        << " " << b.y << " " << b.z;
+    EXPECT_LE(length(a - b), tolerance)
+        << a.x << " " << a.y << " " << a.z << ", expected " << b.x << " " << b.y << " " << b.z;
 }
 
 Vec3d direction(RandomStream& random) {
@@ -20,8 +20,8 @@ Vec3d direction(RandomStream& random) {
 }
 
 TEST(Vec, FloorIsFloorOnBothSidesOfZero) {
-    for (double v : {0.0, -0.0, 0.5, -0.5, 1.0, -1.0, -1e-300, 0x1p-1074, -7.999999999, 2147483647.0,
-                     -2147483648.0, 1e9 + 0.25, -1e9 - 0.25})
+    for (double v : {0.0, -0.0, 0.5, -0.5, 1.0, -1.0, -1e-300, 0x1p-1074, -7.999999999,
+                     2147483647.0, -2147483648.0, 1e9 + 0.25, -1e9 - 0.25})
         EXPECT_EQ(floorToInt(v), static_cast<int>(std::floor(v))) << v;
 }
 
@@ -34,8 +34,13 @@ TEST(Vec, LengthNeitherOverflowsNorUnderflows) {
 
 TEST(Vec, BasisIsOrthonormalAndRightHandedEverywhere) {
     RandomStream random(1);
-    std::vector<Vec3d> normals{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {1, 0, -0.0},
-                               normalize(Vec3d{1e-9, 1e-9, -1}), normalize(Vec3d{1e-17, 0, -1})};
+    std::vector<Vec3d> normals{{0, 0, 1},
+                               {0, 0, -1},
+                               {1, 0, 0},
+                               {0, -1, 0},
+                               {1, 0, -0.0},
+                               normalize(Vec3d{1e-9, 1e-9, -1}),
+                               normalize(Vec3d{1e-17, 0, -1})};
     for (int i = 0; i < 1000; ++i) normals.push_back(direction(random));
     for (Vec3d n : normals) {
         Vec3d s, t;

@@ -7,8 +7,8 @@ namespace woodcock::test {
 namespace {
 
 void expectNear(Vec3d a, Vec3d b) {
-    EXPECT_LE(length(a - b), 1e-13) << a.x << " " << a.y << " " << a.z << ", expected " << b.x << " "
-                                    << b.y << " " << b.z;
+    EXPECT_LE(length(a - b), 1e-13)
+        << a.x << " " << a.y << " " << a.z << ", expected " << b.x << " " << b.y << " " << b.z;
 }
 
 TEST(Camera, LooksAlongMinusZThroughTheCentre) {
@@ -25,7 +25,8 @@ TEST(Camera, CornersOfAPerspectiveLieAtHalfTheFieldOfView) {
     expectNear(camera.ray(64, 0, 64, 36).direction, normalize(Vec3d{right, up, -1}));
     expectNear(camera.ray(64, 36, 64, 36).direction, normalize(Vec3d{right, -up, -1}));
     expectNear(camera.ray(32, 0, 64, 36).origin, {1, 2, 3});
-    const Vec3d top = camera.ray(32, 0, 64, 36).direction, bottom = camera.ray(32, 36, 64, 36).direction;
+    const Vec3d top = camera.ray(32, 0, 64, 36).direction,
+                bottom = camera.ray(32, 36, 64, 36).direction;
     EXPECT_NEAR(std::acos(dot(top, bottom)) * 180 / pi, 60, 1e-10);
 }
 

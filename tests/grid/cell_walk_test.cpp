@@ -23,7 +23,8 @@ protected:
     /// A cell of this range must lie within `slack` voxels of p.
     static bool hasCell(const Volume& v, Vec3d p, double slack, Range range) {
         for (int i = 0; i < 8; ++i) {
-            const Vec3d shift{i & 1 ? slack : -slack, i & 2 ? slack : -slack, i & 4 ? slack : -slack};
+            const Vec3d shift{i & 1 ? slack : -slack, i & 2 ? slack : -slack,
+                              i & 4 ? slack : -slack};
             if (v.majorants.find(floorToInt(p + shift)).range == range) return true;
         }
         return false;
@@ -90,7 +91,8 @@ TEST_F(CellWalks, RandomRaysInAnyDirection) {
     for (const Volume& v : volumes()) {
         int hits = 0;
         for (int i = 0; i < 2000; ++i) {
-            const Vec3d through = any(random, i % 2 ? 60 : 8000), from = through + any(random, 20000);
+            const Vec3d through = any(random, i % 2 ? 60 : 8000),
+                        from = through + any(random, 20000);
             hits += walk(v, {from, normalize(through - from)}) > 0;
         }
         EXPECT_GT(hits, 300);
@@ -139,7 +141,8 @@ TEST_F(CellWalks, SupportBoundaryIsGrazedWithoutHarm) {
     for (const Volume& v : volumes()) {
         const Box3d& s = v.field.support();
         for (int i = 0; i < 8; ++i)
-            for (Vec3d d : {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{1, 1, 0}, Vec3d{-1, 0.5, 0.25}}) {
+            for (Vec3d d :
+                 {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{1, 1, 0}, Vec3d{-1, 0.5, 0.25}}) {
                 walk(v, {s.corner(i), d});
                 walk(v, {s.corner(i) - d * 30000.0, d});
             }

@@ -15,8 +15,9 @@ const std::array<float, 3> zero{}, haze{0.25f, 0.125f, 0.5f};
 
 /// Both table kinds, one and three channels, with and without a background.
 std::vector<PlainGrid> grids() {
-    return {mixedGrid(1),     mixedGrid(2, 1, haze),     mixedGrid(3, 3),     mixedGrid(4, 3, haze),
-            scatteredGrid(5), scatteredGrid(6, 1, haze), scatteredGrid(7, 3), scatteredGrid(8, 3, haze)};
+    return {mixedGrid(1),          mixedGrid(2, 1, haze),    mixedGrid(3, 3),
+            mixedGrid(4, 3, haze), scatteredGrid(5),         scatteredGrid(6, 1, haze),
+            scatteredGrid(7, 3),   scatteredGrid(8, 3, haze)};
 }
 
 Vec3d pointIn(const Box3d& box, RandomStream& random) {
@@ -47,7 +48,8 @@ TEST(Field, EveryVoxelIsWhatTheSourceSays) {
             EXPECT_EQ(field.brickCount(), grid.leaves().size());
             const auto expectVoxel = [&](Vec3i v) {
                 for (int c = 0; c < grid.channels(); ++c)
-                    ASSERT_EQ(field.voxel(v, c), grid.voxel(v, c)) << v.x << " " << v.y << " " << v.z;
+                    ASSERT_EQ(field.voxel(v, c), grid.voxel(v, c))
+                        << v.x << " " << v.y << " " << v.z;
             };
             for (Vec3i leaf : grid.leaves())
                 for (int i = 0; i < 1000; ++i)
@@ -80,8 +82,9 @@ TEST(Field, EveryFiniteHalfIsReadExactly) {
     for (int sign : {1, -1})
         for (int exponent = 0; exponent < 31; ++exponent)
             for (int digits = 0; digits < 1024; ++digits)
-                values.push_back(static_cast<float>(
-                    sign * std::ldexp(exponent ? 1024 + digits : digits, std::max(exponent, 1) - 25)));
+                values.push_back(
+                    static_cast<float>(sign * std::ldexp(exponent ? 1024 + digits : digits,
+                                                         std::max(exponent, 1) - 25)));
     ASSERT_EQ(values.size(), 63488u);  // 2^16 without the infinities and NaNs
     PlainGrid grid;
     for (int leaf = 0; leaf < 124; ++leaf)
@@ -192,7 +195,8 @@ TEST(Field, OneTapHasTheMeanOfTrilinear) {
                     taps[static_cast<std::size_t>(c)].add(field.stochastic(p, bits, c));
             }
             for (int c = 0; c < grid.channels(); ++c)
-                expectMean(taps[static_cast<std::size_t>(c)], grid.trilinear(p, c), 0.01, "one tap");
+                expectMean(taps[static_cast<std::size_t>(c)], grid.trilinear(p, c), 0.01,
+                           "one tap");
         }
     }
 }
@@ -212,7 +216,9 @@ PlainGrid ball(int leaves) {
         const Vec3i b{i % leaves, i / leaves % leaves, i / leaves / leaves};
         const Vec3i d = b * 2 - Vec3i{1, 1, 1} * (leaves - 1);
         if (dot(d, d) <= leaves * leaves)
-            grid.setLeaf(b * 8, [](Vec3i v, int) { return static_cast<float>((v.x * 5 + v.y * 3 + v.z) & 31); });
+            grid.setLeaf(b * 8, [](Vec3i v, int) {
+                return static_cast<float>((v.x * 5 + v.y * 3 + v.z) & 31);
+            });
     }
     return grid;
 }

@@ -77,7 +77,8 @@ TEST(Majorants, AreAsTightAsTheirCellsAllow) {
             for (Vec3d p : where) {
                 const Vec3i v = floorToInt(p);
                 const MajorantGrid::Cell cell = majorants.find(v);
-                if (cell.log2Size > 4 || field.findBlock({v.x >> 3, v.y >> 3, v.z >> 3}).log2Size > 3)
+                if (cell.log2Size > 4 ||
+                    field.findBlock({v.x >> 3, v.y >> 3, v.z >> 3}).log2Size > 3)
                     continue;
                 ++cellsOfSize[static_cast<std::size_t>(cell.log2Size)];
                 const Vec3i low = corner(v, cell.log2Size);
@@ -106,7 +107,9 @@ TEST(Majorants, CellsAreWholeCubes) {
             const Vec3i low = corner(floorToInt(p), cell.log2Size);
             for (int i = 0; i < 20; ++i) {
                 const double n = 1 << cell.log2Size;
-                const Vec3i v = low + floorToInt(Vec3d{random.uniform(), random.uniform(), random.uniform()} * n);
+                const Vec3i v =
+                    low +
+                    floorToInt(Vec3d{random.uniform(), random.uniform(), random.uniform()} * n);
                 if (!field.support().contains(v.as<double>())) continue;
                 ASSERT_EQ(majorants.find(v).log2Size, cell.log2Size);
                 ASSERT_EQ(majorants.find(v).range, cell.range);
@@ -132,8 +135,10 @@ TEST(Majorants, StatisticsOfAFlatCubeAreKnown) {
     PlainGrid grid;
     grid.setTile({0, 0, 0}, 128, {2});
     const Field field = grid.field();
-    const MajorantStatistics tight = majorantStatistics(field, MajorantGrid(field, {1, 1, 1}), 4000);
-    const MajorantStatistics loose = majorantStatistics(field, MajorantGrid(field, {1, 3, 1}), 4000);
+    const MajorantStatistics tight =
+        majorantStatistics(field, MajorantGrid(field, {1, 1, 1}), 4000);
+    const MajorantStatistics loose =
+        majorantStatistics(field, MajorantGrid(field, {1, 3, 1}), 4000);
     // Flat but for the ramps of one voxel at its faces.
     EXPECT_GE(tight.majorantOverMean, 1);
     EXPECT_LE(tight.majorantOverMean, 1.1);

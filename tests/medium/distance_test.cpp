@@ -17,8 +17,9 @@ struct Settings {
 };
 
 template <int N>
-std::vector<DistanceQuery<N>> track(const Medium& medium, const TestRay& ray, Spectrum<N> throughput,
-                                    const Settings& settings, std::uint64_t seed) {
+std::vector<DistanceQuery<N>> track(const Medium& medium, const TestRay& ray,
+                                    Spectrum<N> throughput, const Settings& settings,
+                                    std::uint64_t seed) {
     std::vector<DistanceQuery<N>> queries;
     for (int i = 0; i < settings.count; ++i) {
         RandomStream random(hashOf(seed, i));
@@ -75,8 +76,8 @@ TEST(Distance, EscapeAndScatteringAreExactInTheMean) {
 TEST(Distance, MajorantsChangeNoMean) {
     for (double scale : {2.0, 8.0})
         for (int smallestLog2 : {1, 3, 6}) {
-            expectExact<1>(hazyMedium(), hazyMedium().medium(scale, smallestLog2), Spectrum<1>(1), {},
-                           "hazy");
+            expectExact<1>(hazyMedium(), hazyMedium().medium(scale, smallestLog2), Spectrum<1>(1),
+                           {}, "hazy");
             expectExact<3>(chromaticMedium(), chromaticMedium().medium(scale, smallestLog2),
                            {1, 1, 1}, {}, "chromatic");
         }
@@ -88,7 +89,8 @@ TEST(Distance, RouletteChangesNoMean) {
         expectExact<1>(greyMedium(), greyMedium().medium(), Spectrum<1>(0.6f), settings, "grey");
         expectExact<3>(chromaticMedium(), chromaticMedium().medium(), {0.6f, 0.2f, 0.05f}, settings,
                        "chromatic");
-        expectExact<3>(tintedGlass(), tintedGlass().medium(), {0.1f, 0.2f, 0.6f}, settings, "glass");
+        expectExact<3>(tintedGlass(), tintedGlass().medium(), {0.1f, 0.2f, 0.6f}, settings,
+                       "glass");
     }
 }
 
@@ -98,9 +100,11 @@ TEST(Distance, RouletteIsFairToThroughputThatFallsAndRises) {
     PlainGrid cube;
     cube.setTile({0, 0, 0}, 8, {1});
     const auto slab = [&](double x, Rgb absorption, Rgb scattering) {
-        return PlainPart{.grid = cube, .worldFromIndex = Affine3d::translate({x, 0, 0}) *
-                                                         Affine3d::scale({0.125, 1, 1}),
-                         .absorption = absorption, .scattering = scattering};
+        return PlainPart{
+            .grid = cube,
+            .worldFromIndex = Affine3d::translate({x, 0, 0}) * Affine3d::scale({0.125, 1, 1}),
+            .absorption = absorption,
+            .scattering = scattering};
     };
     const PlainMedium plain({slab(0, Rgb(1.5f), Rgb(0.0f)), slab(2, Rgb(0.0f), {3, 0.03f, 0.03f}),
                              slab(4, Rgb(0.0f), {0.03f, 3, 0.03f})});
@@ -110,10 +114,10 @@ TEST(Distance, RouletteIsFairToThroughputThatFallsAndRises) {
         const auto queries =
             track<3>(medium, ray, {0.3f, 0.3f, 0.3f}, {.roulette = threshold, .count = 200000}, 1);
         for (int part = -1; part < 3; ++part) {
-            const Vec3d share =
-                part < 0 ? plain.transmittance(ray.origin, ray.direction, ray.tMax)
-                         : plain.scattered(plain.parts()[static_cast<std::size_t>(part)], ray.origin,
-                                           ray.direction, ray.tMax);
+            const Vec3d share = part < 0
+                                    ? plain.transmittance(ray.origin, ray.direction, ray.tMax)
+                                    : plain.scattered(plain.parts()[static_cast<std::size_t>(part)],
+                                                      ray.origin, ray.direction, ray.tMax);
             for (int c = 0; c < 3; ++c) {
                 Moments m;
                 for (const auto& q : queries) m.add(q.part == part ? q.throughput[c] : 0);
@@ -132,7 +136,8 @@ TEST(Distance, OpticalDepthToTheEventIsExponential) {
         constexpr int n = 20000, bins = 20;
         std::vector<double> counts(bins + 1), expected(bins + 1, n * (1 - escape) / bins);
         expected[bins] = n * escape;
-        for (const auto& q : track<1>(medium, ray, Spectrum<1>(1), {.absorptionToo = true, .count = n}, 2)) {
+        for (const auto& q :
+             track<1>(medium, ray, Spectrum<1>(1), {.absorptionToo = true, .count = n}, 2)) {
             EXPECT_EQ(q.throughput[0], 1);
             if (q.part < 0) {
                 EXPECT_EQ(q.t, ray.tMax);
@@ -141,14 +146,17 @@ TEST(Distance, OpticalDepthToTheEventIsExponential) {
             }
             const double u =  // even between the escape probability and 1
                 std::exp(-double{exactOpticalDepth(medium, ray.origin, ray.direction, 0, q.t)[0]});
-            ++counts[static_cast<std::size_t>(std::clamp((1 - u) / (1 - escape) * bins, 0.0, bins - 1e-9))];
+            ++counts[static_cast<std::size_t>(
+                std::clamp((1 - u) / (1 - escape) * bins, 0.0, bins - 1e-9))];
         }
         EXPECT_GT(chiSquareProbability(counts, expected), leastProbability);
     }
 }
 
 TEST(Distance, FlatMediaHaveNoNoiseInTheirWeights) {
-    const PlainMedium plain({{.grid = {}, .box = {{0, 0, 0}, {1, 1, 1}}, .absorption = Rgb(1.0f),
+    const PlainMedium plain({{.grid = {},
+                              .box = {{0, 0, 0}, {1, 1, 1}},
+                              .absorption = Rgb(1.0f),
                               .scattering = Rgb(3.0f)}});
     const TestRay ray{{-1, 0.5, 0.5}, {1, 0, 0}, infinity};
     Moments events;
@@ -173,13 +181,16 @@ TEST(Distance, AlbedoOneLosesNothingAndAlbedoZeroScattersNever) {
 
 TEST(Distance, PartsAreChosenInProportionToScattering) {
     const Box3d box{{0, 0, 0}, {2, 2, 2}};
-    const PlainMedium plain({{.grid = {}, .box = box, .scattering = Rgb(1.0f), .g = 0.8},
-                             {.grid = {}, .box = box, .scattering = Rgb(3.0f), .g = -0.5},
-                             {.grid = {}, .box = box, .absorption = Rgb(1.0f), .scattering = Rgb(0.0f)}});
+    const PlainMedium plain(
+        {{.grid = {}, .box = box, .scattering = Rgb(1.0f), .g = 0.8},
+         {.grid = {}, .box = box, .scattering = Rgb(3.0f), .g = -0.5},
+         {.grid = {}, .box = box, .absorption = Rgb(1.0f), .scattering = Rgb(0.0f)}});
     const Medium medium = plain.medium();
     std::array<Moments, 3> chosen;
-    for (const auto& q : track<1>(medium, {{0, 1, 1}, {1, 0, 0}, 2}, Spectrum<1>(1), {.count = 50000}, 6))
-        for (int i = 0; i < 3; ++i) chosen[static_cast<std::size_t>(i)].add(q.part == i ? q.throughput[0] : 0);
+    for (const auto& q :
+         track<1>(medium, {{0, 1, 1}, {1, 0, 0}, 2}, Spectrum<1>(1), {.count = 50000}, 6))
+        for (int i = 0; i < 3; ++i)
+            chosen[static_cast<std::size_t>(i)].add(q.part == i ? q.throughput[0] : 0);
     const double interacts = 1 - std::exp(-10.0);
     expectMean(chosen[0], interacts / 5, 0.002, "first");
     expectMean(chosen[1], interacts * 3 / 5, 0.003, "second");
@@ -191,17 +202,22 @@ TEST(Distance, AnyOpticalDepthIsFiniteFastAndRight) {
         for (float albedo : {0.0f, 0.5f, 1.0f}) {
             PlainGrid grid;
             for (int x = 0; x < 8; ++x)
-                grid.setLeaf({x * 8, 0, 0}, [&](Vec3i v, int) { return static_cast<float>(v.x % 3); });
+                grid.setLeaf({x * 8, 0, 0},
+                             [&](Vec3i v, int) { return static_cast<float>(v.x % 3); });
             const auto sigma = static_cast<float>(depth / 64);
-            const PlainMedium plain({{.grid = grid, .absorption = Rgb(sigma * (1 - albedo)),
+            const PlainMedium plain({{.grid = grid,
+                                      .absorption = Rgb(sigma * (1 - albedo)),
                                       .scattering = Rgb(sigma * albedo)}});
             Moments weight;
             const TestRay ray{{-5, 3.5, 3.5}, {1, 0, 0}, infinity};
-            for (const auto& q : track<1>(plain.medium(), ray, Spectrum<1>(1), {.count = 2000}, 7)) {
-                ASSERT_TRUE(q.throughput.isFinite() && q.throughput[0] >= 0 && q.throughput[0] <= 1);
+            for (const auto& q :
+                 track<1>(plain.medium(), ray, Spectrum<1>(1), {.count = 2000}, 7)) {
+                ASSERT_TRUE(q.throughput.isFinite() && q.throughput[0] >= 0 &&
+                            q.throughput[0] <= 1);
                 weight.add(q.throughput[0]);
             }
-            const double expected = albedo + (1 - albedo) * plain.transmittance(ray.origin, ray.direction, 100).x;
+            const double expected =
+                albedo + (1 - albedo) * plain.transmittance(ray.origin, ray.direction, 100).x;
             const double rare = depth < 1 ? 2 * depth : 0;  // too few to make an error of
             EXPECT_NEAR(weight.mean(), expected, 4 * weight.standardError() + 2e-7 + rare);
             EXPECT_LE(weight.standardError(), 0.01);
@@ -211,8 +227,10 @@ TEST(Distance, AnyOpticalDepthIsFiniteFastAndRight) {
 TEST(Distance, AThousandPartsAdd) {
     std::vector<PlainPart> parts;
     for (int i = 0; i < 1000; ++i)
-        parts.push_back({.grid = {}, .box = {{0.01 * i, -9, -9}, {5 + 0.01 * i, 9, 9}},
-                         .absorption = Rgb(0.00005f), .scattering = Rgb(0.00015f)});
+        parts.push_back({.grid = {},
+                         .box = {{0.01 * i, -9, -9}, {5 + 0.01 * i, 9, 9}},
+                         .absorption = Rgb(0.00005f),
+                         .scattering = Rgb(0.00015f)});
     const PlainMedium plain(parts);
     const TestRay ray{{-1, 0, 0}, {1, 0, 0}, infinity};
     const double transmittance = std::exp(-1000 * 5 * 0.0002);
@@ -229,7 +247,8 @@ TEST(Distance, WhereThereIsNothingThePathGoesOnUnchanged) {
     const TestRay ray{{0, 0, 0}, {1, 0, 0}, infinity};
     const Medium empty = PlainMedium({{.grid = PlainGrid()}}).medium();
     for (const Medium& medium : {Medium{}, empty})
-        for (const auto& q : track<1>(medium, ray, Spectrum<1>(0.01f), {.roulette = 1, .count = 100}, 9)) {
+        for (const auto& q :
+             track<1>(medium, ray, Spectrum<1>(0.01f), {.roulette = 1, .count = 100}, 9)) {
             EXPECT_EQ(q.part, -1);
             EXPECT_EQ(q.t, infinity);
             EXPECT_EQ(q.throughput[0], 0.01f);
@@ -239,10 +258,13 @@ TEST(Distance, WhereThereIsNothingThePathGoesOnUnchanged) {
 TEST(Distance, AnAlbedoGridIsReadFarFromItsVoxels) {
     PlainGrid albedo(3, {0, 0, 0});
     albedo.setLeaf({0, 0, 0}, [](Vec3i, int) { return 1.0f; });
-    const PlainMedium plain({{.grid = {}, .box = {{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}},
-                              .scattering = Rgb(1e-5f), .albedo = albedo,
+    const PlainMedium plain({{.grid = {},
+                              .box = {{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}},
+                              .scattering = Rgb(1e-5f),
+                              .albedo = albedo,
                               .albedoWorldFromIndex = Affine3d::scale({1e-6, 1e-6, 1e-6})}});
-    for (const auto& q : track<1>(plain.medium(), {{-9e5, 1, 1}, {1, 0, 0}, infinity}, Spectrum<1>(1), {}, 10))
+    for (const auto& q :
+         track<1>(plain.medium(), {{-9e5, 1, 1}, {1, 0, 0}, infinity}, Spectrum<1>(1), {}, 10))
         ASSERT_EQ(q.part, -1);  // black all the way
 }
 

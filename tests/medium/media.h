@@ -14,7 +14,8 @@ inline Affine3d awkwardTransform() {
 }
 
 inline PlainMedium greyMedium() {
-    return PlainMedium({{.grid = mixedGrid(1), .absorption = Rgb(0.05f), .scattering = Rgb(0.15f)}});
+    return PlainMedium(
+        {{.grid = mixedGrid(1), .absorption = Rgb(0.05f), .scattering = Rgb(0.15f)}});
 }
 
 /// A sparse table, large tiles, a background that never ends, awkward voxels.
@@ -49,7 +50,8 @@ inline PlainMedium chromaticMedium() {
 
 /// Only absorbs, and differently in each channel.
 inline PlainMedium tintedGlass() {
-    return PlainMedium({{.grid = mixedGrid(6, 3), .absorption = {0.4f, 0.1f, 0.02f}, .scattering = Rgb(0.0f)}});
+    return PlainMedium(
+        {{.grid = mixedGrid(6, 3), .absorption = {0.4f, 0.1f, 0.02f}, .scattering = Rgb(0.0f)}});
 }
 
 }  // namespace woodcock::test

@@ -16,8 +16,10 @@ TEST(ExactOpticalDepth, AgreesWithBruteForce) {
             int deep = 0;
             for (const TestRay& ray : testRays(medium, 60, 3))
                 for (double t0 : {0.0, 0.3 * ray.tMax}) {
-                    const Rgb depth = exactOpticalDepth(medium, ray.origin, ray.direction, t0, ray.tMax);
-                    const Vec3d expected = plain.opticalDepth(ray.origin, ray.direction, t0, ray.tMax);
+                    const Rgb depth =
+                        exactOpticalDepth(medium, ray.origin, ray.direction, t0, ray.tMax);
+                    const Vec3d expected =
+                        plain.opticalDepth(ray.origin, ray.direction, t0, ray.tMax);
                     for (int c = 0; c < 3; ++c)
                         EXPECT_NEAR(depth[c], expected[c], 1e-6 * (1 + expected[c]));
                     deep += expected.x > 0.5;
@@ -40,7 +42,8 @@ TEST(ExactOpticalDepth, OfAnEndlessChromaticBackgroundIsTheBackground) {
         PlainMedium({{.grid = mixedGrid(1, 3, haze), .scattering = {1, 2, 3}}}).medium();
     const Rgb depth = exactOpticalDepth(medium, {1e4, 0, 0}, {1, 0, 0}, 0, 1e8);
     for (int c = 0; c < 3; ++c)
-        EXPECT_FLOAT_EQ(depth[c], 1e8f * haze[static_cast<std::size_t>(c)] * static_cast<float>(c + 1));
+        EXPECT_FLOAT_EQ(depth[c],
+                        1e8f * haze[static_cast<std::size_t>(c)] * static_cast<float>(c + 1));
     const Rgb endless = exactOpticalDepth(medium, {0, 0, 0}, {1, 0, 0}, 0, infinity);
     for (int c = 0; c < 3; ++c) EXPECT_EQ(endless[c], static_cast<float>(infinity));
 }
@@ -53,8 +56,8 @@ TEST(ExactOpticalDepth, FarOriginsAndExtremeVoxels) {
                                   .worldFromIndex = Affine3d::scale({voxel, voxel, voxel}),
                                   .scattering = Rgb(static_cast<float>(1 / voxel))}});
         for (double far : {10.0, 1e7}) {
-            const Rgb depth = exactOpticalDepth(plain.medium(), {-far * voxel, 50 * voxel, 50 * voxel},
-                                                {1, 0, 0}, 0, infinity);
+            const Rgb depth = exactOpticalDepth(
+                plain.medium(), {-far * voxel, 50 * voxel, 50 * voxel}, {1, 0, 0}, 0, infinity);
             EXPECT_NEAR(depth[0], 128, 1e-4);
         }
     }

@@ -73,8 +73,9 @@ TEST(PartWalk, AnEndlessBackgroundReachesInfinity) {
 }
 
 TEST(PartWalk, AHomogeneousBoxIsOneSegment) {
-    const PlainMedium plain(
-        {{.grid = {}, .box = {{-1, -1, -1}, {1, 1, 1}}, .worldFromIndex = Affine3d::scale({1e10, 1e10, 1e10})}});
+    const PlainMedium plain({{.grid = {},
+                              .box = {{-1, -1, -1}, {1, 1, 1}},
+                              .worldFromIndex = Affine3d::scale({1e10, 1e10, 1e10})}});
     const Medium medium = plain.medium();
     const auto all = segments(medium.parts[0], {{-3e10, 0, 0}, {1, 0, 0}, 1e12});
     ASSERT_EQ(all.size(), 1u);

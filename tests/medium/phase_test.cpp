@@ -9,8 +9,8 @@
 namespace woodcock::test {
 namespace {
 
-const std::vector<double> allG{0,    1e-7, -1e-7, 1e-3,  -1e-3,  0.3,    -0.5,
-                               0.5,  0.9,  0.99,  -0.99, 0.9999, -0.9999};
+const std::vector<double> allG{0,   1e-7, -1e-7, 1e-3,  -1e-3,  0.3,    -0.5,
+                               0.5, 0.9,  0.99,  -0.99, 0.9999, -0.9999};
 
 /// 2 pi times the integral of f(cosine) x phase over cosines, in the variable that spreads the peak
 /// out: y = log of the distance from it.
@@ -55,7 +55,8 @@ TEST(Phase, SampledDirectionsAreUnitAndCarryTheirDensity) {
             EXPECT_NEAR(length(s.direction), 1, 1e-15);
             ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf > 0);
             const double rounding = 1e-15 / ((1 - std::abs(g)) * (1 - std::abs(g)));
-            EXPECT_NEAR(henyeyGreenstein(dot(forward, s.direction), g) / s.pdf, 1, 1e-12 + 3 * rounding);
+            EXPECT_NEAR(henyeyGreenstein(dot(forward, s.direction), g) / s.pdf, 1,
+                        1e-12 + 3 * rounding);
         }
 }
 
@@ -73,10 +74,12 @@ TEST(Phase, SamplesAreDistributedAsTheDensitySays) {
             return (1 + a) / (2 * a) * (1 - (1 - a) / d);
         };
         RandomStream random(2);
-        std::vector<double> counts(rings * sectors), expected(rings * sectors, n / double(rings * sectors));
+        std::vector<double> counts(rings * sectors),
+            expected(rings * sectors, n / double(rings * sectors));
         Moments cosine;
         for (int i = 0; i < n; ++i) {
-            const Vec3d d = sampleHenyeyGreenstein(forward, g, random.uniform(), random.uniform()).direction;
+            const Vec3d d =
+                sampleHenyeyGreenstein(forward, g, random.uniform(), random.uniform()).direction;
             const Vec3d peak = g >= 0 ? forward : -forward;
             const double share = below(dot(d - peak, d - peak) / 2);
             const double angle = std::atan2(dot(d, y), dot(d, x)) / (2 * pi) + 0.5;

@@ -16,7 +16,8 @@ std::array<Moments, N> track(const Medium& medium, const TestRay& ray, Spectrum<
     std::vector<TransmittanceQuery<N>> queries(
         static_cast<std::size_t>(count),
         {ray.origin, ray.direction, ray.tMax, RandomStream(), roulette, contribution});
-    for (std::size_t i = 0; i < queries.size(); ++i) queries[i].random = RandomStream(hashOf(seed, i));
+    for (std::size_t i = 0; i < queries.size(); ++i)
+        queries[i].random = RandomStream(hashOf(seed, i));
     TrackingCounters counters;
     trackTransmittance<N>(medium, queries, counters);
     std::array<Moments, N> moments;
@@ -57,8 +58,8 @@ TEST(Transmittance, IsExactInTheMean) {
 TEST(Transmittance, MajorantsChangeNoMean) {
     for (double scale : {2.0, 8.0})
         for (int smallestLog2 : {1, 3, 6}) {
-            expectExact<1>(greyMedium(), greyMedium().medium(scale, smallestLog2), Spectrum<1>(1), 0,
-                           "grey");
+            expectExact<1>(greyMedium(), greyMedium().medium(scale, smallestLog2), Spectrum<1>(1),
+                           0, "grey");
             expectExact<3>(chromaticMedium(), chromaticMedium().medium(scale, smallestLog2),
                            {1, 1, 1}, 0, "chromatic");
         }
@@ -68,9 +69,10 @@ TEST(Transmittance, RouletteChangesNoMean) {
     for (float threshold : {0.1f, 0.5f, 1.5f}) {
         expectExact<1>(greyMedium(), greyMedium().medium(), Spectrum<1>(0.6f), threshold, "grey");
         expectExact<1>(hazyMedium(), hazyMedium().medium(), Spectrum<1>(0.6f), threshold, "hazy");
-        expectExact<3>(chromaticMedium(), chromaticMedium().medium(), {0.6f, 0.2f, 0.05f}, threshold,
-                       "chromatic");
-        expectExact<3>(tintedGlass(), tintedGlass().medium(), {0.1f, 0.2f, 0.6f}, threshold, "glass");
+        expectExact<3>(chromaticMedium(), chromaticMedium().medium(), {0.6f, 0.2f, 0.05f},
+                       threshold, "chromatic");
+        expectExact<3>(tintedGlass(), tintedGlass().medium(), {0.1f, 0.2f, 0.6f}, threshold,
+                       "glass");
     }
 }
 
@@ -78,8 +80,9 @@ TEST(Transmittance, HasNoNoiseWhereTheFieldIsFlat) {
     PlainGrid grid;
     grid.setTile({0, 0, 0}, 128, {0.25f});
     grid.setTile({128, 0, 0}, 128, {0.25f});
-    const PlainMedium plain({{.grid = grid, .absorption = {0.1f, 0.2f, 0}, .scattering = {0, 0.1f, 0.5f}},
-                             {.grid = {}, .box = {{-9, -9, -9}, {200, 200, 200}}, .scattering = Rgb(0.01f)}});
+    const PlainMedium plain(
+        {{.grid = grid, .absorption = {0.1f, 0.2f, 0}, .scattering = {0, 0.1f, 0.5f}},
+         {.grid = {}, .box = {{-9, -9, -9}, {200, 200, 200}}, .scattering = Rgb(0.01f)}});
     for (int smallestLog2 : {1, 5}) {
         const TestRay ray{{3, 4, 5}, normalize(Vec3d{2, 0.5, 0.25}), 100};
         const Vec3d expected = plain.transmittance(ray.origin, ray.direction, ray.tMax);
@@ -96,8 +99,11 @@ TEST(Transmittance, AnyOpticalDepthIsFiniteFastAndRight) {
         for (bool flat : {true, false}) {
             PlainGrid grid;
             for (int x = 0; x < 8; ++x)
-                grid.setLeaf({x * 8, 0, 0}, [&](Vec3i v, int) { return flat ? 1.0f : static_cast<float>(v.x % 3); });
-            const PlainMedium plain({{.grid = grid, .scattering = Rgb(static_cast<float>(depth / 64))}});
+                grid.setLeaf({x * 8, 0, 0}, [&](Vec3i v, int) {
+                    return flat ? 1.0f : static_cast<float>(v.x % 3);
+                });
+            const PlainMedium plain(
+                {{.grid = grid, .scattering = Rgb(static_cast<float>(depth / 64))}});
             const TestRay ray{{-5, 3.5, 3.5}, {1, 0, 0}, infinity};
             const Vec3d expected = plain.transmittance(ray.origin, ray.direction, 100);
             for (float roulette : {0.0f, 0.1f}) {
@@ -129,16 +135,20 @@ TEST(Transmittance, AThousandPartsMultiply) {
     for (int i = 0; i < 1000; ++i) {
         const Affine3d shift = Affine3d::translate({0.01 * i, 0, 0});
         if (i % 100)
-            parts.push_back({.grid = {}, .box = {{0, -9, -9}, {5, 9, 9}}, .worldFromIndex = shift,
+            parts.push_back({.grid = {},
+                             .box = {{0, -9, -9}, {5, 9, 9}},
+                             .worldFromIndex = shift,
                              .scattering = Rgb(0.0002f)});
         else
-            parts.push_back({.grid = mixedGrid(9), .worldFromIndex = shift, .scattering = Rgb(0.01f)});
+            parts.push_back(
+                {.grid = mixedGrid(9), .worldFromIndex = shift, .scattering = Rgb(0.01f)});
     }
     const PlainMedium plain(parts);
     const TestRay ray{{-30, 0.5, 0.5}, {1, 0, 0}, 100};
     const Vec3d expected = plain.transmittance(ray.origin, ray.direction, ray.tMax);
     const Medium medium = plain.medium();
-    expectMean(track<1>(medium, ray, Spectrum<1>(1), 0, 1500, 3)[0], expected.x, 0.01, "a thousand");
+    expectMean(track<1>(medium, ray, Spectrum<1>(1), 0, 1500, 3)[0], expected.x, 0.01,
+               "a thousand");
 }
 
 TEST(Transmittance, IsOneWhereThereIsNothing) {

@@ -124,7 +124,9 @@ PlainGrid mixedGrid(std::uint64_t seed, int channels, std::array<float, 3> backg
                         });
                         break;
                     case 3:
-                        grid.setLeaf(origin, [](Vec3i, int c) { return 0.5f + 0.125f * static_cast<float>(c); });
+                        grid.setLeaf(origin, [](Vec3i, int c) {
+                            return 0.5f + 0.125f * static_cast<float>(c);
+                        });
                         break;
                     default:
                         break;

@@ -52,7 +52,6 @@ PlainGrid mixedGrid(std::uint64_t seed, int channels = 1, std::array<float, 3> b
 
 /// mixedGrid() with leaves and tiles of 128 and 4096 voxels scattered far around it: too wide for a
 /// flat table.
-PlainGrid scatteredGrid(std::uint64_t seed, int channels = 1,
-                        std::array<float, 3> background = {});
+PlainGrid scatteredGrid(std::uint64_t seed, int channels = 1, std::array<float, 3> background = {});
 
 }  // namespace woodcock::test

@@ -11,7 +11,8 @@ namespace woodcock::test {
 namespace {
 
 double valueAt(const PlainGrid& grid, const Affine3d& worldFromIndex, Vec3d world, int channel) {
-    return grid.trilinear(worldFromIndex.inverse().point(world), grid.channels() == 1 ? 0 : channel);
+    return grid.trilinear(worldFromIndex.inverse().point(world),
+                          grid.channels() == 1 ? 0 : channel);
 }
 
 double density(const PlainPart& part, Vec3d world, int channel) {
@@ -104,7 +105,8 @@ Vec3d PlainMedium::transmittance(Vec3d origin, Vec3d direction, double t1) const
     return {std::exp(-depth.x), std::exp(-depth.y), std::exp(-depth.z)};
 }
 
-Vec3d PlainMedium::scattered(const PlainPart& part, Vec3d origin, Vec3d direction, double t1) const {
+Vec3d PlainMedium::scattered(const PlainPart& part, Vec3d origin, Vec3d direction,
+                             double t1) const {
     Vec3d sum, before;
     const auto at = [&](double x) { return sigmaT(origin + direction * x); };
     const std::vector<double> t = planes(origin, direction, 0, t1);

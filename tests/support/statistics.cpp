@@ -43,7 +43,8 @@ void expectMean(const Moments& samples, double expected, double largestError,
     EXPECT_LE(error, largestError) << what << ": too noisy to mean anything";
 }
 
-double chiSquareProbability(const std::vector<double>& counts, const std::vector<double>& expected) {
+double chiSquareProbability(const std::vector<double>& counts,
+                            const std::vector<double>& expected) {
     double statistic = 0, pooledCount = 0, pooledExpected = 0;
     int cells = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {

@@ -140,6 +140,9 @@ public:
         return t;
     }
 
+    /// Gives back what building took beyond need.
+    void shrink() { blocks_.shrink_to_fit(), uniform_.shrink_to_fit(), regions_.shrink_to_fit(); }
+
     std::size_t bytes() const {
         return sizeof(*this) + (blocks_.size() + uniform_.size()) * sizeof(T) +
                regions_.size() * sizeof(std::uint32_t) + supers_.size() * 32;

@@ -95,7 +95,7 @@ private:
     IndexRay ray_;
     Vec3d inverse_;
     Vec3i voxel_, low_, high_, forward_;
-    double t_, end_;
+    double t_ = 0, end_ = 0;
 };
 
 }  // namespace woodcock

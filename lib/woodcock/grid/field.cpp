@@ -131,6 +131,7 @@ private:
     /// the closed cube [8b, 8b+8] reads one layer of the neighbours on the + side.
     void findRanges() {
         if (!field_.table_.dense()) splitMixedRegions();
+        field_.table_.shrink();
         std::vector<Vec3i> blocks;
         field_.table_.forEach([&](Vec3i b, int log2Size, Field::Block&) {
             if (log2Size == blockLog2) blocks.push_back(b);

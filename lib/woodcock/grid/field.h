@@ -43,11 +43,7 @@ public:
 
     /// The stored value of voxel `v` (any index).
     float voxel(Vec3i v, int channel = 0) const {
-        const std::uint32_t ref = blockOf(v).ref;
-        if (ref & constantBit)
-            return constants_[(ref & ~constantBit) * channelCount() + static_cast<size_t>(channel)];
-        return stored((std::size_t{ref} * 512 + offset(v)) * channelCount() +
-                      static_cast<size_t>(channel));
+        return valueOf(table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value->ref, v, channel);
     }
 
     /// Trilinear interpolation at index-space position `p`, at most 2^31 voxels away.
@@ -76,6 +72,21 @@ public:
         return voxel(stochasticVoxel(p, bits), channel);
     }
 
+    /// The voxels of one block, found once for many reads.
+    class BlockVoxels {
+    public:
+        BlockVoxels(const Field& field, Vec3i block)
+            : field_(&field), ref_(field.table_.find(block).value->ref) {}
+        /// Of voxel `v` (any index; its last three bits count) of the block.
+        float operator()(Vec3i v, int channel = 0) const {
+            return field_->valueOf(ref_, v, channel);
+        }
+
+    private:
+        const Field* field_;
+        std::uint32_t ref_;
+    };
+
     /// Bounds of the reconstruction over the closed cube of the block that holds voxel `8 block`,
     /// over all channels. A cube may be shared by more than one block (Found::log2Size).
     struct Block {
@@ -98,7 +109,12 @@ private:
     static std::size_t offset(Vec3i v) {
         return static_cast<std::size_t>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
     }
-    const Block& blockOf(Vec3i v) const { return *table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value; }
+    float valueOf(std::uint32_t ref, Vec3i v, int channel) const {
+        if (ref & constantBit)
+            return constants_[(ref & ~constantBit) * channelCount() + static_cast<size_t>(channel)];
+        return stored((std::size_t{ref} * 512 + offset(v)) * channelCount() +
+                      static_cast<size_t>(channel));
+    }
     float stored(std::size_t i) const { return half_ ? decodeHalf(halves_[i]) : floats_[i]; }
 
     /// IEEE half to float, for finite values: exact, denormals included.

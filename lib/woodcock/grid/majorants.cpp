@@ -44,12 +44,16 @@ std::uint16_t roundUp(float v) {
 
 /// Ranges of the 64 cells of 2^3 voxels inside block `b`, halo included.
 std::array<Range, 64> finestRanges(const Field& field, Vec3i b) {
+    std::vector<Field::BlockVoxels> blocks;  // b and its neighbours on the + sides
+    for (int i = 0; i < 8; ++i)
+        blocks.emplace_back(field, b + Vec3i{i & 1, i >> 1 & 1, i >> 2});
     std::array<Range, 729> voxels;
     for (int i = 0; i < 729; ++i) {
-        const Vec3i v = b * 8 + Vec3i{i % 9, i / 9 % 9, i / 81};
-        const float first = field.voxel(v);
+        const Vec3i v{i % 9, i / 9 % 9, i / 81};
+        const auto& block = blocks[static_cast<std::size_t>(v.x / 8 + v.y / 8 * 2 + v.z / 8 * 4)];
+        const float first = block(v);
         Range r{first, first};
-        for (int c = 1; c < field.channels(); ++c) r.add({field.voxel(v, c), field.voxel(v, c)});
+        for (int c = 1; c < field.channels(); ++c) r.add({block(v, c), block(v, c)});
         voxels[static_cast<std::size_t>(i)] = r;
     }
     std::array<Range, 64> cells;

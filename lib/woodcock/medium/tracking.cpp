@@ -18,9 +18,15 @@ struct Sampled {
 
 template <int N>
 Spectrum<N> tap(const Field& field, Vec3d index, std::uint64_t bits) {
-    const Vec3i v = field.stochasticVoxel(field.nearSupport(index), bits);
+    const Vec3i v = field.stochasticVoxel(index, bits);
     if (N == 1 || field.channels() == 1) return Spectrum<N>(field.voxel(v));
     return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });
+}
+
+template <int N>
+Spectrum<N> density(const MediumPart& part, Vec3d index, std::uint64_t bits) {
+    if (part.unbounded()) index = part.field()->nearSupport(index);  // else it is inside
+    return tap<N>(*part.field(), index, bits);
 }
 
 /// What a tentative collision meets. Where the bounds meet, f is known without a lookup.
@@ -28,9 +34,11 @@ template <int N>
 Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, Vec3d direction,
                     double t, Range range, RandomStream& random) {
     Sampled<N> s{Spectrum<N>(range.max), Spectrum<N>(1.0f)};
-    if (range.min != range.max) s.f = tap<N>(*part.field(), ray.at(t), random.bits());
-    if (part.albedo())
-        s.albedo = tap<N>(*part.albedo(), part.albedoIndex(origin + direction * t), random.bits());
+    if (range.min != range.max) s.f = density<N>(part, ray.at(t), random.bits());
+    if (const Field* albedo = part.albedo()) {
+        const Vec3d index = albedo->nearSupport(part.albedoIndex(origin + direction * t));
+        s.albedo = tap<N>(*albedo, index, random.bits());
+    }
     return s;
 }
 
@@ -243,7 +251,7 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
             t += depth / rate;
-            const Spectrum<N> f = tap<N>(*part.field(), ray.at(t), q.random.bits());
+            const Spectrum<N> f = density<N>(part, ray.at(t), q.random.bits());
             for (int c = 0; c < N; ++c)
                 ratio[c] *= std::max(0.0f, 1 - (f[c] - s.range.min) * extinction[c] /
                                                static_cast<float>(rate));

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/light/environment_map.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/support/statistics.h"
+#include "woodcock/base/random.h"
+#include "woodcock/light/light.h"
+
+namespace woodcock::test {
+namespace {
+
+EnvironmentMap image(int width, int height, const std::function<Rgb(int x, int y)>& pixel) {
+    std::vector<float> pixels;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (float v : pixel(x, y).c) pixels.push_back(v);
+    return {width, height, pixels};
+}
+
+/// The direction of image position (u, v) in [0,1]^2: u from the left, v from the top.
+Vec3d direction(double u, double v) {
+    const double phi = 2 * pi * (u - 0.5), theta = pi * v;
+    return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+}
+
+struct Named {
+    const char* name;
+    EnvironmentMap map;
+    int width, height;
+};
+
+std::vector<Named> images() {
+    std::vector<Named> all;
+    const auto add = [&](const char* name, int w, int h,
+                         const std::function<Rgb(int, int)>& pixel) {
+        all.push_back({name, image(w, h, pixel), w, h});
+    };
+    add("noise", 16, 8, [](int x, int y) {
+        const auto n = [&](int c) { return static_cast<float>(hashOf(1, x, y, c) % 100) / 10; };
+        return Rgb{n(0), n(1), n(2)};
+    });
+    add("one pixel", 16, 8, [](int x, int y) { return Rgb(x == 5 && y == 3 ? 100.0f : 0.0f); });
+    add("a pixel at the pole", 16, 8,
+        [](int x, int y) { return Rgb(x == 2 && y == 0 ? 9.0f : 0.0f); });
+    add("a pixel at the seam", 16, 8,
+        [](int x, int y) { return Rgb(x == 0 && y == 5 ? 9.0f : 0.0f); });
+    add("black rows", 12, 9,
+        [](int x, int y) { return Rgb(y < 3 || y == 6 ? 0 : 1 + static_cast<float>(x)); });
+    add("a pixel beside darkness", 8, 4, [](int x, int) { return Rgb(x == 7 ? 1e6f : 1e-6f); });
+    add("one pixel wide and high", 1, 1, [](int, int) { return Rgb(2.0f); });
+    return all;
+}
+
+TEST(EnvironmentMap, CentreLooksAlongMinusZWithXToItsRightAndYUp) {
+    const EnvironmentMap map = image(360, 180, [](int x, int y) {
+        return Rgb{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 0};
+    });
+    const auto expectAt = [&](Vec3d d, float column, float row) {
+        EXPECT_NEAR(map.radiance(d)[0], column, 1e-3);
+        EXPECT_NEAR(map.radiance(d)[1], row, 1e-3);
+    };
+    expectAt({0, 0, -1}, 180, 90);
+    expectAt({1, 0, 0}, 270, 90);
+    expectAt({-1, 0, 0}, 90, 90);
+    expectAt({std::sin(2 * pi / 180), 0, std::cos(2 * pi / 180)}, 358, 90);  // the seam is behind
+    expectAt(normalize(Vec3d{0, 1, -1}), 180, 45);
+    EXPECT_NEAR(map.radiance({0, 1, 0})[1], 0.5, 1e-3);
+    EXPECT_NEAR(map.radiance({0, -1, 0})[1], 179.5, 1e-3);
+}
+
+TEST(EnvironmentMap, RadianceIsBilinearAndWrapsAround) {
+    const EnvironmentMap map =
+        image(4, 2, [](int x, int y) { return Rgb(static_cast<float>(x + 10 * y)); });
+    EXPECT_NEAR(map.radiance(direction(0.375, 0.25))[0], 1, 1e-6);
+    EXPECT_NEAR(map.radiance(direction(0.5, 0.25))[0], 1.5, 1e-6);
+    EXPECT_NEAR(map.radiance(direction(0.5, 0.5))[0], 6.5, 1e-6);
+    EXPECT_NEAR(map.radiance(direction(1e-9, 0.25))[0], 1.5, 1e-6);  // between columns 3 and 0
+    EXPECT_NEAR(map.radiance(direction(0.0625, 0.25))[0], 0.75, 1e-6);
+    EXPECT_NEAR(map.radiance(direction(0.375, 0.01))[0], 1, 1e-6);  // clamped at the pole
+}
+
+TEST(EnvironmentMap, DensityIntegratesToOneAndIsWhatSamplesFollow) {
+    for (const auto& [name, map, w, h] : images()) {
+        constexpr int n = 40000, sub = 2;  // cells: quarters of pixels
+        std::vector<double> expected, counts(static_cast<std::size_t>(w * h * sub * sub));
+        double total = 0;
+        for (int y = 0; y < h * sub; ++y)
+            for (int x = 0; x < w * sub; ++x) {
+                const double area =
+                    2 * pi / (w * sub) *
+                    (std::cos(pi * y / (h * sub)) - std::cos(pi * (y + 1) / (h * sub)));
+                const double share =
+                    area * map.pdf(direction((x + 0.5) / (w * sub), (y + 0.5) / (h * sub)));
+                expected.push_back(n * share), total += share;
+            }
+        EXPECT_NEAR(total, 1, 1e-12) << name;
+        RandomStream random(1);
+        for (int i = 0; i < n; ++i) {
+            const EnvironmentMap::Sample s = map.sample(random.uniform(), random.uniform());
+            ASSERT_NEAR(length(s.direction), 1, 1e-14);
+            const double u = std::atan2(s.direction.x, -s.direction.z) / (2 * pi) + 0.5;
+            const double v = std::acos(std::clamp(s.direction.y, -1.0, 1.0)) / pi;
+            const int x = std::clamp(static_cast<int>(u * w * sub), 0, w * sub - 1);
+            const int y = std::clamp(static_cast<int>(v * h * sub), 0, h * sub - 1);
+            ++counts[static_cast<std::size_t>(y * w * sub + x)];
+            const double fx = u * w - std::floor(u * w), fy = v * h - std::floor(v * h);
+            const bool between = std::min(fx, fy) < 1e-6 || std::max(fx, fy) > 1 - 1e-6;
+            ASSERT_TRUE(between || std::abs(map.pdf(s.direction) / s.pdf - 1) < 1e-9) << name;
+        }
+        EXPECT_GT(chiSquareProbability(counts, expected), leastProbability) << name;
+    }
+}
+
+TEST(EnvironmentMap, NoLightIsLeftUnsampled) {
+    RandomStream random(2);
+    for (const auto& [name, map, w, h] : images())
+        for (int i = 0; i < 20000; ++i) {
+            const Vec3d d = direction(random.uniform(), random.uniform());
+            ASSERT_TRUE(map.pdf(d) > 0 || map.radiance(d).maximum() < 1e-12f) << name;
+        }
+}
+
+TEST(EnvironmentMap, SamplesIntegrateTheRadiance) {
+    for (const auto& [name, map, w, h] : images()) {
+        double expected = 0;  // midpoints, 32 x 32 to a pixel
+        const int fine = 32;
+        for (int y = 0; y < h * fine; ++y)
+            for (int x = 0; x < w * fine; ++x) {
+                const double area =
+                    2 * pi / (w * fine) *
+                    (std::cos(pi * y / (h * fine)) - std::cos(pi * (y + 1) / (h * fine)));
+                expected += area * map.radiance(direction((x + 0.5) / (w * fine),
+                                                          (y + 0.5) / (h * fine)))[0];
+            }
+        Moments samples;
+        RandomStream random(3);
+        for (int i = 0; i < 40000; ++i) {
+            const EnvironmentMap::Sample s = map.sample(random.uniform(), random.uniform());
+            samples.add(map.radiance(s.direction)[0] / s.pdf / expected);
+        }
+        EXPECT_LE(std::abs(samples.mean() - 1), 4 * samples.standardError() + 1e-3) << name;
+        EXPECT_LE(samples.standardError(), 0.02) << name;
+    }
+}
+
+TEST(EnvironmentMap, EndsOfTheUnitIntervalAreSafe) {
+    for (const auto& [name, map, w, h] : images())
+        for (double u : {0.0, 1 - 0x1p-53})
+            for (double v : {0.0, 1 - 0x1p-53}) {
+                const EnvironmentMap::Sample s = map.sample(u, v);
+                EXPECT_GT(s.pdf, 0) << name;
+                EXPECT_NEAR(length(s.direction), 1, 1e-14);
+            }
+}
+
+TEST(EnvironmentMap, ABlackImageIsNeverSampled) {
+    const EnvironmentMap black = image(4, 2, [](int, int) { return Rgb(0.0f); });
+    EXPECT_EQ(black.sample(0.5, 0.5).pdf, 0);
+    EXPECT_EQ(black.pdf({0, 0, -1}), 0);
+    EXPECT_EQ(black.meanRadiance(), Rgb(0.0f));
+}
+
+TEST(EnvironmentMap, MeanOfAnEvenImageIsItsValue) {
+    const EnvironmentMap even = image(16, 9, [](int, int) { return Rgb{1, 2, 3}; });
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(even.meanRadiance()[c], c + 1, 1e-6);
+}
+
+TEST(Environment, ATurnedImageTurnsItsLight) {
+    const Affine3d turn = Affine3d::rotate(1, 40) * Affine3d::rotate(0, 70);
+    const EnvironmentMap map = images()[0].map;
+    const Rgb scale{2, 1, 0.5};
+    const Environment environment(map, scale, turn, true);
+    RandomStream random(4);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3d d = direction(random.uniform(), random.uniform());
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(environment.radiance(turn.vector(d))[c], map.radiance(d)[c] * scale[c],
+                        1e-4);
+        const double u = random.uniform(), v = random.uniform();
+        const LightSample s = environment.sample(u, v);
+        EXPECT_LE(length(s.direction - turn.vector(map.sample(u, v).direction)), 1e-14);
+        EXPECT_NEAR(s.weight[1], environment.radiance(s.direction)[1] / s.pdf, 1e-4);
+    }
+}
+
+TEST(Environment, AConstantIsTheSameEverywhere) {
+    const Environment environment(Rgb{1, 2, 3}, true);
+    EXPECT_TRUE(environment.constant());
+    EXPECT_EQ(environment.radiance({0, 1, 0}), (Rgb{1, 2, 3}));
+    EXPECT_EQ(environment.meanRadiance(), (Rgb{1, 2, 3}));
+    EXPECT_EQ(environment.pdf({0, 1, 0}), 0);
+}
+
+}  // namespace
+}  // namespace woodcock::test
