@@ -37,23 +37,5 @@ TEST(FieldMemory, OfALargeBall) {
     expectFrugal(dir / "ball.vdb");
 }
 
-/// Leaves far from each other, as in a shell or in spray.
-TEST(FieldMemory, OfAThinShell) {
-    GridSpec shell;
-    for (int i = 0; i < 4000; ++i) {
-        const double z = 1 - (2 * i + 1) / 4000.0, phi = 2.399963 * i, r = std::sqrt(1 - z * z);
-        const Vec3i centre = floorToInt(Vec3d{r * std::cos(phi), r * std::sin(phi), z} * 900);
-        for (int k = 0; k < 5; ++k)
-            shell.voxels.push_back({centre + Vec3i{k, 0, k % 2}, {0.25 + 0.1 * k}});
-    }
-    const TempDir dir;
-    writeVdb(dir / "shell.vdb", {shell}, VdbCompression::None);
-    const auto tree = loadGrid(dir / "shell.vdb", "density").statistics.openVdbBytes;
-    EXPECT_LE(loadGrid(dir / "shell.vdb", "density", {.storage = Storage::Float}).field.bytes(), tree);
-    EXPECT_LE(static_cast<double>(
-                  loadGrid(dir / "shell.vdb", "density", {.storage = Storage::Half}).field.bytes()),
-              0.75 * static_cast<double>(tree));
-}
-
 }  // namespace
 }  // namespace woodcock::test

@@ -44,7 +44,8 @@ public:
         double light = 0, throughput = 1;
         while (true) {
             double t = 0;
-            if (!collide(origin, direction, t, random)) return light + throughput * scene_.environment;
+            if (!collide(origin, direction, t, random))
+                return light + throughput * scene_.environment;
             origin += direction * t;
             double weight = 0, sun = 0;
             for (std::size_t i = 0; i < density_.size(); ++i) {

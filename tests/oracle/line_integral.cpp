@@ -34,7 +34,8 @@ double lineIntegral(const VoxelFunction& voxel, const Box3i& box, Vec3d origin, 
     const double node = std::sqrt(1.0 / 3);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < planes.size(); ++i) {
-        const double middle = (planes[i] + planes[i + 1]) / 2, half = (planes[i + 1] - planes[i]) / 2;
+        const double middle = (planes[i] + planes[i + 1]) / 2,
+                     half = (planes[i + 1] - planes[i]) / 2;
         for (const double t : {middle - half * node, middle + half * node})
             sum += half * trilinear(voxel, origin + direction * t);
     }

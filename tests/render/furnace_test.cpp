@@ -21,8 +21,7 @@ protected:
     }
 
     const std::filesystem::path teapot = sharedDir() / "assets" / "teapot_cloud.vdb";
-    const std::string camera =
-        "[camera]\neye = [0, 0.4, 3.4]\nlook_at = [0, 0.05, 0]\nfov = 40\n";
+    const std::string camera = "[camera]\neye = [0, 0.4, 3.4]\nlook_at = [0, 0.05, 0]\nfov = 40\n";
     const std::string even = "[[light]]\ntype = \"environment\"\nradiance = [0.5, 0.5, 0.5]\n";
     const std::string dense = volume("scale = 8\ng = 0.85");
 };
@@ -42,8 +41,7 @@ TEST_F(Furnace, EveryPixelOfAGreyCloudIsTheLight) {
         const Scene scene = sceneFrom(volume("scale = 1\ng = 0.5") + even + view);
         const Film film = renderScene(scene, {48, 48, 4}).film;
         for (int y = 0; y < 48; ++y)
-            for (int x = 0; x < 48; ++x)
-                EXPECT_EQ(film.radiance(x, y)[0], 0.5f) << x << ", " << y;
+            for (int x = 0; x < 48; ++x) EXPECT_EQ(film.radiance(x, y)[0], 0.5f) << x << ", " << y;
     }
 }
 
@@ -57,11 +55,11 @@ TEST_F(Furnace, NextEventEstimationAndScatteringShareTheLight) {
 }
 
 TEST_F(Furnace, OverlappingChromaticRotatedPair) {
-    const std::string pair =
-        volume("sigma_s = [0.8, 0.5, 0.3]\ng = 0.85") +
-        volume("sigma_s = [0.1, 0.2, 0.4]\ng = -0.3\n"
-               "transform = { rotate = [20, 70, -35], scale = [0.8, -1.1, 0.6], "
-               "translate = [0.3, 0.1, 0.1] }");
+    const std::string pair = volume("sigma_s = [0.8, 0.5, 0.3]\ng = 0.85") +
+                             volume(
+                                 "sigma_s = [0.1, 0.2, 0.4]\ng = -0.3\n"
+                                 "transform = { rotate = [20, 70, -35], scale = [0.8, -1.1, 0.6], "
+                                 "translate = [0.3, 0.1, 0.1] }");
     const Scene scene = sceneFrom(pair + even + camera);
     expectAgrees(meanOverSeeds(scene, {48, 48, 32}, 16), {0.5, 0.5, 0.5}, 5e-4);
 }
@@ -69,7 +67,8 @@ TEST_F(Furnace, OverlappingChromaticRotatedPair) {
 /// Three channels with nothing to tell them apart but the light: rounding only.
 TEST_F(Furnace, ColouredLight) {
     const std::string red = "[[light]]\ntype = \"environment\"\nradiance = [2, 0, 0.25]\n";
-    const Film film = renderScene(sceneFrom(volume("scale = 1\ng = 0.5") + red + camera), {32, 32, 4}).film;
+    const Film film =
+        renderScene(sceneFrom(volume("scale = 1\ng = 0.5") + red + camera), {32, 32, 4}).film;
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x) {
             const Rgb light = film.radiance(x, y);

@@ -22,17 +22,15 @@ GridSpec fog(double factor = 1, double voxel = 1.0 / 16) {
     GridSpec grid;
     grid.box = {{0, 0, 0}, {31, 31, 31}};
     grid.value = [factor](Vec3i v) { return fogValue(v, factor); };
-    grid.worldFromIndex =
-        Affine3d::translate({-voxel * 15.5, -voxel * 15.5, -voxel * 15.5}) *
-        Affine3d::scale({voxel, voxel, voxel});
+    grid.worldFromIndex = Affine3d::translate({-voxel * 15.5, -voxel * 15.5, -voxel * 15.5}) *
+                          Affine3d::scale({voxel, voxel, voxel});
     return grid;
 }
 
 constexpr const char* lights =
     "[[light]]\ntype = \"sun\"\ndirection = [-1, -2, -1]\nirradiance = [2, 2, 2]\n"
     "[[light]]\ntype = \"environment\"\nradiance = [0.3, 0.3, 0.3]\n";
-constexpr const char* camera =
-    "[camera]\neye = [0.5, 0.75, 3]\nlook_at = [0, 0, 0]\nfov = 30\n";
+constexpr const char* camera = "[camera]\neye = [0.5, 0.75, 3]\nlook_at = [0, 0, 0]\nfov = 30\n";
 constexpr const char* grey = "scale = 20\nalbedo = 0.95\ng = 0.4\n";
 
 class Invariance : public testing::Test {
@@ -45,8 +43,8 @@ protected:
     Scene fogScene(const std::string& volume) const {
         return fogScene(volume, std::string(lights) + camera);
     }
-    static RgbEstimate mean(const Scene& scene, std::uint64_t seed) {
-        return meanOverSeeds(scene, {24, 24, 32, seed}, 16);
+    static RgbEstimate mean(const Scene& scene, std::uint64_t seed, int samples = 32) {
+        return meanOverSeeds(scene, {24, 24, samples, seed}, 16);
     }
 
     const TempDir dir;
@@ -57,18 +55,16 @@ TEST_F(Invariance, LooseMajorantsChangeNoMean) {
         const Scene scene = fogScene(volume);
         const RgbEstimate tight = mean(scene, 100);
         std::uint64_t seed = 200;
-        for (const double scale : {2.0, 8.0})
-            expectAgree(mean(withParts(scene,
-                                       [&](MediumPart::Description& d) { d.majorantScale = scale; }),
-                             seed += 100),
-                        tight, 3e-3);
-        for (const int smallest : {4, 7})
-            expectAgree(mean(withParts(scene,
-                                       [&](MediumPart::Description& d) {
-                                           d.majorantSmallestLog2 = smallest;
-                                       }),
-                             seed += 100),
-                        tight, 3e-3);
+        const auto expectSame = [&](double scale, int smallestLog2) {
+            const Scene loose = withParts(scene, [&](MediumPart::Description& d) {
+                d.majorantScale = scale, d.majorantSmallestLog2 = smallestLog2;
+            });
+            expectAgree(mean(loose, seed += 100, 16), tight, 4e-3);
+        };
+        expectSame(2, 1);
+        expectSame(8, 1);
+        expectSame(1, 4);
+        expectSame(1, 7);
     }
 }
 
@@ -90,15 +86,16 @@ TEST_F(Invariance, ChannelsAreGreyMediaOfTheirOwn) {
 
 /// Dark media: paths end by Russian roulette in all channels before they leave.
 TEST_F(Invariance, ChannelsOfADarkMediumToo) {
-    const std::string dark = std::string(camera) +
-                             "[[light]]\ntype = \"environment\"\nradiance = 1\nvisible = false\n";
+    const std::string dark =
+        std::string(camera) + "[[light]]\ntype = \"environment\"\nradiance = 1\nvisible = false\n";
     const Scene coloured = fogScene("sigma_a = [90, 40, 2]\nsigma_s = [10, 60, 0.5]\n", dark);
     const RgbEstimate e = meanOverSeeds(coloured, {24, 24, 192, 100}, 16);
     const std::array<std::pair<double, double>, 3> channels{{{90, 10}, {40, 60}, {2, 0.5}}};
     for (std::size_t c = 0; c < 3; ++c) {
         SCOPED_TRACE(testing::Message() << "channel " << c);
         const Scene alone = fogScene(
-            fmt::format("sigma_a = {}\nsigma_s = {}\n", channels[c].first, channels[c].second), dark);
+            fmt::format("sigma_a = {}\nsigma_s = {}\n", channels[c].first, channels[c].second),
+            dark);
         expectAgree(e[c], meanOverSeeds(alone, {24, 24, 192, 200}, 16)[0], 5e-3);
     }
 }
@@ -108,9 +105,10 @@ TEST_F(Invariance, HalvesThatOverlapAreTheWhole) {
     writeVdb(dir / "rest.vdb", {fog(0.5)});
     const std::string volume = "sigma_a = [0.2, 3, 1]\nsigma_s = [20, 10, 2]\ng = 0.4\n";
     const Scene whole = fogScene(volume);
-    const Scene halves = sceneFrom("[[volume]]\nfile = \"half.vdb\"\n" + volume +
-                                       "[[volume]]\nfile = \"rest.vdb\"\n" + volume + lights + camera,
-                                   dir.path());
+    const Scene halves =
+        sceneFrom("[[volume]]\nfile = \"half.vdb\"\n" + volume +
+                      "[[volume]]\nfile = \"rest.vdb\"\n" + volume + lights + camera,
+                  dir.path());
     expectAgree(mean(halves, 100), mean(whole, 200), 3e-3);
 }
 
@@ -140,8 +138,8 @@ TEST_F(Invariance, AlbedoGridsAreTheSameMedium) {
                                             "scale = 20\nalbedo_grid = \"Cd\"\n") +
                                     lights + camera,
                                 dir.path());
-    expectAgree(mean(own, 100), mean(fogScene("scale = 20\nalbedo = [0.9, 0.5, 0.1]\ng = 0.4\n"), 200),
-                4e-3);
+    expectAgree(mean(own, 100),
+                mean(fogScene("scale = 20\nalbedo = [0.9, 0.5, 0.1]\ng = 0.4\n"), 200), 4e-3);
 }
 
 /// All lengths times k and sigma divided by it, by powers of two, rounds nothing: the same picture,
@@ -150,8 +148,9 @@ TEST_F(Invariance, Scale) {
     const Film film = renderScene(fogScene(grey), {24, 24, 16}).film;
     for (const double k : {0x1p20, 0x1p-30}) {
         const Scene scaled = fogScene(
-            fmt::format("scale = {:.17g}\nalbedo = 0.95\ng = 0.4\ntransform = {{ scale = {:.17g} }}\n",
-                        20 / k, k),
+            fmt::format(
+                "scale = {:.17g}\nalbedo = 0.95\ng = 0.4\ntransform = {{ scale = {:.17g} }}\n",
+                20 / k, k),
             fmt::format("{}[camera]\neye = [{:.17g}, {:.17g}, {:.17g}]\nlook_at = [0, 0, 0]\n"
                         "fov = 30\n",
                         lights, 0.5 * k, 0.75 * k, 3 * k));
@@ -164,33 +163,34 @@ TEST_F(Invariance, Scale) {
 TEST_F(Invariance, FarFromTheOrigin) {
     const Scene here = fogScene(grey);
     for (const double far : {1e3, 1e7}) {
-        const Scene there = fogScene(
-            fmt::format("{}transform = {{ translate = [{:.17g}, {:.17g}, {:.17g}] }}\n", grey, far,
-                        -far, far),
-            fmt::format("{}[camera]\neye = [{:.17g}, {:.17g}, {:.17g}]\n"
-                        "look_at = [{:.17g}, {:.17g}, {:.17g}]\nfov = 30\n",
-                        lights, far + 0.5, 0.75 - far, far + 3, far, -far, far));
+        const Scene there =
+            fogScene(fmt::format("{}transform = {{ translate = [{:.17g}, {:.17g}, {:.17g}] }}\n",
+                                 grey, far, -far, far),
+                     fmt::format("{}[camera]\neye = [{:.17g}, {:.17g}, {:.17g}]\n"
+                                 "look_at = [{:.17g}, {:.17g}, {:.17g}]\nfov = 30\n",
+                                 lights, far + 0.5, 0.75 - far, far + 3, far, -far, far));
         expectAgree(mean(there, 100), mean(here, 200), 3e-3);
     }
 }
 
 /// Rotating the volume, the lights and the camera together.
 TEST_F(Invariance, Orientation) {
-    const Affine3d turn = Affine3d::rotate(2, 25) * Affine3d::rotate(0, 50) * Affine3d::rotate(1, 80);
+    const Affine3d turn =
+        Affine3d::rotate(2, 25) * Affine3d::rotate(0, 50) * Affine3d::rotate(1, 80);
     const auto text = [&](Vec3d v) {
         const Vec3d t = turn.vector(v);
         return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", t.x, t.y, t.z);
     };
     const Affine3d& m = turn;
-    const std::string turned = fmt::format(
-        "matrix = [[{}, {}, {}, 0], [{}, {}, {}, 0], [{}, {}, {}, 0], [0, 0, 0, 1]]\n",
-        m.column[0].x, m.column[1].x, m.column[2].x, m.column[0].y, m.column[1].y, m.column[2].y,
-        m.column[0].z, m.column[1].z, m.column[2].z);
-    const std::string rest =
-        fmt::format("[[light]]\ntype = \"sun\"\ndirection = {}\nirradiance = 2\n"
-                    "[[light]]\ntype = \"environment\"\nradiance = 0.3\n"
-                    "[camera]\neye = {}\nlook_at = [0, 0, 0]\nup = {}\nfov = 30\n",
-                    text({-1, -2, -1}), text({0.5, 0.75, 3}), text({0, 1, 0}));
+    const std::string turned =
+        fmt::format("matrix = [[{}, {}, {}, 0], [{}, {}, {}, 0], [{}, {}, {}, 0], [0, 0, 0, 1]]\n",
+                    m.column[0].x, m.column[1].x, m.column[2].x, m.column[0].y, m.column[1].y,
+                    m.column[2].y, m.column[0].z, m.column[1].z, m.column[2].z);
+    const std::string rest = fmt::format(
+        "[[light]]\ntype = \"sun\"\ndirection = {}\nirradiance = 2\n"
+        "[[light]]\ntype = \"environment\"\nradiance = 0.3\n"
+        "[camera]\neye = {}\nlook_at = [0, 0, 0]\nup = {}\nfov = 30\n",
+        text({-1, -2, -1}), text({0.5, 0.75, 3}), text({0, 1, 0}));
     expectAgree(mean(fogScene(grey + turned, rest), 100), mean(fogScene(grey), 200), 3e-3);
 }
 
@@ -199,8 +199,8 @@ TEST_F(Invariance, CameraInsideTheFog) {
     const std::string inside =
         std::string(lights) + "[camera]\neye = [0.1, 0.2, -0.1]\nlook_at = [1, 0, 1]\nfov = 100\n";
     const std::string half = "[[volume]]\nfile = \"half.vdb\"\n" + std::string(grey);
-    expectAgree(mean(sceneFrom(half + half + inside, dir.path()), 100), mean(fogScene(grey, inside), 200),
-                3e-3);
+    expectAgree(mean(sceneFrom(half + half + inside, dir.path()), 100),
+                mean(fogScene(grey, inside), 200), 3e-3);
 }
 
 TEST_F(Invariance, HalfStorageChangesLittle) {
@@ -230,10 +230,10 @@ TEST_F(Invariance, BoundsOnScattering) {
         before = now;
     }
     EXPECT_GT(all.mean - before.mean, 4 * std::hypot(all.error, before.error));
-    expectAgree(bounded(1000), all, 3e-3);
+    expectAgree(bounded(1000), all, 4e-3);
     // Nothing scattered: the environment behind the fog alone.
     const Scene absorbs = fogScene("scale = 20\nalbedo = 0\n");
-    expectAgree(bounded(0), meanOverSeeds(absorbs, {24, 24, 32, 300}, 16)[0], 3e-3);
+    expectAgree(bounded(0), meanOverSeeds(absorbs, {24, 24, 32, 300}, 16)[0], 4e-3);
 }
 
 }  // namespace

@@ -23,18 +23,20 @@ constexpr double sigmaA = 0.3, sigmaS = 0.7, sigmaT = sigmaA + sigmaS, half = 2;
 
 /// A box of fog from -2 to 2.
 std::string fog(double g) {
-    return fmt::format("[[volume]]\nbox = {{ min = [-2, -2, -2], max = [2, 2, 2] }}\n"
-                       "sigma_a = {}\nsigma_s = {}\ng = {}\n",
-                       sigmaA, sigmaS, g);
+    return fmt::format(
+        "[[volume]]\nbox = {{ min = [-2, -2, -2], max = [2, 2, 2] }}\n"
+        "sigma_a = {}\nsigma_s = {}\ng = {}\n",
+        sigmaA, sigmaS, g);
 }
 std::string point(Vec3d p, double power) {
     return fmt::format("[[light]]\ntype = \"point\"\nposition = [{}, {}, {}]\npower = {}\n", p.x,
                        p.y, p.z, power);
 }
 std::string sphere(Vec3d p, double radius, double power) {
-    return fmt::format("[[light]]\ntype = \"sphere\"\nposition = [{}, {}, {}]\nradius = {}\n"
-                       "power = {}\nvisible = false\n",
-                       p.x, p.y, p.z, radius, power);
+    return fmt::format(
+        "[[light]]\ntype = \"sphere\"\nposition = [{}, {}, {}]\nradius = {}\n"
+        "power = {}\nvisible = false\n",
+        p.x, p.y, p.z, radius, power);
 }
 
 /// How much of the straight line between two points lies in the box.
@@ -59,23 +61,23 @@ double airlight(double x, double y, Vec3d lamp, double intensity, double g) {
             const Vec3d toLamp = lamp - p;
             const double distance = length(toLamp);
             return sigmaS * henyeyGreensteinByTheBook(dot(view, toLamp) / distance, g) * intensity /
-                   (distance * distance) *
-                   std::exp(-sigmaT * ((half - z) + inFog(p, lamp)));
+                   (distance * distance) * std::exp(-sigmaT * ((half - z) + inFog(p, lamp)));
         },
         -half, half);
 }
 
 RgbEstimate once(const std::string& scene, double x, double y, int samples) {
-    return evenRadiance(
-        renderScene(sceneFrom(scene + pencilCamera({x, y, 10}, {0, 0, -1})), {32, 32, samples, 0, 1})
-            .film);
+    return evenRadiance(renderScene(sceneFrom(scene + pencilCamera({x, y, 10}, {0, 0, -1})),
+                                    {32, 32, samples, 0, 1})
+                            .film);
 }
 
 TEST(PointLight, AirlightInAndOutsideTheFog) {
     for (const Vec3d lamp : {Vec3d{0.3, 0.2, 0.5}, Vec3d{0.05, 0, -1}, Vec3d{3, 0.5, 1}})
         for (const double g : {0.0, 0.8, -0.5}) {
             const double exact = airlight(0, 0, lamp, 1, g);
-            expectAgrees(once(fog(g) + point(lamp, 4 * pi), 0, 0, 256), {exact, exact, exact}, 5e-3);
+            expectAgrees(once(fog(g) + point(lamp, 4 * pi), 0, 0, 256), {exact, exact, exact},
+                         5e-3);
         }
 }
 
@@ -119,10 +121,10 @@ TEST(SphereLight, OfAnySizeByQuadrature) {
         };
         // The half of the sphere beyond x = 2 is never the near side.
         const double exact = sigmaS * radiance * integrate(scattered, -half, half, 200);
-        const std::string light =
-            fmt::format("[[light]]\ntype = \"sphere\"\nposition = [1.5, 0, 0]\nradius = {}\n"
-                        "radiance = {}\nvisible = false\n",
-                        radius, radiance);
+        const std::string light = fmt::format(
+            "[[light]]\ntype = \"sphere\"\nposition = [1.5, 0, 0]\nradius = {}\n"
+            "radiance = {}\nvisible = false\n",
+            radius, radiance);
         expectAgrees(once(fog(g) + light, 0, 0, 128), {exact, exact, exact}, 5e-3);
     }
 }
@@ -138,8 +140,10 @@ TEST(SphereLight, IsSeenThroughTheFog) {
 /// Several lamps of both kinds at once: the choice among them changes no mean.
 TEST(LocalLights, Add) {
     const std::string a = point({0.5, 0.5, 0}, 5), b = sphere({-1, 0, 1}, 0.3, 20),
-                      c = point({0, 4, 0}, 300), sun = "[[light]]\ntype = \"sun\"\n"
-                                                       "direction = [1, -1, 0]\nirradiance = 0.5\n";
+                      c = point({0, 4, 0}, 300),
+                      sun =
+                          "[[light]]\ntype = \"sun\"\n"
+                          "direction = [1, -1, 0]\nirradiance = 0.5\n";
     const auto many = [](const std::string& lights) {
         const std::string camera = pencilCamera({0, 0, 10}, {0, 0, -1});
         return evenRadiance(renderScene(sceneFrom(fog(0.4) + lights + camera), {32, 32, 128}).film);

@@ -15,6 +15,7 @@ constexpr int size = 160, block = 8, blocks = size / block;
 /// Two pictures that differ in their noise only.
 struct Pair {
     std::function<double(int x, int y, int channel)> a, b;
+    std::function<bool(int x, int y)> covered;  ///< does the volume stand there? Of ours only
 };
 
 Pair peer(const std::string& name) {
@@ -25,17 +26,20 @@ Pair peer(const std::string& name) {
             return double{image->at(x, y, std::array{"R", "G", "B"}[static_cast<std::size_t>(c)])};
         };
     };
-    return {read("1"), read("2")};
+    return {read("1"), read("2"), {}};
 }
 
 Pair ours(const std::string& scene, int samples) {
     const Scene built = peerScene(scene);
     const auto draw = [&](std::uint64_t seed) {
-        const auto film =
-            std::make_shared<Film>(renderScene(built, {size, size, samples, seed}).film);
+        return std::make_shared<Film>(renderScene(built, {size, size, samples, seed}).film);
+    };
+    const auto radianceOf = [](const std::shared_ptr<Film>& film) {
         return [film](int x, int y, int c) { return double{film->radiance(x, y)[c]}; };
     };
-    return {draw(1), draw(2)};
+    const auto a = draw(1), b = draw(2);
+    return {radianceOf(a), radianceOf(b),
+            [a, b](int x, int y) { return a->alpha(x, y) != 0 || b->alpha(x, y) != 0; }};
 }
 
 /// The mean over pixels [x0, x1) x [y0, y1) of both pictures; their difference tells the error.
@@ -54,6 +58,15 @@ Estimate blockMean(const Pair& pair, int channel, int i) {
     return meanOver(pair, channel, x, y, x + block, y + block);
 }
 
+/// Pixels of a block that see the volume.
+int coverage(const Pair& mine, int i) {
+    int count = 0;
+    for (int y = i / blocks * block; y < (i / blocks + 1) * block; ++y)
+        for (int x = i % blocks * block; x < (i % blocks + 1) * block; ++x)
+            count += mine.covered(x, y);
+    return count;
+}
+
 /// Block by block within the noise of both, and the mean over the volume's blocks as well.
 void expectSamePicture(const Pair& mine, const Pair& theirs, int channel, double largestError) {
     SCOPED_TRACE(testing::Message() << "channel " << channel);
@@ -62,18 +75,20 @@ void expectSamePicture(const Pair& mine, const Pair& theirs, int channel, double
     double worst = 0;
     for (int i = 0; i < blocks * blocks; ++i) {
         const Estimate m = blockMean(mine, channel, i), t = blockMean(theirs, channel, i);
-        if (t.error < 1e-7) {  // nothing but environment
-            EXPECT_NEAR(m.mean, t.mean, 1e-5 + 4 * m.error) << "block " << i;
-            continue;
+        const int covered = coverage(mine, i);
+        if (covered == 0) {
+            EXPECT_EQ(m.mean, 0.5) << "block " << i;
         }
-        const double z = (m.mean - t.mean) / std::hypot(m.error, t.error);
+        // A few pixels are too few to know their own noise.
+        if (covered <= block * block / 2) continue;
+        const double rounding = 1e-6;  // of environment, in blocks that the volume hardly touches
+        const double z = (m.mean - t.mean) / std::hypot(m.error, t.error, rounding);
         squares.add(z * z), worst = std::max(worst, std::abs(z));
         a.mean += m.mean, a.error = std::hypot(a.error, m.error);
         b.mean += t.mean, b.error = std::hypot(b.error, t.error);
     }
-    ASSERT_GT(squares.count(), 100u);
+    ASSERT_GT(squares.count(), 90u);
     const Estimate ratio{a.mean / b.mean, std::hypot(a.error / a.mean, b.error / b.mean)};
-    testing::Test::RecordProperty("ratio", std::to_string(ratio.mean));
     expectAgrees(ratio, 1, largestError);
     // Squares of normal deviates: mean 1, variance 2.
     EXPECT_NEAR(squares.mean(), 1, 4 * std::sqrt(2 / static_cast<double>(squares.count())));
@@ -89,15 +104,17 @@ protected:
 };
 
 TEST_F(Peers, Thin) {
-    const Pair mine = ours("thin", 256);
+    const Pair mine = ours("thin", 128);
     for (const char* other : {"thin_mitsuba", "thin_cycles"}) {
         SCOPED_TRACE(other);
         expectSamePicture(mine, peer(other), 1, 1e-3);
     }
 }
 
-TEST_F(Peers, Cloud) { expectSamePicture(ours("cloud", 16), peer("cloud_pbrt"), 1, 4e-3); }
+TEST_F(Peers, Cloud) { expectSamePicture(ours("cloud", 16), peer("cloud_pbrt"), 1, 4.5e-3); }
 
+/// Cycles is some 0.2 % brighter than the same channels in other renderers, here and in pbrt, which
+/// this much noise does not resolve.
 TEST_F(Peers, Chromatic) {
     const Pair mine = ours("chromatic", 64), theirs = peer("chromatic_cycles");
     for (int c = 0; c < 3; ++c) expectSamePicture(mine, theirs, c, 3e-3);
@@ -107,7 +124,7 @@ TEST_F(Peers, Chromatic) {
 /// number per volume, sigma_s averaged over the channels. That is exact in the channel where both
 /// volumes have the same share of their average (green), and off in the others.
 TEST_F(Peers, OverlapInGreen) {
-    expectSamePicture(ours("overlap", 128), peer("overlap_cycles"), 1, 1e-3);
+    expectSamePicture(ours("overlap", 64), peer("overlap_cycles"), 1, 1.5e-3);
 }
 
 TEST_F(Peers, OverlapInRedAndBlueByBruteForce) {
@@ -117,7 +134,8 @@ TEST_F(Peers, OverlapInRedAndBlueByBruteForce) {
     constexpr int x0 = 80, y0 = 48, x1 = 128, y1 = 112;
     for (const int c : {0, 2}) {
         SCOPED_TRACE(testing::Message() << "channel " << c);
-        BruteScene physics{{}, std::get<Sun>(scene.lights.lights()[0]).towards(), 3, 0.5, scene.camera};
+        BruteScene physics{
+            {}, std::get<Sun>(scene.lights.lights()[0]).towards(), 3, 0.5, scene.camera};
         for (const MediumPart& part : scene.medium.parts) {
             const double scattering = part.scattering()[c];
             physics.volumes.push_back({&density, part.description().worldFromIndex,
@@ -126,13 +144,11 @@ TEST_F(Peers, OverlapInRedAndBlueByBruteForce) {
         BruteScene averaged = physics;
         for (std::size_t i = 0; i < averaged.volumes.size(); ++i)
             averaged.volumes[i].phaseWeight = scene.medium.parts[i].scattering().mean();
-        const int samples = 128;
+        const int samples = 64;
         const Estimate right = bruteRadiance(physics, x0, y0, x1, y1, samples);
         const Estimate theirs = bruteRadiance(averaged, x0, y0, x1, y1, samples);
-        testing::Test::RecordProperty("right", std::to_string(right.mean));
-        testing::Test::RecordProperty("averaged", std::to_string(theirs.mean));
-        expectAgree(meanOver(mine, c, x0, y0, x1, y1), right, 2.5e-3);
-        expectAgree(meanOver(cycles, c, x0, y0, x1, y1), theirs, 2.5e-3);
+        expectAgree(meanOver(mine, c, x0, y0, x1, y1), right, 4e-3);
+        expectAgree(meanOver(cycles, c, x0, y0, x1, y1), theirs, 4e-3);
         // They can be told apart.
         if (c == 0) {
             EXPECT_GT(theirs.mean - right.mean, 4 * std::hypot(theirs.error, right.error));

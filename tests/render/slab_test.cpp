@@ -44,9 +44,10 @@ void writeSky(const std::filesystem::path& file) {
 }
 
 std::string slabScene(double albedo, double g, const std::string& light, int samples) {
-    return fmt::format("[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = {}\ng = {}\n"
-                       "{}[render]\nresolution = [32, 32]\nspp = {}\n",
-                       albedo, g, light, samples) +
+    return fmt::format(
+               "[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = {}\ng = {}\n"
+               "{}[render]\nresolution = [32, 32]\nspp = {}\n",
+               albedo, g, light, samples) +
            pencilCamera({0, 50, 0}, {0, -1, 0});
 }
 const std::string sky = "[[light]]\ntype = \"environment\"\nimage = \"sky.exr\"\n";
@@ -58,8 +59,8 @@ struct Answer {
 };
 Answer throughTheProgram(const TempDir& dir, const std::string& scene) {
     writeText(dir / "slab.toml", scene);
-    const ProgramResult run = runProgram({"render", (dir / "slab.toml").string(), "-o",
-                                          (dir / "slab.exr").string(), "--quiet"});
+    const ProgramResult run = runProgram(
+        {"render", (dir / "slab.toml").string(), "-o", (dir / "slab.exr").string(), "--quiet"});
     EXPECT_EQ(run.exitCode, 0) << run.err;
     const ReadBack image = readBack(dir / "slab.exr");
     Moments red, blue;
@@ -82,20 +83,19 @@ class Slab : public testing::TestWithParam<Row> {};
 /// Adding-doubling with 64 nodes per hemisphere, beam at normal incidence, transmittance with the
 /// unscattered part; g = 0.75, depth 2, albedo 0.9 is also in van de Hulst 1980. Optical depth is
 /// the only coordinate of a slab: any layers of the same sum answer alike.
-INSTANTIATE_TEST_SUITE_P(
-    AddingDoubling, Slab,
-    testing::Values(Row{0, 0.1, 1, .047689, .952311, even, 256},
-                    Row{0, 1, 0.5, .099119, .446058, layered, 256},
-                    Row{0, 1, 0.99, .332922, .650978, even, 128},
-                    Row{0, 4, 0.9, .408142, .128524, layered, 256},
-                    Row{0, 4, 1, .690926, .309074, even, 64},
-                    Row{0.5, 1, 0.9, .129793, .739091, layered, 256},
-                    Row{0.5, 4, 0.99, .469796, .452650, layered, 64},
-                    Row{0.5, 16, 1, .820976, .179024, even, 128},
-                    Row{0.75, 1, 0.5, .015109, .564612, even, 512},
-                    Row{0.75, 2, 0.9, .097395, .660958, even, 256},
-                    Row{0.75, 2, 0.9, .097395, .660958, layered, 256},
-                    Row{0.75, 8, 1, .506415, .493585, layered, 64}));
+INSTANTIATE_TEST_SUITE_P(AddingDoubling, Slab,
+                         testing::Values(Row{0, 0.1, 1, .047689, .952311, even, 512},
+                                         Row{0, 1, 0.5, .099119, .446058, layered, 256},
+                                         Row{0, 1, 0.99, .332922, .650978, even, 128},
+                                         Row{0, 4, 0.9, .408142, .128524, layered, 256},
+                                         Row{0, 4, 1, .690926, .309074, even, 128},
+                                         Row{0.5, 1, 0.9, .129793, .739091, layered, 256},
+                                         Row{0.5, 4, 0.99, .469796, .452650, layered, 64},
+                                         Row{0.5, 16, 1, .820976, .179024, even, 256},
+                                         Row{0.75, 1, 0.5, .015109, .564612, even, 512},
+                                         Row{0.75, 2, 0.9, .097395, .660958, even, 256},
+                                         Row{0.75, 2, 0.9, .097395, .660958, layered, 256},
+                                         Row{0.75, 8, 1, .506415, .493585, layered, 64}));
 
 TEST_P(Slab, ReflectsAndTransmitsAsTheTablesSay) {
     const Row& row = GetParam();
@@ -125,10 +125,11 @@ TEST(Slab, AbsorptionIsBeerLambert) {
     writeSlab(dir / "slab.vdb", 1, layered, wide);
     for (const double tilt : {0.0, 2.0}) {
         const double cosine = 1 / std::hypot(1, tilt);
-        const Scene scene = sceneFrom("[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = 0\n"
-                                      "[[light]]\ntype = \"environment\"\nradiance = [1, 2, 4]\n" +
-                                          pencilCamera({0, 50, 0}, {tilt, -1, 0}),
-                                      dir.path());
+        const Scene scene = sceneFrom(
+            "[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = 0\n"
+            "[[light]]\ntype = \"environment\"\nradiance = [1, 2, 4]\n" +
+                pencilCamera({0, 50, 0}, {tilt, -1, 0}),
+            dir.path());
         const Film film = renderScene(scene, {32, 32, 512}).film;
         const double t = std::exp(-1 / cosine);
         expectAgrees(evenRadiance(film), {t, 2 * t, 4 * t}, 5e-3);
@@ -140,8 +141,8 @@ double henyeyGreensteinByTheBook(double cosine, double g) {
     return (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
-/// Single scattering of a beam with cosine mu0 (irradiance 1 across it) into a view of cosine mu, by
-/// a slab of this depth: Chandrasekhar 1960, sec. 44.
+/// Single scattering of a beam with cosine mu0 (irradiance 1 across it) into a view of cosine mu,
+/// by a slab of this depth: Chandrasekhar 1960, sec. 44.
 double onceReflected(double depth, double mu0, double mu) {
     return mu0 / (mu + mu0) * (1 - std::exp(-depth * (1 / mu + 1 / mu0)));
 }
@@ -166,9 +167,9 @@ TEST(Slab, ScattersOnceAsTheClosedFormSays) {
                             albedo, g, travel.x, travel.y, travel.z) +
                     pencilCamera({0, 50, 0}, view),
                 dir.path());
-            const double scattered = albedo * henyeyGreensteinByTheBook(dot(travel, -view), g) *
-                                     (side < 0 ? onceReflected(depth, mu0, mu)
-                                               : onceTransmitted(depth, mu0, mu));
+            const double scattered =
+                albedo * henyeyGreensteinByTheBook(dot(travel, -view), g) *
+                (side < 0 ? onceReflected(depth, mu0, mu) : onceTransmitted(depth, mu0, mu));
             expectAgrees(evenRadiance(renderScene(scene, {32, 32, 128, 0, 1}).film),
                          {scattered, 2 * scattered, 3 * scattered}, 5e-3);
         }

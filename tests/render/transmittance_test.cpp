@@ -145,8 +145,8 @@ TEST(Transmittance, OfACloudFromProduction) {
     const VdbValues values(teapot, "density");
     const VoxelFunction voxel = [&](Vec3i v) { return values.at(v); };
     const Affine3d indexFromWorld = values.worldFromIndex.inverse();
-    const Vec3d inside = values.worldFromIndex.point(
-        (values.box.lower + values.box.upper).as<double>() * 0.5);
+    const Vec3d inside =
+        values.worldFromIndex.point((values.box.lower + values.box.upper).as<double>() * 0.5);
     RandomStream random(5);
     for (int i = 0; i < 15; ++i) {
         SCOPED_TRACE(i);
@@ -155,9 +155,9 @@ TEST(Transmittance, OfACloudFromProduction) {
         const Vec3d direction = normalize(
             Vec3d{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
         const Vec3d eye = i % 3 == 0 ? target : target - direction * 3;
-        const double integral = lineIntegral(
-            voxel, values.box, indexFromWorld.point(eye), indexFromWorld.vector(direction), 0,
-            std::numeric_limits<double>::infinity());
+        const double integral = lineIntegral(voxel, values.box, indexFromWorld.point(eye),
+                                             indexFromWorld.vector(direction), 0,
+                                             std::numeric_limits<double>::infinity());
         // Thin enough that light comes through, which is where an error would show.
         const double scale = 1.5 / std::max(integral, 1.0);
         const double t = std::exp(-scale * integral);

@@ -136,9 +136,10 @@ RgbEstimate meanOverSeeds(const Scene& scene, Picture picture, int seeds) {
 std::string pencilCamera(Vec3d eye, Vec3d direction) {
     const Vec3d d = normalize(direction);
     const Vec3d up = std::abs(d.y) < 0.5 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-    return fmt::format("[camera]\ntype = \"orthographic\"\nheight = 1e-12\n"
-                       "eye = {}\nlook_at = {}\nup = {}\n",
-                       text(eye), text(eye + d), text(up));
+    return fmt::format(
+        "[camera]\ntype = \"orthographic\"\nheight = 1e-12\n"
+        "eye = {}\nlook_at = {}\nup = {}\n",
+        text(eye), text(eye + d), text(up));
 }
 
 }  // namespace woodcock::test

@@ -105,13 +105,11 @@ private:
             field_.table_ = BlockTable<Field::Block>({}, outside, false);
             return;
         }
-        // Dense while the array stays small beside the bricks; each blocks' entry is 12 bytes.
         const double volume = (1.0 + bounds.upper.x - bounds.lower.x) *
                               (1.0 + bounds.upper.y - bounds.lower.y) *
                               (1.0 + bounds.upper.z - bounds.lower.z);
-        const double brickBytes = static_cast<double>(source_.leafOrigins.size() * brickValues()) *
-                                  (field_.half_ ? 2 : 4);
-        const bool dense = volume * sizeof(Field::Block) <= std::max(262144.0, brickBytes / 4);
+        const bool dense =
+            volume * sizeof(Field::Block) <= std::max(262144.0, static_cast<double>(sparseBytes()));
         field_.table_ = BlockTable<Field::Block>(bounds, outside, dense);
 
         for (const FieldTile& t : source_.tiles) {
@@ -125,6 +123,26 @@ private:
             const Vec3i o = source_.leafOrigins[i];
             field_.table_.at({o.x >> 3, o.y >> 3, o.z >> 3}).ref = static_cast<std::uint32_t>(i);
         }
+    }
+
+    /// What a sparse table of the leaves would take: 4096 blocks for each region that leaves touch.
+    std::size_t sparseBytes() const {
+        std::unordered_set<std::uint64_t> regions;
+        std::uint64_t last = ~std::uint64_t{0};
+        for (const Vec3i o : source_.leafOrigins)
+            for (int i = 0; i < 8; ++i) {
+                // The ramp below a leaf reaches into the next region only from a region's first leaf.
+                const Vec3i below{i & 1, i >> 1 & 1, i >> 2};
+                if ((below.x && o.x & 127) || (below.y && o.y & 127) || (below.z && o.z & 127)) continue;
+                const auto part = [](int v) {
+                    return static_cast<std::uint64_t>(v >> regionLog2) & 0x1fffffu;
+                };
+                const Vec3i v = o - below;
+                const std::uint64_t region = part(v.x) | part(v.y) << 21 | part(v.z) << 42;
+                if (region != last) regions.insert(region);
+                last = region;
+            }
+        return regions.size() * 4096 * sizeof(Field::Block);
     }
 
     /// Widens every block's range from its own voxels to all that interpolation inside it touches:
