@@ -92,12 +92,9 @@ class PartWalk {
 public:
     PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
         : background_(part.background()), homogeneous_(!part.field()), end_(tMax), enter_(0),
-          leave_(tMax) {
-        if (part.support().empty() || !clip(ray, part.support(), enter_, leave_))
-            enter_ = leave_ = end_;  // all background
-        else if (!homogeneous_)
-            cells_ = CellWalk(part.majorants(), part.support(), ray, enter_, leave_);
-    }
+          leave_(tMax), cells_(enters(part, ray) && !homogeneous_
+                                   ? CellWalk(part.majorants(), part.support(), ray, enter_, leave_)
+                                   : CellWalk()) {}
 
     /// False for segments of the background before and after.
     bool insideSupport(const Segment& s) const { return s.t0 >= enter_ && s.t1 <= leave_; }
@@ -130,6 +127,12 @@ public:
 
 private:
     enum class Stage { Before, Inside, After, Done };
+
+    bool enters(const MediumPart& part, const IndexRay& ray) {
+        if (!part.support().empty() && clip(ray, part.support(), enter_, leave_)) return true;
+        enter_ = leave_ = end_;  // all background
+        return false;
+    }
 
     Range background_;
     bool homogeneous_;
