@@ -125,7 +125,8 @@ TEST(Session, SeedsAreIndependent) {
 TEST(Session, NothingIsNotFinite) {
     for (const char* sigma :
          {"sigma_s = 1e12\n", "sigma_a = 1e12\nsigma_s = 1\n", "sigma_s = 1e-12\n",
-          "sigma_a = 1e-12\n", "sigma_a = [1e4, 0, 1]\nsigma_s = [1, 1e-4, 0]\n"}) {
+          "sigma_a = 1e-12\n", "sigma_a = [1e4, 0, 1]\nsigma_s = [1, 1e-4, 0]\n",
+          "sigma_s = [1e12, 1, 1e-12]\n", "sigma_a = [1e12, 1, 0]\nsigma_s = [1, 1e-12, 1]\n"}) {
         RenderSettings s = settings(16, 16, 4);
         s.maxScatterings = 100;
         const RenderResult result = render(fog(sigma), s);

@@ -106,14 +106,26 @@ private:
     float threshold_, lowest_, killBelow_;
 };
 
+/// The largest sigma_t, per unit of the field, among channels that still carry anything: the others
+/// need no collisions. (Else a channel of optical depth 1e12 would set the pace of all.)
+template <int N>
+float liveExtinction(const MediumPart& part, Spectrum<N> weight) {
+    if constexpr (N == 1) return part.largestExtinction();
+    float largest = 0;
+    for (int c = 0; c < N; ++c)
+        if (weight[c] > 0) largest = std::max(largest, part.extinction()[c]);
+    return largest;
+}
+
 /// The tentative collisions of one part along a ray: a Poisson process at the rate of the majorant.
 /// The optical depth that is left is carried from cell to cell, so each collision costs one draw.
 class CollisionProcess {
 public:
-    CollisionProcess(const MediumPart& part, int index, Vec3d origin, Vec3d direction, double tMax,
-                     double u)
-        : part_(&part), index_(index), ray_(part.indexRay(origin, direction)),
-          walk_(part, ray_, tMax), depth_(-std::log(u)) {}
+    template <int N>
+    CollisionProcess(const MediumPart& part, int index, const DistanceQuery<N>& q, double u)
+        : part_(&part), index_(index), ray_(part.indexRay(q.origin, q.direction)),
+          walk_(part, ray_, q.tMax), extinction_(liveExtinction<N>(part, q.throughput)),
+          depth_(-std::log(u)) {}
 
     const MediumPart& part() const { return *part_; }
     int index() const { return index_; }
@@ -122,7 +134,13 @@ public:
     float mu() const { return mu_; }
     Range range() const { return segment_.range; }
 
-    void redraw(double u) { depth_ = -std::log(u); }
+    /// After a null collision that left these channels.
+    template <int N>
+    void redraw(double u, Spectrum<N> throughput) {
+        depth_ = -std::log(u);
+        extinction_ = liveExtinction<N>(*part_, throughput);
+        mu_ = segment_.range.max * extinction_;
+    }
 
     /// Goes on to the next collision before `limit`: true when there is one, at t(). Otherwise the
     /// walk pauses at `limit` or has ended; it can be called again with a larger limit.
@@ -144,7 +162,7 @@ public:
             }
             ++counters.segments;
             t_ = segment_.t0;
-            mu_ = segment_.range.max * part_->largestExtinction();
+            mu_ = segment_.range.max * extinction_;
         }
     }
 
@@ -154,8 +172,8 @@ private:
     IndexRay ray_;
     PartWalk walk_;
     Segment segment_{0, 0, {}};
+    float extinction_, mu_ = 0;
     double t_ = 0, depth_;
-    float mu_ = 0;
     bool ended_ = false;
 };
 
@@ -174,14 +192,14 @@ bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) 
         q.t = process.t(), q.part = process.index();
         return true;
     }
-    process.redraw(q.random.uniformOpenLow());
+    process.redraw(q.random.uniformOpenLow(), q.throughput);
     return false;
 }
 
 template <int N>
 void trackOnePart(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
                   TrackingCounters& counters) {
-    CollisionProcess process(medium.parts[0], 0, q.origin, q.direction, q.tMax, q.u);
+    CollisionProcess process(medium.parts[0], 0, q, q.u);
     while (process.advance(q.tMax, counters))
         if (settle(q, process, roulette)) return;
 }
@@ -194,7 +212,7 @@ void trackManyParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulett
                     std::vector<CollisionProcess>& processes, TrackingCounters& counters) {
     processes.clear();
     for (std::size_t i = 0; i < medium.parts.size(); ++i)
-        processes.emplace_back(medium.parts[i], static_cast<int>(i), q.origin, q.direction, q.tMax,
+        processes.emplace_back(medium.parts[i], static_cast<int>(i), q,
                                i == 0 ? q.u : q.random.uniformOpenLow());
     std::vector<bool> waiting(processes.size(), false);  // stands at a collision not yet met
     while (true) {
@@ -244,9 +262,13 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
     };
     while (walk.next(s)) {
         ++counters.segments;
-        const float width = s.range.max - s.range.min;
-        double rate = double{width} * part.largestExtinction();
-        if (rate > 0) rate *= effort(arrived().maximum(), q.roulette);
+        const double width = s.range.max - s.range.min;
+        const auto rateNow = [&] {
+            if (!(width > 0)) return 0.0;
+            const Spectrum<N> weight = arrived();
+            return width * liveExtinction<N>(part, weight) * effort(weight.maximum(), q.roulette);
+        };
+        double rate = rateNow();
         double t = s.t0;
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
@@ -257,6 +279,7 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
                                                static_cast<float>(rate));
             if (spent()) return false;
             depth = -std::log(q.random.uniformOpenLow());
+            if (N > 1) rate = rateNow();
         }
         if (rate > 0) depth -= (s.t1 - t) * rate;
         if (s.range.min > 0) {
