@@ -250,24 +250,37 @@ private:
 
     /// Trims to the voxels that differ from the background: rays start and end where the medium does.
     void findSupport() {
-        Box3d box;
-        const auto add = [&](Vec3i v, int size) {
-            box.add(v.as<double>());
-            box.add(v.as<double>() + Vec3d{1, 1, 1} * (size - 1.0));
-        };
+        const std::uint32_t outside = field_.table_.outside().ref;
+        Box3d blocks, box;
         field_.table_.forEach([&](Vec3i b, int log2Size, Field::Block& block) {
-            const Vec3i v = b * 8;
+            if (block.ref != outside) addCube(blocks, b * 8, 1 << log2Size);
+        });
+        const auto cover = [&](Vec3i v, int size, const Field::Block& block) {
             if (block.ref & Field::constantBit) {
-                if (differsFromBackground(v)) add(v, 1 << log2Size);
+                if (differsFromBackground(v)) addCube(box, v, size);
                 return;
             }
             if (box.contains(v.as<double>()) && box.contains((v + Vec3i{7, 7, 7}).as<double>())) return;
             for (int i = 0; i < 512; ++i) {
                 const Vec3i p = v + Vec3i{i >> 6, i >> 3 & 7, i & 7};
-                if (differsFromBackground(p)) add(p, 1);
+                if (differsFromBackground(p)) addCube(box, p, 1);
             }
-        });
+        };
+        // The outermost blocks first: few others then have voxels outside the box.
+        for (const bool outermost : {true, false})
+            field_.table_.forEach([&](Vec3i b, int log2Size, Field::Block& block) {
+                const int size = 1 << log2Size;
+                const Vec3d low = (b * 8).as<double>(), high = low + Vec3d{1, 1, 1} * (size - 1.0);
+                bool atEdge = false;
+                for (int i = 0; i < 3; ++i)
+                    atEdge |= low[i] == blocks.lower[i] || high[i] == blocks.upper[i];
+                if (block.ref != outside && atEdge == outermost) cover(b * 8, size, block);
+            });
         if (!box.empty()) field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}};
+    }
+    static void addCube(Box3d& box, Vec3i lowest, int size) {
+        box.add(lowest.as<double>());
+        box.add(lowest.as<double>() + Vec3d{1, 1, 1} * (size - 1.0));
     }
     bool differsFromBackground(Vec3i v) const {
         for (int c = 0; c < field_.channels_; ++c)
