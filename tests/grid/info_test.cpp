@@ -21,16 +21,16 @@ TEST(Info, SpeaksOfAllGridsAndWhatIsWrongWithThem) {
     const TempDir dir;
     GridSpec minus{.name = "shadow", .box = {{0, 0, 0}, {4, 4, 4}}};
     minus.value = [](Vec3i) { return -1.0; };
-    writeVdb(dir / "a.vdb",
-             {{.name = "density",
-               .voxels = {{{0, 0, 0}, {1}}, {{9, 1, 2}, {3}}, {{2, 0, 0}, {70000}}},
-               .worldFromIndex = Affine3d::translate({1, 2, 3})},
-              minus,
-              {.name = "dust", .type = VdbType::Points},
-              {.name = "sdf", .voxels = {{{0, 0, 0}, {1}}}, .gridClass = "level set"},
-              {.name = "sick",
-               .voxels = {{{1, 2, 3}, {std::numeric_limits<double>::quiet_NaN()}},
-                          {{0, 0, 0}, {1}}}}});
+    writeVdb(
+        dir / "a.vdb",
+        {{.name = "density",
+          .voxels = {{{0, 0, 0}, {1}}, {{9, 1, 2}, {3}}, {{2, 0, 0}, {70000}}},
+          .worldFromIndex = Affine3d::translate({1, 2, 3})},
+         minus,
+         {.name = "dust", .type = VdbType::Points},
+         {.name = "sdf", .voxels = {{{0, 0, 0}, {1}}}, .gridClass = "level set"},
+         {.name = "sick",
+          .voxels = {{{1, 2, 3}, {std::numeric_limits<double>::quiet_NaN()}}, {{0, 0, 0}, {1}}}}});
     const ProgramResult r = runProgram({"info", dir / "a.vdb"});
     EXPECT_EQ(r.exitCode, 0) << r.err;
     for (const char* part :

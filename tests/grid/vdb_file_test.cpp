@@ -32,12 +32,15 @@ protected:
 TEST_F(VdbFileTest, ListsTypesClassesAndMetadataInOrder) {
     const VdbFile file = list({{.name = "density", .voxels = one, .saveAsHalf = true},
                                {.name = "v", .type = VdbType::Vec3s, .gridClass = "staggered"},
-                               {.name = "id", .type = VdbType::Int64, .gridClass = "unknown",
+                               {.name = "id",
+                                .type = VdbType::Int64,
+                                .gridClass = "unknown",
                                 .metadata = {{"author", "somebody"}}},
                                {.name = "dust", .type = VdbType::Points},
                                {.name = "sdf", .gridClass = "level set"}});
-    EXPECT_EQ(describeGrids(file), "density (half-saved float), v (vec3s), id (int64), dust "
-                                   "(points), sdf (float)");
+    EXPECT_EQ(describeGrids(file),
+              "density (half-saved float), v (vec3s), id (int64), dust "
+              "(points), sdf (float)");
     EXPECT_EQ(file.grids[0].gridClass, GridClass::FogVolume);
     EXPECT_EQ(file.grids[1].gridClass, GridClass::Staggered);
     EXPECT_EQ(file.grids[1].channels, 3);
@@ -61,9 +64,8 @@ TEST_F(VdbFileTest, DuplicatesHaveNumbers) {
     const LoadedGrid first = loadGrid(file_, "density");
     EXPECT_EQ(first.field.voxel({0, 0, 0}), 1);
     EXPECT_EQ(first.notes.at(0), name() + " holds 3 grids named 'density'; took density[0]");
-    expectError(ErrorKind::Input, "grid 'density[3]' not found", [&] {
-        loadGrid(file_, "density[3]");
-    });
+    expectError(ErrorKind::Input, "grid 'density[3]' not found",
+                [&] { loadGrid(file_, "density[3]"); });
 }
 
 TEST_F(VdbFileTest, AnUnknownTypeDoesNotHideTheOtherGrids) {
@@ -74,8 +76,8 @@ TEST_F(VdbFileTest, AnUnknownTypeDoesNotHideTheOtherGrids) {
     EXPECT_EQ(describeGrids(file), "density (float), names (quark)");
     EXPECT_FALSE(file.grids[1].usable());
     EXPECT_EQ(loadGrid(file_, "density").field.voxel({0, 0, 0}), 1);
-    expectError(ErrorKind::Input, "grid 'names' in " + name() +
-                                      " cannot be used: grids of quark are not supported",
+    expectError(ErrorKind::Input,
+                "grid 'names' in " + name() + " cannot be used: grids of quark are not supported",
                 [&] { loadGrid(file_, "names"); });
 }
 
@@ -139,15 +141,14 @@ TEST_F(VdbFileTest, NamesAreFoundInAnyCase) {
 }
 
 TEST_F(VdbFileTest, AWrongNameListsWhatThereIs) {
-    const VdbFile file = list({{.name = "density"},
-                               {.name = "flame"},
-                               {.name = "velocity", .type = VdbType::Vec3s}});
+    const VdbFile file = list(
+        {{.name = "density"}, {.name = "flame"}, {.name = "velocity", .type = VdbType::Vec3s}});
     expectError(ErrorKind::Input,
-                "grid 'desnity' not found in " + name() + "; did you mean 'density'?; it has: "
-                "density (float), flame (float), velocity (vec3s)",
+                "grid 'desnity' not found in " + name() +
+                    "; did you mean 'density'?; it has: "
+                    "density (float), flame (float), velocity (vec3s)",
                 [&] { findGrid(file, "desnity"); });
-    expectError(ErrorKind::Input,
-                "grid 'xyz' not found in " + name() + "; it has: density (float)",
+    expectError(ErrorKind::Input, "grid 'xyz' not found in " + name() + "; it has: density (float)",
                 [&] { findGrid(file, "xyz"); });
 }
 
@@ -167,16 +168,17 @@ TEST_F(VdbFileTest, RolesByTheirUsualNames) {
 }
 
 TEST_F(VdbFileTest, TheOnlyScalarGridIsTheDensityUnlessItsNameSaysOtherwise) {
-    const FoundGrid only = findGrid(list({{.name = "cloud"},
-                                          {.name = "shadow"},
-                                          {.name = "v", .type = VdbType::Vec3s}}),
-                                    GridRole::Density);
+    const FoundGrid only = findGrid(
+        list({{.name = "cloud"}, {.name = "shadow"}, {.name = "v", .type = VdbType::Vec3s}}),
+        GridRole::Density);
     EXPECT_EQ(only.grid.name, "cloud");
     EXPECT_NE(only.note.find("took 'cloud'"), std::string::npos);
     const std::string message = "no density grid in " + name() + " (looked for: density, smoke)";
-    for (const std::vector<GridSpec>& grids :
-         {std::vector<GridSpec>{{.name = "shadow"}}, {{.name = "temperature"}},
-          {{.name = "a"}, {.name = "b"}}, {{.name = "sdf", .gridClass = "level set"}}, {}}) {
+    for (const std::vector<GridSpec>& grids : {std::vector<GridSpec>{{.name = "shadow"}},
+                                               {{.name = "temperature"}},
+                                               {{.name = "a"}, {.name = "b"}},
+                                               {{.name = "sdf", .gridClass = "level set"}},
+                                               {}}) {
         const VdbFile file = list(grids);
         expectError(ErrorKind::Input, message, [&] { findGrid(file, GridRole::Density); });
     }

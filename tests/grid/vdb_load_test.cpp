@@ -102,10 +102,9 @@ TEST_F(VdbLoad, AllCompressionsReadTheSame) {
 }
 
 TEST_F(VdbLoad, TilesOfEveryLevelFillTheirCubes) {
-    const LoadedGrid grid = load({.tiles = {{{8, 0, -8}, 8, {2}},
-                                            {{128, 0, 0}, 128, {3}},
-                                            {{-4096, 0, 4096}, 4096, {4}}},
-                                  .voxels = {{{0, 0, 0}, {1}}}});
+    const LoadedGrid grid = load(
+        {.tiles = {{{8, 0, -8}, 8, {2}}, {{128, 0, 0}, 128, {3}}, {{-4096, 0, 4096}, 4096, {4}}},
+         .voxels = {{{0, 0, 0}, {1}}}});
     const Field& f = grid.field;
     EXPECT_EQ(f.voxel({8, 0, -8}), 2);
     EXPECT_EQ(f.voxel({15, 7, -1}), 2);
@@ -157,8 +156,8 @@ TEST_F(VdbLoad, AnyAffineTransform) {
                            {7, -8, 9}};
     for (const Affine3d& m :
          {Affine3d{}, Affine3d::translate({1e6, -2e6, 3}) * Affine3d::scale({0.1, 0.1, 0.1}),
-          Affine3d::rotate(1, 30) * Affine3d::scale({1, 2, 3}),
-          Affine3d::scale({-1, 1, 1}), sheared}) {
+          Affine3d::rotate(1, 30) * Affine3d::scale({1, 2, 3}), Affine3d::scale({-1, 1, 1}),
+          sheared}) {
         const LoadedGrid grid = load({.voxels = {{{3, 4, 5}, {1}}}, .worldFromIndex = m});
         const Vec3d expected = m.point({3, 4, 5});
         const Vec3d found = grid.worldFromIndex.point({3, 4, 5});

@@ -30,8 +30,8 @@ SceneDescription fullScene() {
     SceneDescription scene;
     scene.ocio = "~odd/config.ocio";
 
-    VolumeDescription volume =
-        fileVolume(DensityCoefficients{"name[2]", Rgb(0.1f, 1e-12f, 3e12f), Vec3d{0.3, 0, 1 - 1e-7}, "Cd"});
+    VolumeDescription volume = fileVolume(
+        DensityCoefficients{"name[2]", Rgb(0.1f, 1e-12f, 3e12f), Vec3d{0.3, 0, 1 - 1e-7}, "Cd"});
     volume.g = 0.1f;
     volume.worldFromObject = {{Vec3d{0.1, 0.2, 1.0 / 3}, {-1e-7, 2, 0}, {0.5, 0, 1e7}},
                               {1e7 + 1.0 / 3, -0.1, 5}};

@@ -70,20 +70,29 @@ openvdb::GridBase::Ptr makeGrid(const GridSpec& spec) {
 
 openvdb::GridBase::Ptr makeValues(const GridSpec& spec) {
     switch (spec.type) {
-        case VdbType::Float: return makeGrid<openvdb::FloatTree>(spec);
-        case VdbType::Double: return makeGrid<openvdb::DoubleTree>(spec);
-        case VdbType::Int32: return makeGrid<openvdb::Int32Tree>(spec);
-        case VdbType::Int64: return makeGrid<openvdb::Int64Tree>(spec);
-        case VdbType::Bool: return makeGrid<openvdb::BoolTree>(spec);
+        case VdbType::Float:
+            return makeGrid<openvdb::FloatTree>(spec);
+        case VdbType::Double:
+            return makeGrid<openvdb::DoubleTree>(spec);
+        case VdbType::Int32:
+            return makeGrid<openvdb::Int32Tree>(spec);
+        case VdbType::Int64:
+            return makeGrid<openvdb::Int64Tree>(spec);
+        case VdbType::Bool:
+            return makeGrid<openvdb::BoolTree>(spec);
         case VdbType::Mask: {
             auto grid = openvdb::MaskGrid::create();
             fill(grid->tree(), spec);
             return grid;
         }
-        case VdbType::Vec3s: return makeGrid<openvdb::Vec3STree>(spec);
-        case VdbType::Vec3d: return makeGrid<openvdb::Vec3DTree>(spec);
-        case VdbType::Vec3i: return makeGrid<openvdb::Vec3ITree>(spec);
-        case VdbType::Points: return openvdb::points::PointDataGrid::create();
+        case VdbType::Vec3s:
+            return makeGrid<openvdb::Vec3STree>(spec);
+        case VdbType::Vec3d:
+            return makeGrid<openvdb::Vec3DTree>(spec);
+        case VdbType::Vec3i:
+            return makeGrid<openvdb::Vec3ITree>(spec);
+        case VdbType::Points:
+            return openvdb::points::PointDataGrid::create();
     }
     throw std::logic_error("no such VdbType");
 }

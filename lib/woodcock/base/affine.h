@@ -27,9 +27,9 @@ struct Affine3d {
         const Vec3d r1 = cross(column[2], column[0]);
         const Vec3d r2 = cross(column[0], column[1]);
         const double s = 1.0 / dot(column[0], r0);
-        Affine3d m{{Vec3d{r0.x, r1.x, r2.x} * s, Vec3d{r0.y, r1.y, r2.y} * s,
-                    Vec3d{r0.z, r1.z, r2.z} * s},
-                   {}};
+        Affine3d m{
+            {Vec3d{r0.x, r1.x, r2.x} * s, Vec3d{r0.y, r1.y, r2.y} * s, Vec3d{r0.z, r1.z, r2.z} * s},
+            {}};
         m.translation = -m.vector(translation);
         return m;
     }

@@ -5,8 +5,9 @@
 
 namespace woodcock {
 
-/// A bijection of 64-bit words that leaves no visible structure: the finalizer of Steele et al. 2014,
-/// "Fast Splittable Pseudorandom Number Generators", with the constants of Stafford's variant 13.
+/// A bijection of 64-bit words that leaves no visible structure: the finalizer of Steele et al.
+/// 2014, "Fast Splittable Pseudorandom Number Generators", with the constants of Stafford's
+/// variant 13.
 constexpr std::uint64_t mixBits(std::uint64_t v) {
     v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
     v = (v ^ (v >> 27)) * 0x94d049bb133111ebu;

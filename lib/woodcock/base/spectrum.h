@@ -15,9 +15,7 @@ struct Spectrum {
 
     constexpr Spectrum() = default;
     constexpr explicit Spectrum(float v) { c.fill(v); }
-    constexpr Spectrum(float r, float g, float b)
-        requires(N == 3)
-        : c{r, g, b} {}
+    constexpr Spectrum(float r, float g, float b) requires(N == 3) : c{r, g, b} {}
 
     constexpr float& operator[](int i) { return c[static_cast<size_t>(i)]; }
     constexpr float operator[](int i) const { return c[static_cast<size_t>(i)]; }

@@ -69,8 +69,9 @@ public:
         std::uint32_t& region = regions_[split(super->second, regions_, 32768,
                                                [](std::uint32_t uniform) { return uniform; }) +
                                          regionIndex(b)];
-        return blocks_[split(region, blocks_, 4096,
-                             [&](std::uint32_t uniform) { return uniform_[uniform & ~uniformBit]; }) +
+        return blocks_[split(
+                           region, blocks_, 4096,
+                           [&](std::uint32_t uniform) { return uniform_[uniform & ~uniformBit]; }) +
                        blockIndex(b)];
     }
 
@@ -203,8 +204,8 @@ private:
     Vec3i extent_{};
     T outside_{};
     bool dense_ = true;
-    std::vector<T> blocks_;   // dense: the whole array; sparse: tables of 4096
-    std::vector<T> uniform_;  // values of whole regions and super-regions
+    std::vector<T> blocks_;               // dense: the whole array; sparse: tables of 4096
+    std::vector<T> uniform_;              // values of whole regions and super-regions
     std::vector<std::uint32_t> regions_;  // tables of 32768: into blocks_, or uniformBit | uniform_
     std::unordered_map<std::uint64_t, std::uint32_t> supers_;
 };

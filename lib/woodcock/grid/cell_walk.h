@@ -52,7 +52,8 @@ public:
             if (still) ray_.direction[i] = 0;         // stays off the face ahead: 0 x inf is NaN
             forward_[i] = still || d > 0;
             inverse_[i] = still ? std::numeric_limits<double>::infinity() : 1 / d;
-            low_[i] = static_cast<int>(support.lower[i]), high_[i] = static_cast<int>(support.upper[i]);
+            low_[i] = static_cast<int>(support.lower[i]),
+            high_[i] = static_cast<int>(support.upper[i]);
             const double p = ray_.at(t0)[i];
             voxel_[i] = floorToInt(std::clamp(p, support.lower[i], support.upper[i]));
         }
@@ -64,7 +65,8 @@ public:
         const MajorantGrid::Cell cell = majorants_->find(voxel_);
         const int size = 1 << cell.log2Size;
         const Vec3i corner{voxel_.x & -size, voxel_.y & -size, voxel_.z & -size};
-        // Ray parameters of the faces ahead; without branches, as which one is first is a coin toss.
+        // Ray parameters of the faces ahead; without branches, as which one is first is a coin
+        // toss.
         const double tx = (corner.x + double(forward_.x) * size - ray_.origin.x) * inverse_.x;
         const double ty = (corner.y + double(forward_.y) * size - ray_.origin.y) * inverse_.y;
         const double tz = (corner.z + double(forward_.z) * size - ray_.origin.z) * inverse_.z;
@@ -82,7 +84,8 @@ public:
             const int across = std::clamp(floorToInt(at), from, from + size - 1);
             return along ? from + (forward ? size : -1) : across;
         };
-        voxel_ = {enter(alongX, forward_.x, corner.x, p.x), enter(alongY, forward_.y, corner.y, p.y),
+        voxel_ = {enter(alongX, forward_.x, corner.x, p.x),
+                  enter(alongY, forward_.y, corner.y, p.y),
                   enter(alongZ, forward_.z, corner.z, p.z)};
         if (std::min({voxel_.x - low_.x, voxel_.y - low_.y, voxel_.z - low_.z, high_.x - voxel_.x,
                       high_.y - voxel_.y, high_.z - voxel_.z}) < 0)

@@ -16,8 +16,19 @@ namespace {
 constexpr float largestHalf = 65504.0f;
 
 Range rangeOf(std::span<const float> values) {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return {*low, *high};
+    Range r{values[0], values[0]};
+    for (float v : values) r.add({v, v});
+    return r;
+}
+
+/// The same for a whole brick, in lanes that a compiler can keep in one register.
+Range rangeOfBrick(std::span<const float> values) {
+    std::array<Range, 8> lanes;
+    lanes.fill({values[0], values[0]});
+    for (std::size_t i = 0; i < values.size(); i += 8)
+        for (std::size_t j = 0; j < 8; ++j) lanes[j].add({values[i + j], values[i + j]});
+    for (const Range& r : lanes) lanes[0].add(r);
+    return lanes[0];
 }
 
 }  // namespace
@@ -37,7 +48,8 @@ private:
     std::size_t brickValues() const { return 512 * field_.channelCount(); }
 
     std::uint32_t addConstant(const std::array<float, 3>& value) {
-        const auto index = static_cast<std::uint32_t>(field_.constants_.size() / field_.channelCount());
+        const auto index =
+            static_cast<std::uint32_t>(field_.constants_.size() / field_.channelCount());
         field_.constants_.insert(field_.constants_.end(), value.begin(),
                                  value.begin() + source_.channels);
         return Field::constantBit | index;
@@ -46,6 +58,7 @@ private:
     void copyBricks(Storage storage) {
         const std::size_t n = source_.leafOrigins.size();
         field_.brickCount_ = n;
+        brickRanges_.resize(n);
         if (storage == Storage::Half) {
             copyAsHalf();
             return;
@@ -55,6 +68,7 @@ private:
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             const std::span<float> brick(field_.floats_.data() + i * brickValues(), brickValues());
             source_.copyLeaf(i, brick);
+            brickRanges_[i] = rangeOfBrick(brick);
             if (!exactAsHalf.load(std::memory_order_relaxed)) return;
             for (float v : brick)
                 if (!(std::abs(v) <= largestHalf) || static_cast<float>(Imath::half(v)) != v)
@@ -78,13 +92,16 @@ private:
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             std::array<float, 3 * 512> values;
             source_.copyLeaf(i, {values.data(), brickValues()});
+            const Range exact = rangeOfBrick({values.data(), brickValues()});
+            brickRanges_[i] = {Imath::half(exact.min), Imath::half(exact.max)};  // rounds in order
             for (std::size_t j = 0; j < brickValues(); ++j) {
                 if (!(std::abs(values[j]) <= largestHalf)) overflow = true;
                 field_.halves_[i * brickValues() + j] = Imath::half(values[j]).bits();
             }
         });
         if (overflow)
-            throw inputError("a voxel exceeds {}, the largest half; use float storage", largestHalf);
+            throw inputError("a voxel exceeds {}, the largest half; use float storage",
+                             largestHalf);
     }
 
     void placeBlocks() {
@@ -131,9 +148,11 @@ private:
         std::uint64_t last = ~std::uint64_t{0};
         for (const Vec3i o : source_.leafOrigins)
             for (int i = 0; i < 8; ++i) {
-                // The ramp below a leaf reaches into the next region only from a region's first leaf.
+                // The ramp below a leaf reaches into the next region only from a region's first
+                // leaf.
                 const Vec3i below{i & 1, i >> 1 & 1, i >> 2};
-                if ((below.x && o.x & 127) || (below.y && o.y & 127) || (below.z && o.z & 127)) continue;
+                if ((below.x && o.x & 127) || (below.y && o.y & 127) || (below.z && o.z & 127))
+                    continue;
                 const auto part = [](int v) {
                     return static_cast<std::uint64_t>(v >> regionLog2) & 0x1fffffu;
                 };
@@ -157,7 +176,8 @@ private:
         std::vector<Range> ranges(blocks.size());
         tbb::parallel_for(std::size_t{0}, blocks.size(),
                           [&](std::size_t i) { ranges[i] = reconstructionRange(blocks[i]); });
-        for (std::size_t i = 0; i < blocks.size(); ++i) field_.table_.at(blocks[i]).range = ranges[i];
+        for (std::size_t i = 0; i < blocks.size(); ++i)
+            field_.table_.at(blocks[i]).range = ranges[i];
 
         field_.range_ = field_.table_.outside().range;
         field_.table_.forEach([&](Vec3i, int, Field::Block& b) { field_.range_.add(b.range); });
@@ -211,8 +231,8 @@ private:
             const Vec3i side{i & 1, i >> 1 & 1, i >> 2};
             const Vec3i corner = region + side * 16;
             const bool uniform = field_.table_.find(corner).log2Size > blockLog2;
-            const Vec3i n = uniform ? Vec3i{1, 1, 1}
-                                    : Vec3i{side.x ? 1 : 16, side.y ? 1 : 16, side.z ? 1 : 16};
+            const Vec3i n =
+                uniform ? Vec3i{1, 1, 1} : Vec3i{side.x ? 1 : 16, side.y ? 1 : 16, side.z ? 1 : 16};
             for (int x = 0; x < n.x; ++x)
                 for (int y = 0; y < n.y; ++y)
                     for (int z = 0; z < n.z; ++z)
@@ -236,19 +256,22 @@ private:
         const std::size_t channels = field_.channelCount();
         if (ref & Field::constantBit)
             return rangeOf({&field_.constants_[(ref & ~Field::constantBit) * channels], channels});
+        if (n == Vec3i{8, 8, 8}) return brickRanges_[ref];
         const std::size_t base = std::size_t{ref} * 512;
         Range r{field_.stored(base * channels), field_.stored(base * channels)};
         for (int x = 0; x < n.x; ++x)
             for (int y = 0; y < n.y; ++y)
                 for (int z = 0; z < n.z; ++z)
                     for (std::size_t c = 0; c < channels; ++c) {
-                        const float v = field_.stored((base + Field::offset({x, y, z})) * channels + c);
+                        const float v =
+                            field_.stored((base + Field::offset({x, y, z})) * channels + c);
                         r.add({v, v});
                     }
         return r;
     }
 
-    /// Trims to the voxels that differ from the background: rays start and end where the medium does.
+    /// Trims to the voxels that differ from the background: rays start and end where the medium
+    /// does.
     void findSupport() {
         const std::uint32_t outside = field_.table_.outside().ref;
         Box3d blocks, box;
@@ -260,7 +283,8 @@ private:
                 if (differsFromBackground(v)) addCube(box, v, size);
                 return;
             }
-            if (box.contains(v.as<double>()) && box.contains((v + Vec3i{7, 7, 7}).as<double>())) return;
+            if (box.contains(v.as<double>()) && box.contains((v + Vec3i{7, 7, 7}).as<double>()))
+                return;
             for (int i = 0; i < 512; ++i) {
                 const Vec3i p = v + Vec3i{i >> 6, i >> 3 & 7, i & 7};
                 if (differsFromBackground(p)) addCube(box, p, 1);
@@ -276,7 +300,8 @@ private:
                     atEdge |= low[i] == blocks.lower[i] || high[i] == blocks.upper[i];
                 if (block.ref != outside && atEdge == outermost) cover(b * 8, size, block);
             });
-        if (!box.empty()) field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}};
+        if (!box.empty())
+            field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}};
     }
     static void addCube(Box3d& box, Vec3i lowest, int size) {
         box.add(lowest.as<double>());
@@ -290,6 +315,7 @@ private:
 
     const FieldSource& source_;
     Field field_;
+    std::vector<Range> brickRanges_;  // of each brick's own voxels
 };
 
 Field buildField(const FieldSource& source, Storage storage) {

@@ -35,8 +35,8 @@ public:
     /// voxels of a leaf or tile that differ from it. Empty when there are none.
     const Box3d& support() const { return support_; }
 
-    /// The point of the support next to `p`, or `p` inside it: the reconstruction there is the same,
-    /// and voxel numbers fit an int.
+    /// The point of the support next to `p`, or `p` inside it: the reconstruction there is the
+    /// same, and voxel numbers fit an int.
     Vec3d nearSupport(Vec3d p) const {
         return support_.empty() ? Vec3d{} : max(support_.lower, min(support_.upper, p));
     }
@@ -52,7 +52,8 @@ public:
         const Vec3d f = p - v.as<double>();
         const auto lerp = [](double t, double a, double b) { return a + t * (b - a); };
         const auto row = [&](int y, int z) {
-            return lerp(f.x, voxel(v + Vec3i{0, y, z}, channel), voxel(v + Vec3i{1, y, z}, channel));
+            return lerp(f.x, voxel(v + Vec3i{0, y, z}, channel),
+                        voxel(v + Vec3i{1, y, z}, channel));
         };
         return static_cast<float>(
             lerp(f.z, lerp(f.y, row(0, 0), row(1, 0)), lerp(f.y, row(0, 1), row(1, 1))));
@@ -64,9 +65,9 @@ public:
     Vec3i stochasticVoxel(Vec3d p, std::uint64_t bits) const {
         constexpr double unit = 0x1p-21;
         return floorToInt(p + Vec3d{static_cast<double>(bits & 0x1fffff) + 0.5,
-                                 static_cast<double>((bits >> 21) & 0x1fffff) + 0.5,
-                                 static_cast<double>((bits >> 42) & 0x1fffff) + 0.5} *
-                               unit);
+                                    static_cast<double>((bits >> 21) & 0x1fffff) + 0.5,
+                                    static_cast<double>((bits >> 42) & 0x1fffff) + 0.5} *
+                                  unit);
     }
     float stochastic(Vec3d p, std::uint64_t bits, int channel = 0) const {
         return voxel(stochasticVoxel(p, bits), channel);
@@ -136,7 +137,7 @@ private:
     std::size_t brickCount_ = 0;
     BlockTable<Block> table_;
     std::vector<float> constants_;
-    std::vector<float> floats_;         // either these or
+    std::vector<float> floats_;          // either these or
     std::vector<std::uint16_t> halves_;  // these: 512 x channels values a brick
 };
 

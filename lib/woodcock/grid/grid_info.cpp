@@ -32,9 +32,8 @@ GridInfo::Contents inspectContents(const VdbFile& file, const GridListing& grid)
     const GridSource source = readGridSource(file, grid, {.faulty = true, .negative = false});
     GridInfo::Contents contents;
     contents.statistics = source.statistics;
-    const Field field =
-        buildField(source.field, source.statistics.voxels.exactAsHalf ? Storage::Half
-                                                                      : Storage::Float);
+    const Field field = buildField(
+        source.field, source.statistics.voxels.exactAsHalf ? Storage::Half : Storage::Float);
     contents.fieldBytes = field.bytes();
     contents.fieldStorage = field.storage();
     const Box3i& active = source.statistics.activeBounds;
@@ -55,8 +54,8 @@ void remarkOnValues(const GridListing& grid, const GridStatistics& statistics,
         remarks.push_back("it has no active voxels");
     } else if (voxels.finite > 0) {
         const auto channels = static_cast<std::size_t>(grid.channels);
-        const bool constant = std::equal(voxels.min.begin(), voxels.min.begin() + channels,
-                                         voxels.max.begin());
+        const bool constant =
+            std::equal(voxels.min.begin(), voxels.min.begin() + channels, voxels.max.begin());
         if (constant && voxels.active > 1 && grid.channels == 1 && grid.valueType != "bool" &&
             grid.valueType != "mask")
             remarks.push_back(fmt::format("all of its active voxels are {}", voxels.min[0]));
@@ -66,9 +65,10 @@ void remarkOnValues(const GridListing& grid, const GridStatistics& statistics,
                 fmt::format("values up to {} exceed the range of half storage (65504)", largest));
     }
     if (voxels.inactiveValues > 0)
-        remarks.push_back(fmt::format("{} inactive voxels differ from the background; they are "
-                                      "rendered as well",
-                                      voxels.inactiveValues));
+        remarks.push_back(
+            fmt::format("{} inactive voxels differ from the background; they are "
+                        "rendered as well",
+                        voxels.inactiveValues));
     if (statistics.background != std::array<float, 3>{} && grid.gridClass != GridClass::LevelSet)
         remarks.push_back("its background is not zero: that value fills all of space around it");
 }
@@ -79,9 +79,10 @@ void remarkOnShape(const GridListing& grid, const GridStatistics& statistics,
     if (!box.empty()) {
         const double share = static_cast<double>(statistics.voxels.active) / voxelsIn(box);
         if (voxelsIn(box) > 1e9 && share < 1e-5)
-            remarks.push_back(fmt::format("its bounds are huge: only {:.1e} of them is active; are "
-                                          "there stray voxels?",
-                                          share));
+            remarks.push_back(
+                fmt::format("its bounds are huge: only {:.1e} of them is active; are "
+                            "there stray voxels?",
+                            share));
     }
     if (grid.gridClass == GridClass::Staggered)
         remarks.push_back("it is staggered: its values belong to the faces of voxels");

@@ -22,7 +22,7 @@ struct GridInfo {
         GridStatistics statistics;
         std::size_t fieldBytes = 0;  ///< of the renderer's own field
         Storage fieldStorage = Storage::Float;
-        std::optional<Box3d> worldBounds;  ///< of the positions of active voxels
+        std::optional<Box3d> worldBounds;             ///< of the positions of active voxels
         std::optional<MajorantStatistics> majorants;  ///< absent where a majorant means nothing
     };
     GridListing listing;

@@ -26,19 +26,24 @@ std::span<const std::string_view> namesOf(GridRole role) {
     static constexpr std::string_view colour[]{"cd", "color", "colour", "rgb", "albedo"};
     static constexpr std::string_view velocity[]{"vel", "v", "velocity"};
     switch (role) {
-        case GridRole::Density: return density;
-        case GridRole::Emission: return emission;
-        case GridRole::Temperature: return temperature;
-        case GridRole::Colour: return colour;
-        case GridRole::Velocity: return velocity;
+        case GridRole::Density:
+            return density;
+        case GridRole::Emission:
+            return emission;
+        case GridRole::Temperature:
+            return temperature;
+        case GridRole::Colour:
+            return colour;
+        case GridRole::Velocity:
+            return velocity;
     }
     return {};
 }
 
 /// Scalars that are no density although they may stand alone in a file.
 bool meansSomethingElse(std::string_view name) {
-    static constexpr std::string_view others[]{"shadow", "collision", "collider", "pressure",
-                                               "divergence", "surface", "mask"};
+    static constexpr std::string_view others[]{"shadow",     "collision", "collider", "pressure",
+                                               "divergence", "surface",   "mask"};
     const std::string lower = lowerCase(name);
     if (std::find(std::begin(others), std::end(others), lower) != std::end(others)) return true;
     for (GridRole role :
@@ -67,8 +72,8 @@ FoundGrid found(const VdbFile& file, const GridListing& grid, std::string note =
 
 const GridListing* findByRoleName(const VdbFile& file, GridRole role) {
     for (std::string_view name : namesOf(role))
-        if (const auto* grid = firstWhere(
-                file, [&](const GridListing& g) { return lowerCase(g.name) == name; }))
+        if (const auto* grid =
+                firstWhere(file, [&](const GridListing& g) { return lowerCase(g.name) == name; }))
             return grid;
     return nullptr;
 }
@@ -77,11 +82,16 @@ const GridListing* findByRoleName(const VdbFile& file, GridRole role) {
 
 const char* roleName(GridRole role) {
     switch (role) {
-        case GridRole::Density: return "density";
-        case GridRole::Emission: return "emission";
-        case GridRole::Temperature: return "temperature";
-        case GridRole::Colour: return "colour";
-        case GridRole::Velocity: return "velocity";
+        case GridRole::Density:
+            return "density";
+        case GridRole::Emission:
+            return "emission";
+        case GridRole::Temperature:
+            return "temperature";
+        case GridRole::Colour:
+            return "colour";
+        case GridRole::Velocity:
+            return "velocity";
     }
     return "";
 }

@@ -45,8 +45,7 @@ std::uint16_t roundUp(float v) {
 /// Ranges of the 64 cells of 2^3 voxels inside block `b`, halo included.
 std::array<Range, 64> finestRanges(const Field& field, Vec3i b) {
     std::vector<Field::BlockVoxels> blocks;  // b and its neighbours on the + sides
-    for (int i = 0; i < 8; ++i)
-        blocks.emplace_back(field, b + Vec3i{i & 1, i >> 1 & 1, i >> 2});
+    for (int i = 0; i < 8; ++i) blocks.emplace_back(field, b + Vec3i{i & 1, i >> 1 & 1, i >> 2});
     std::array<Range, 729> voxels;
     for (int i = 0; i < 729; ++i) {
         const Vec3i v{i % 9, i / 9 % 9, i / 81};
@@ -61,7 +60,8 @@ std::array<Range, 64> finestRanges(const Field& field, Vec3i b) {
         const int x = (i & 3) * 2, y = (i >> 2 & 3) * 2, z = (i >> 4) * 2;
         Range r = voxels[static_cast<std::size_t>(x + 9 * y + 81 * z)];
         for (int j = 0; j < 27; ++j)
-            r.add(voxels[static_cast<std::size_t>(x + j % 3 + 9 * (y + j / 3 % 3) + 81 * (z + j / 9))]);
+            r.add(voxels[static_cast<std::size_t>(x + j % 3 + 9 * (y + j / 3 % 3) +
+                                                  81 * (z + j / 9))]);
         cells[static_cast<std::size_t>(i)] = r;
     }
     return cells;
@@ -165,7 +165,8 @@ MajorantGrid::MajorantGrid(const Field& field, const Options& options) {
                 for (int k = 0; k < 8; ++k) {
                     const int x = 2 * (j % n) + (k & 1), y = 2 * (j / n % n) + (k >> 1 & 1),
                               z = 2 * (j / n / n) + (k >> 2);
-                    const Node& child = below[static_cast<std::size_t>(x + 2 * n * (y + 2 * n * z))];
+                    const Node& child =
+                        below[static_cast<std::size_t>(x + 2 * n * (y + 2 * n * z))];
                     if (!child.used) continue;
                     if (!node.used) node.range = child.range;
                     node.used = true;

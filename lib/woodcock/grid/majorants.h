@@ -42,16 +42,18 @@ public:
         const auto part = static_cast<std::uint32_t>(~e.code);
         const int log2Size = part & 1 ? 1 : 2;  // 64 cells of 2^3 voxels or 8 of 4^3
         const int n = blockLog2 - log2Size, mask = (1 << n) - 1;
-        const Part& p = parts_[(part >> 1) + static_cast<std::uint32_t>(
-            (voxel.x >> log2Size & mask) | (voxel.y >> log2Size & mask) << n |
-            (voxel.z >> log2Size & mask) << (2 * n))];
+        const Part& p = parts_[(part >> 1) +
+                               static_cast<std::uint32_t>((voxel.x >> log2Size & mask) |
+                                                          (voxel.y >> log2Size & mask) << n |
+                                                          (voxel.z >> log2Size & mask) << (2 * n))];
         return {{widen(p.min), widen(p.max)}, log2Size};
     }
 
     std::size_t bytes() const { return table_.bytes() + parts_.capacity() * sizeof(Part); }
 
 private:
-    /// code >= 0: log2 of the cell's size in voxels; else ~code is 2 x first part + (parts are 2^3).
+    /// code >= 0: log2 of the cell's size in voxels; else ~code is 2 x first part + (parts are
+    /// 2^3).
     struct Entry {
         Range range;
         std::int32_t code = blockLog2;
@@ -70,9 +72,9 @@ private:
 
 /// How well a majorant grid fits its field.
 struct MajorantStatistics {
-    double segmentsPerRay = 0;   ///< mean over rays that meet the field
-    double segmentsError = 0;    ///< its standard error
-    double majorantOverMean = 0; ///< mean upper bound over mean value, along those rays
+    double segmentsPerRay = 0;    ///< mean over rays that meet the field
+    double segmentsError = 0;     ///< its standard error
+    double majorantOverMean = 0;  ///< mean upper bound over mean value, along those rays
     double majorantOverMeanError = 0;
     std::size_t rays = 0;
 };

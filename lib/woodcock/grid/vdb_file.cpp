@@ -15,10 +15,14 @@ namespace {
 
 GridClass classOf(const openvdb::GridBase& grid) {
     switch (grid.getGridClass()) {
-        case openvdb::GRID_LEVEL_SET: return GridClass::LevelSet;
-        case openvdb::GRID_FOG_VOLUME: return GridClass::FogVolume;
-        case openvdb::GRID_STAGGERED: return GridClass::Staggered;
-        default: return GridClass::Unknown;
+        case openvdb::GRID_LEVEL_SET:
+            return GridClass::LevelSet;
+        case openvdb::GRID_FOG_VOLUME:
+            return GridClass::FogVolume;
+        case openvdb::GRID_STAGGERED:
+            return GridClass::Staggered;
+        default:
+            return GridClass::Unknown;
     }
 }
 
@@ -143,10 +147,14 @@ std::string describeGrids(const VdbFile& file) {
 
 const char* gridClassName(GridClass gridClass) {
     switch (gridClass) {
-        case GridClass::FogVolume: return "fog volume";
-        case GridClass::LevelSet: return "level set";
-        case GridClass::Staggered: return "staggered";
-        case GridClass::Unknown: break;
+        case GridClass::FogVolume:
+            return "fog volume";
+        case GridClass::LevelSet:
+            return "level set";
+        case GridClass::Staggered:
+            return "staggered";
+        case GridClass::Unknown:
+            break;
     }
     return "unknown";
 }

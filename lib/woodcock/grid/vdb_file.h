@@ -36,7 +36,7 @@ struct GridListing {
 
 struct VdbFile {
     std::filesystem::path path;
-    std::string version;  ///< "OpenVDB 10.0, file format 224"
+    std::string version;             ///< "OpenVDB 10.0, file format 224"
     std::vector<GridListing> grids;  ///< in the order of the file
 };
 

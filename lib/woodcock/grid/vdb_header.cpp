@@ -13,8 +13,8 @@ namespace woodcock {
 
 namespace {
 
-constexpr std::int64_t magic = 0x56444220;       // "VDB ", as a number
-constexpr std::uint32_t oldestVersion = 222;     // OpenVDB 3 writes 222 or 223
+constexpr std::int64_t magic = 0x56444220;    // "VDB ", as a number
+constexpr std::uint32_t oldestVersion = 222;  // OpenVDB 3 writes 222 or 223
 constexpr std::string_view halfSuffix = "_HalfFloat";
 
 class Reader {
@@ -136,9 +136,10 @@ VdbHeader readVdbHeader(const std::filesystem::path& file) {
     VdbHeader header;
     header.fileVersion = in.value<std::uint32_t>();
     if (header.fileVersion < oldestVersion)
-        throw inputError("{} has VDB file format {}, older than the {} of OpenVDB 3; save it again "
-                         "with a newer program",
-                         file.string(), header.fileVersion, oldestVersion);
+        throw inputError(
+            "{} has VDB file format {}, older than the {} of OpenVDB 3; save it again "
+            "with a newer program",
+            file.string(), header.fileVersion, oldestVersion);
     header.libraryMajor = in.value<std::uint32_t>();
     header.libraryMinor = in.value<std::uint32_t>();
     header.hasOffsets = in.value<char>() != 0;

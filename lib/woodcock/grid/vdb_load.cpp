@@ -16,8 +16,7 @@ std::string place(const VdbFile& file, const GridListing& grid) {
 }
 
 void requireUse(const VdbFile& file, const GridListing& grid, GridUse use) {
-    if (!grid.usable())
-        throw inputError("{} cannot be used: {}", place(file, grid), grid.unusable);
+    if (!grid.usable()) throw inputError("{} cannot be used: {}", place(file, grid), grid.unusable);
     if (use == GridUse::Colour || grid.channels == 1) return;
     std::vector<std::string> scalars;
     for (const GridListing& other : file.grids)
@@ -82,9 +81,10 @@ LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOpti
         !note.empty())
         loaded.notes.push_back(std::move(note));
     if (grid.gridClass == GridClass::Staggered)
-        loaded.notes.push_back(fmt::format("{} is staggered: its values belong to the faces of "
-                                           "voxels, but are drawn at their index positions",
-                                           place(file, grid)));
+        loaded.notes.push_back(
+            fmt::format("{} is staggered: its values belong to the faces of "
+                        "voxels, but are drawn at their index positions",
+                        place(file, grid)));
     Storage storage = options.storage;
     if (storage == Storage::Auto)
         storage = source.statistics.voxels.exactAsHalf ? Storage::Half : Storage::Float;

@@ -20,8 +20,8 @@ struct LoadOptions {
     GridUse use = GridUse::Scalar;
     Storage storage = Storage::Auto;
     bool nonNegative =
-        true;  ///< a coefficient: values below zero are faults, as NaN and infinity are
-    bool repair = false;      ///< faults become zero, and a note, instead of an error
+        true;             ///< a coefficient: values below zero are faults, as NaN and infinity are
+    bool repair = false;  ///< faults become zero, and a note, instead of an error
 };
 
 struct LoadedGrid {

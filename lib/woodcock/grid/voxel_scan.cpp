@@ -90,8 +90,8 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
 }
 
 template <int C>
-LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activeMask,
-                    Vec3i origin, const std::array<float, 3>& background, VoxelScan& scan) {
+LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activeMask, Vec3i origin,
+                    const std::array<float, 3>& background, VoxelScan& scan) {
     unsigned faulty = 0, varying = 0;
     for (std::size_t i = 0; i < 512; ++i)
         for (std::size_t c = 0; c < C; ++c) {
@@ -99,8 +99,7 @@ LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activ
             faulty |= static_cast<unsigned>(!(v >= 0 && v <= largestFloat));
             varying |= static_cast<unsigned>(v != values[c]);
         }
-    if (scan.exactAsHalf)
-        scan.exactAsHalf = std::all_of(values, values + 512 * C, isExactAsHalf);
+    if (scan.exactAsHalf) scan.exactAsHalf = std::all_of(values, values + 512 * C, isExactAsHalf);
     if (faulty) {
         for (int n = 0; n < 512; ++n) {
             const bool active = activeMask[static_cast<std::size_t>(n / 64)] >> (n % 64) & 1u;
@@ -147,9 +146,8 @@ void VoxelScan::add(const VoxelScan& more) {
 LeafKind scanLeaf(std::span<const float> values, int channels,
                   std::span<const std::uint64_t, 8> activeMask, Vec3i origin,
                   const std::array<float, 3>& background, VoxelScan& scan) {
-    return channels == 1
-               ? scanLeafOf<1>(values.data(), activeMask, origin, background, scan)
-               : scanLeafOf<3>(values.data(), activeMask, origin, background, scan);
+    return channels == 1 ? scanLeafOf<1>(values.data(), activeMask, origin, background, scan)
+                         : scanLeafOf<3>(values.data(), activeMask, origin, background, scan);
 }
 
 void scanTile(const std::array<float, 3>& value, int channels, bool active, Vec3i origin, int size,

@@ -23,8 +23,8 @@ struct VoxelCount {
 /// voxel once, whichever component is at fault.
 struct VoxelScan {
     std::uint64_t active = 0;
-    std::uint64_t inactiveValues = 0;  ///< inactive voxels that differ from the background
-    std::uint64_t finite = 0;          ///< active voxels that `min`, `max` and `mean` speak of
+    std::uint64_t inactiveValues = 0;   ///< inactive voxels that differ from the background
+    std::uint64_t finite = 0;           ///< active voxels that `min`, `max` and `mean` speak of
     std::array<float, 3> min{}, max{};  ///< per channel; meaningful where finite > 0
     std::array<double, 3> sum{};
     VoxelCount nan, infinite, negative;  ///< active or not

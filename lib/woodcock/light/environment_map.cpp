@@ -32,7 +32,8 @@ EnvironmentMap::EnvironmentMap(int width, int height, std::vector<float> pixels)
             double brightness = 0;
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i)
-                    brightness += double{pixel(x + i, y + j).mean()} * ((2 - std::abs(i)) * (2 - std::abs(j)));
+                    brightness += double{pixel(x + i, y + j).mean()} *
+                                  ((2 - std::abs(i)) * (2 - std::abs(j)));
             row[x + 1] = row[x] + brightness * area;
             const Rgb p = pixel(x, y);
             for (int c = 0; c < 3; ++c) total[static_cast<std::size_t>(c)] += p[c] * area;
@@ -71,7 +72,8 @@ EnvironmentMap::Sample EnvironmentMap::sample(double u0, double u1) const {
     const double cosine = top + (bottom - top) * fy;
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     const double phi = 2 * pi * ((static_cast<double>(x) + fx) / width_ - 0.5);
-    const double share = (columnCdf_[y * (w + 1) + x + 1] - columnCdf_[y * (w + 1) + x]) / rowCdf_[h];
+    const double share =
+        (columnCdf_[y * (w + 1) + x + 1] - columnCdf_[y * (w + 1) + x]) / rowCdf_[h];
     return {{sine * std::sin(phi), cosine, -sine * std::cos(phi)},
             share / (2 * pi / width_ * (top - bottom))};
 }
@@ -85,7 +87,8 @@ double EnvironmentMap::pdf(Vec3d d) const {
     const auto y = std::min(static_cast<std::size_t>(std::max(0.0, v)), h - 1);
     const double top = std::cos(pi * static_cast<double>(y) / height_);
     const double bottom = std::cos(pi * static_cast<double>(y + 1) / height_);
-    const double share = (columnCdf_[y * (w + 1) + x + 1] - columnCdf_[y * (w + 1) + x]) / rowCdf_[h];
+    const double share =
+        (columnCdf_[y * (w + 1) + x + 1] - columnCdf_[y * (w + 1) + x]) / rowCdf_[h];
     return share / (2 * pi / width_ * (top - bottom));
 }
 

@@ -24,8 +24,10 @@ double apparentOneMinusCos(double sin2) { return sin2 / (1 + std::sqrt(1 - sin2)
 }  // namespace
 
 Sun::Sun(Vec3d travel, Rgb irradiance, double angularDiameterDegrees, bool visible)
-    : towards_(-normalize(travel)), irradiance_(irradiance),
-      sinHalf_(std::sin(angularDiameterDegrees * pi / 360)), visible_(visible) {
+    : towards_(-normalize(travel)),
+      irradiance_(irradiance),
+      sinHalf_(std::sin(angularDiameterDegrees * pi / 360)),
+      visible_(visible) {
     const double s = std::sin(angularDiameterDegrees * pi / 720);
     oneMinusCos_ = 2 * s * s;
 }
@@ -52,9 +54,13 @@ Rgb Sun::radiance(Vec3d direction) const {
     return irradiance_ * static_cast<float>(1 / (pi * sinHalf_ * sinHalf_));
 }
 
-Environment::Environment(EnvironmentMap map, Rgb scale, const Affine3d& worldFromLight, bool visible)
-    : map_(std::move(map)), scale_(scale), worldFromLight_(worldFromLight),
-      lightFromWorld_(worldFromLight.inverse()), visible_(visible) {}
+Environment::Environment(EnvironmentMap map, Rgb scale, const Affine3d& worldFromLight,
+                         bool visible)
+    : map_(std::move(map)),
+      scale_(scale),
+      worldFromLight_(worldFromLight),
+      lightFromWorld_(worldFromLight.inverse()),
+      visible_(visible) {}
 
 Rgb Environment::meanRadiance() const { return constant() ? scale_ : scale_ * map_.meanRadiance(); }
 

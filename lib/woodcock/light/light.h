@@ -30,8 +30,8 @@ public:
     Vec3d towards() const { return towards_; }
 
     LightSample sample(double u0, double u1) const;
-    double pdf(Vec3d direction) const;      ///< 0 outside the disc and for delta
-    Rgb radiance(Vec3d direction) const;    ///< of the disc; 0 for delta
+    double pdf(Vec3d direction) const;    ///< 0 outside the disc and for delta
+    Rgb radiance(Vec3d direction) const;  ///< of the disc; 0 for delta
 
 private:
     Vec3d towards_;

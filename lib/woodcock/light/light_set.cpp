@@ -66,12 +66,11 @@ void LightSet::pickProbabilities(const ScatterPoint& at, std::span<float> probab
 }
 
 LightSample LightSet::sample(int light, Vec3d from, double u0, double u1) const {
-    return std::visit(
-        Overloaded{[&](const Sun& l) { return l.sample(u0, u1); },
-                   [&](const Environment& l) { return l.sample(u0, u1); },
-                   [&](const PointLight& l) { return l.sample(from); },
-                   [&](const SphereLight& l) { return l.sample(from, u0, u1); }},
-        lights_[static_cast<std::size_t>(light)]);
+    return std::visit(Overloaded{[&](const Sun& l) { return l.sample(u0, u1); },
+                                 [&](const Environment& l) { return l.sample(u0, u1); },
+                                 [&](const PointLight& l) { return l.sample(from); },
+                                 [&](const SphereLight& l) { return l.sample(from, u0, u1); }},
+                      lights_[static_cast<std::size_t>(light)]);
 }
 
 double LightSet::pdf(int light, Vec3d from, Vec3d direction) const {

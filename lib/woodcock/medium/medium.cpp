@@ -31,15 +31,16 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     support_ = d_.field->support();
     background_ = d_.field->blocks().outside().range;
     const double voxelWidth = std::cbrt(std::abs(determinant));
-    majorants_ = MajorantGrid(*d_.field, {largestExtinction_ * voxelWidth, d_.majorantScale,
-                                          d_.majorantSmallestLog2});
+    majorants_ = MajorantGrid(
+        *d_.field, {largestExtinction_ * voxelWidth, d_.majorantScale, d_.majorantSmallestLog2});
     if (support_.empty()) return;
     RandomStream random(hashOf(0x6d65616e));
     constexpr int samples = 4096;
     for (int i = 0; i < samples; ++i) {
         const Vec3d u{random.uniform(), random.uniform(), random.uniform()};
-        meanExtinction_ += d_.field->stochastic(support_.lower + support_.size() * u, random.bits()) *
-                           double{largestExtinction_} / samples;
+        meanExtinction_ +=
+            d_.field->stochastic(support_.lower + support_.size() * u, random.bits()) *
+            double{largestExtinction_} / samples;
     }
 }
 

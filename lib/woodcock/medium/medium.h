@@ -13,18 +13,18 @@
 namespace woodcock {
 
 /// One additive part of the medium: sigma_t(x) = (absorption + scattering) x f(x) and sigma_s(x) =
-/// scattering x f(x) x albedo(x), per world unit and channel, with one phase function. A volume with
-/// sigma_a and sigma_s from grids of their own is two parts; overlapping volumes are several:
+/// scattering x f(x) x albedo(x), per world unit and channel, with one phase function. A volume
+/// with sigma_a and sigma_s from grids of their own is two parts; overlapping volumes are several:
 /// coefficients add.
 class MediumPart {
 public:
     struct Description {
-        std::shared_ptr<const Field> field;  ///< null: f = 1 inside `box`, 0 outside
-        Box3d box;                           ///< of object space; only without a field
-        Affine3d worldFromIndex;             ///< or world from object, without a field
-        Rgb absorption{0.0f};                ///< sigma_a where f (and albedo) is 1
-        Rgb scattering{1.0f};                ///< sigma_s where f (and albedo) is 1
-        std::shared_ptr<const Field> albedo; ///< null: 1; values in [0, 1], 1 or 3 channels
+        std::shared_ptr<const Field> field;   ///< null: f = 1 inside `box`, 0 outside
+        Box3d box;                            ///< of object space; only without a field
+        Affine3d worldFromIndex;              ///< or world from object, without a field
+        Rgb absorption{0.0f};                 ///< sigma_a where f (and albedo) is 1
+        Rgb scattering{1.0f};                 ///< sigma_s where f (and albedo) is 1
+        std::shared_ptr<const Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
         Affine3d albedoWorldFromIndex;
         double g = 0;
         double majorantScale = 1;      ///< loosens the majorants; see MajorantGrid::Options
@@ -91,10 +91,14 @@ struct Medium {
 class PartWalk {
 public:
     PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
-        : background_(part.background()), homogeneous_(!part.field()), end_(tMax), enter_(0),
-          leave_(tMax), cells_(enters(part, ray) && !homogeneous_
-                                   ? CellWalk(part.majorants(), part.support(), ray, enter_, leave_)
-                                   : CellWalk()) {}
+        : background_(part.background()),
+          homogeneous_(!part.field()),
+          end_(tMax),
+          enter_(0),
+          leave_(tMax),
+          cells_(enters(part, ray) && !homogeneous_
+                     ? CellWalk(part.majorants(), part.support(), ray, enter_, leave_)
+                     : CellWalk()) {}
 
     /// False for segments of the background before and after.
     bool insideSupport(const Segment& s) const { return s.t0 >= enter_ && s.t1 <= leave_; }

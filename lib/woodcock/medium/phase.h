@@ -23,20 +23,21 @@ struct PhaseSample {
 };
 
 /// Samples a direction around unit vector `forward` in proportion to the phase function, by u in
-/// [0,1)^2. The inverted CDF is expanded in s = 2u-1 so that g may be zero or of any small size, and
-/// 1 - cos and 1 + cos are formed by themselves so that g may come close to +-1.
+/// [0,1)^2. The inverted CDF is expanded in s = 2u-1 so that g may be zero or of any small size,
+/// and 1 - cos and 1 + cos are formed by themselves so that g may come close to +-1.
 inline PhaseSample sampleHenyeyGreenstein(Vec3d forward, double g, double u0, double u1) {
     const double s = 2 * u0 - 1;
     const double q = 1 + g * s;
-    const double below = (1 - s) * (1 - g) * (1 - g) * (1 + g / 2 + g / 2 * s) / (q * q);  // 1 - cos
-    const double above = (1 + s) * (1 + g) * (1 + g) * (1 - g / 2 + g / 2 * s) / (q * q);  // 1 + cos
+    const double below =
+        (1 - s) * (1 - g) * (1 - g) * (1 + g / 2 + g / 2 * s) / (q * q);  // 1 - cos
+    const double above =
+        (1 + s) * (1 + g) * (1 + g) * (1 - g / 2 + g / 2 * s) / (q * q);  // 1 + cos
     const double cosine = below < above ? 1 - below : above - 1;
     const double sine = std::sqrt(std::max(0.0, below * above));
     const double phi = 2 * pi * u1;
     Vec3d x, y;
     orthonormalBasis(forward, x, y);
-    const Vec3d d =
-        x * (sine * std::cos(phi)) + y * (sine * std::sin(phi)) + forward * cosine;
+    const Vec3d d = x * (sine * std::cos(phi)) + y * (sine * std::sin(phi)) + forward * cosine;
     const double width = (1 - g) * (1 + g);
     return {d / std::sqrt(dot(d, d)), q * q * q / (4 * pi * width * width)};
 }

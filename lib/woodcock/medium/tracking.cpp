@@ -42,7 +42,8 @@ Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, V
     return s;
 }
 
-/// Decides what a tentative collision at rate `mu` is and weights the throughput; true: it scatters.
+/// Decides what a tentative collision at rate `mu` is and weights the throughput; true: it
+/// scatters.
 ///
 /// Absorption is a weight, so channel c by itself would scatter with q_c = sigma_s,c / (sigma_s,c +
 /// sigma_n,c). One decision serves all channels: q averaged with the throughput as weights. As the
@@ -86,12 +87,13 @@ bool collide(const MediumPart& part, const Sampled<N>& s, float mu, bool absorpt
 }
 
 /// Russian roulette in one draw: a path survives while its weight stays above u x threshold, that
-/// is, with the probability lowest weight / threshold, by which a survivor is divided. The weight at
-/// the end will not do: where channels differ, weights also rise.
+/// is, with the probability lowest weight / threshold, by which a survivor is divided. The weight
+/// at the end will not do: where channels differ, weights also rise.
 class Roulette {
 public:
     Roulette(float threshold, RandomStream& random)
-        : threshold_(threshold), lowest_(threshold),
+        : threshold_(threshold),
+          lowest_(threshold),
           killBelow_(threshold > 0 ? threshold * static_cast<float>(random.uniformOpenLow()) : 0) {}
     bool kills(float weight) {
         lowest_ = std::min(lowest_, weight);
@@ -123,8 +125,11 @@ class CollisionProcess {
 public:
     template <int N>
     CollisionProcess(const MediumPart& part, int index, const DistanceQuery<N>& q, double u)
-        : part_(&part), index_(index), ray_(part.indexRay(q.origin, q.direction)),
-          walk_(part, ray_, q.tMax), extinction_(liveExtinction<N>(part, q.throughput)),
+        : part_(&part),
+          index_(index),
+          ray_(part.indexRay(q.origin, q.direction)),
+          walk_(part, ray_, q.tMax),
+          extinction_(liveExtinction<N>(part, q.throughput)),
           depth_(-std::log(u)) {}
 
     const MediumPart& part() const { return *part_; }
@@ -182,8 +187,8 @@ template <int N>
 bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) {
     const auto s = sampleAt<N>(process.part(), process.ray(), q.origin, q.direction, process.t(),
                                process.range(), q.random);
-    const bool scatters =
-        collide<N>(process.part(), s, process.mu(), q.absorptionToo, q.random.uniform(), q.throughput);
+    const bool scatters = collide<N>(process.part(), s, process.mu(), q.absorptionToo,
+                                     q.random.uniform(), q.throughput);
     if (!(q.throughput.maximum() > 0) || roulette.kills(q.throughput.maximum())) {
         q.throughput = {};
         return true;
@@ -275,8 +280,8 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
             t += depth / rate;
             const Spectrum<N> f = density<N>(part, ray.at(t), q.random.bits());
             for (int c = 0; c < N; ++c)
-                ratio[c] *= std::max(0.0f, 1 - (f[c] - s.range.min) * extinction[c] /
-                                               static_cast<float>(rate));
+                ratio[c] *= std::max(
+                    0.0f, 1 - (f[c] - s.range.min) * extinction[c] / static_cast<float>(rate));
             if (spent()) return false;
             depth = -std::log(q.random.uniformOpenLow());
             if (N > 1) rate = rateNow();

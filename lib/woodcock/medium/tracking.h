@@ -25,15 +25,15 @@ template <int N>
 struct DistanceQuery {
     Vec3d origin, direction;  ///< world space, direction of unit length
     double tMax;              ///< how far; infinity: until it leaves the medium
-    double u;                 ///< in (0, 1]: draws the first optical depth; the stream draws the rest
+    double u;  ///< in (0, 1]: draws the first optical depth; the stream draws the rest
     RandomStream random;
-    float roulette = 0;       ///< throughput below which Russian roulette is played; 0: never
+    float roulette = 0;          ///< throughput below which Russian roulette is played; 0: never
     bool absorptionToo = false;  ///< absorption is an event like scattering: finds interactions
     // In and out:
-    Spectrum<N> throughput;   ///< multiplied by the weight of what happened; all zero: path ended
+    Spectrum<N> throughput;  ///< multiplied by the weight of what happened; all zero: path ended
     // Out:
-    double t = 0;             ///< distance of the scattering event
-    int part = -1;            ///< which part of the medium scatters there; -1: reached tMax
+    double t = 0;   ///< distance of the scattering event
+    int part = -1;  ///< which part of the medium scatters there; -1: reached tMax
 };
 
 /// Weighted null-collision tracking with local majorants: Galtier et al. 2013; weights for the

@@ -19,7 +19,8 @@ Needs findNeeds(const Scene& scene) {
         const Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];
         const auto* point = std::get_if<PointLight>(&light);
         const Vec3d p = point ? point->position : std::get<SphereLight>(light).position;
-        n.localLights |= n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) < reach;
+        n.localLights |=
+            n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) < reach;
     }
     return n;
 }

@@ -10,9 +10,9 @@ struct Scene;
 
 /// What a scene requires of the path loop. Found once; only what is needed is run.
 struct Needs {
-    bool chromatic = false;   ///< the medium's channels differ: three are tracked instead of one
-    bool overlap = false;     ///< more than one medium component
-    bool scattering = false;  ///< sigma_s > 0 somewhere: otherwise camera rays only
+    bool chromatic = false;      ///< the medium's channels differ: three are tracked instead of one
+    bool overlap = false;        ///< more than one medium component
+    bool scattering = false;     ///< sigma_s > 0 somewhere: otherwise camera rays only
     bool lightSampling = false;  ///< a light that phase sampling alone would miss or sample badly
     bool localLights = false;    ///< lights near or inside the medium: equiangular sampling
 

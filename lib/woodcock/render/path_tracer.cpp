@@ -42,7 +42,10 @@ template <int N>
 class BatchTracer final : public PathTracer {
 public:
     BatchTracer(const Scene& scene, const Needs& needs, const Options& options)
-        : scene_(scene), needs_(needs), options_(options), bounds_(scene.medium.worldBounds()),
+        : scene_(scene),
+          needs_(needs),
+          options_(options),
+          bounds_(scene.medium.worldBounds()),
           typicalRadiance_(scene.lights.typicalRadiance(bounds_)),
           pick_(scene.lights.sampled().size()) {
         for (const MediumPart& p : scene.medium.parts) {
@@ -82,9 +85,9 @@ private:
         Spectrum<N> throughput{1.0f};
         Rgb radiance;
         std::int64_t scatterings = 0;
-        ScatterPoint from;     // the last scattering event, for MIS at what its direction hits
-        double phasePdf = 0;   // of that direction
-        double flight = 1;     // draws the next optical depth
+        ScatterPoint from;    // the last scattering event, for MIS at what its direction hits
+        double phasePdf = 0;  // of that direction
+        double flight = 1;    // draws the next optical depth
         bool alive = true;
     };
     /// A query of light along one or two straight legs, and the path that it lights. The medium's
@@ -104,10 +107,18 @@ private:
         Path p{&result,
                SampleSequence(options_.seed, job.x, job.y, job.sample),
                RandomStream(hashOf(options_.seed, 0x70617468, job.x, job.y, job.sample)),
-               {}, {}, Spectrum<N>(1.0f), {}, 0, {}, 0, 1, true};
+               {},
+               {},
+               Spectrum<N>(1.0f),
+               {},
+               0,
+               {},
+               0,
+               1,
+               true};
         const auto u = p.sequence.draw(0);
-        const CameraRay ray = scene_.camera.ray(job.x + u[0], job.y + u[1], options_.width,
-                                                options_.height);
+        const CameraRay ray =
+            scene_.camera.ray(job.x + u[0], job.y + u[1], options_.width, options_.height);
         p.origin = ray.origin, p.direction = ray.direction;
         p.flight = 1 - u[2];
         ++counters_.paths;
@@ -208,7 +219,9 @@ private:
                 scene_.lights.distantRadiance(static_cast<int>(i), p.direction, camera);
             if (!(radiance.maximum() > 0)) continue;
             const double weight =
-                camera ? 1 : powerHeuristic(p.phasePdf, lightPdf(static_cast<int>(i), p.from, p.direction));
+                camera ? 1
+                       : powerHeuristic(p.phasePdf,
+                                        lightPdf(static_cast<int>(i), p.from, p.direction));
             p.radiance += toRgb(p.throughput) * radiance * static_cast<float>(weight);
         }
     }
@@ -242,8 +255,11 @@ private:
     EventNumbers numbers(Path& p) {
         if (p.scatterings >= quasiRandomOrders) {
             auto& r = p.random;
-            return {{r.uniform(), r.uniform()}, {r.uniform(), r.uniform()},
-                    r.uniformOpenLow(), r.uniform(), r.uniform()};
+            return {{r.uniform(), r.uniform()},
+                    {r.uniform(), r.uniform()},
+                    r.uniformOpenLow(),
+                    r.uniform(),
+                    r.uniform()};
         }
         const auto set = static_cast<std::uint32_t>(2 * p.scatterings + 1);
         const auto a = p.sequence.draw(set), b = p.sequence.draw(set + 1);
@@ -252,9 +268,16 @@ private:
 
     /// Camera rays' transmittance and the distance of what they meet, by a walk of their own.
     void findDepth(const Path& p) {
-        DistanceQuery<N> q{p.origin, p.direction, infinity, p.flight,
-                           RandomStream(RandomStream(p.random).bits()), 0, true,
-                           Spectrum<N>(1.0f), 0, -1};
+        DistanceQuery<N> q{p.origin,
+                           p.direction,
+                           infinity,
+                           p.flight,
+                           RandomStream(RandomStream(p.random).bits()),
+                           0,
+                           true,
+                           Spectrum<N>(1.0f),
+                           0,
+                           -1};
         TrackingCounters c;
         trackDistance<N>(scene_.medium, {&q, 1}, c);
         const float weight = q.throughput.mean();
@@ -311,7 +334,8 @@ private:
         std::size_t k = 0;
         while (k + 1 < sampled.size() && rest >= pick_[k]) rest -= pick_[k++];
         if (!(pick_[k] > 0)) return;
-        const LightSample s = scene_.lights.sample(sampled[k], p.from.position, u.light[0], u.light[1]);
+        const LightSample s =
+            scene_.lights.sample(sampled[k], p.from.position, u.light[0], u.light[1]);
         if (!(s.weight.maximum() > 0)) return;
         const double phase = henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
         double weight = phase / pick_[k];
@@ -341,11 +365,13 @@ private:
     }
 
     /// Distances along a ray in proportion to the inverse square distance to a lamp: Kulla and
-    /// Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media", sec. 4.
+    /// Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media",
+    /// sec. 4.
     struct Equiangular {
         double t0, t1, nearest, distance, angle0, angle1;
         double sample(double u) const {
-            return std::clamp(nearest + distance * std::tan(angle0 + u * (angle1 - angle0)), t0, t1);
+            return std::clamp(nearest + distance * std::tan(angle0 + u * (angle1 - angle0)), t0,
+                              t1);
         }
         double pdf(double t) const {
             if (!(angle1 > angle0) || t < t0 || t > t1) return 0;
@@ -378,12 +404,13 @@ private:
         if (!(pdf > 0)) return;
         const ScatterPoint at{p.origin + p.direction * t, p.direction, 0};
         const double lightU = scaled - std::floor(scaled);
-        const LightSample s = scene_.lights.sample(light, at.position, lightU, paths_[i].random.uniform());
+        const LightSample s =
+            scene_.lights.sample(light, at.position, lightU, paths_[i].random.uniform());
         if (!(s.weight.maximum() > 0)) return;
         Rgb scattered;  // sum over parts of sigma_s x phase
         for (const MediumPart& part : scene_.medium.parts)
-            scattered += part.sigmaS(at.position) *
-                         static_cast<float>(henyeyGreenstein(dot(at.forward, s.direction), part.g()));
+            scattered += part.sigmaS(at.position) * static_cast<float>(henyeyGreenstein(
+                                                        dot(at.forward, s.direction), part.g()));
         // Balance heuristic against the event, over the density of this point and lamp.
         const double weight = static_cast<double>(lamps.size()) / (pdf + flightDensity(e, t));
         if (!addShadowRay(i, p.origin, p.direction, t,

@@ -38,8 +38,8 @@ public:
     };
 
     virtual ~PathTracer() = default;
-    /// Fills results[i] for jobs[i]. `stop` is asked now and then; once it says true the results are
-    /// void and false is returned.
+    /// Fills results[i] for jobs[i]. `stop` is asked now and then; once it says true the results
+    /// are void and false is returned.
     virtual bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
                        const std::function<bool()>& stop) = 0;
     virtual const RenderCounters& counters() const = 0;

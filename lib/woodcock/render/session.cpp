@@ -19,7 +19,8 @@ namespace woodcock {
 namespace {
 
 constexpr int tileSize = 16;
-constexpr int longestPass = 32;  // samples per pixel: bounds a tile's buffer and the wait for a stop
+constexpr int longestPass =
+    32;  // samples per pixel: bounds a tile's buffer and the wait for a stop
 constexpr std::chrono::milliseconds progressInterval{100};
 
 using Clock = std::chrono::steady_clock;
@@ -30,8 +31,8 @@ double secondsSince(Clock::time_point start) {
 void validate(const RenderSettings& s, const Film::Window& crop) {
     if (s.width < 1 || s.height < 1)
         throw usageError("the image is {} x {}; both must be at least 1", s.width, s.height);
-    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > s.width || crop.y1 > s.height ||
-        crop.width() < 1 || crop.height() < 1)
+    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > s.width || crop.y1 > s.height || crop.width() < 1 ||
+        crop.height() < 1)
         throw usageError("the crop {},{},{},{} is empty or leaves the {} x {} image", crop.x0,
                          crop.y0, crop.x1, crop.y1, s.width, s.height);
     if (s.firstSample < 0 || s.endSample <= s.firstSample)
@@ -49,14 +50,18 @@ void add(RenderCounters& a, const RenderCounters& b) {
 class Session {
 public:
     Session(const Scene& scene, const RenderSettings& settings, Film::Window crop)
-        : scene_(scene), settings_(settings), crop_(crop), needs_(findNeeds(scene)),
+        : scene_(scene),
+          settings_(settings),
+          crop_(crop),
+          needs_(findNeeds(scene)),
           film_(settings.width, settings.height, crop) {
         for (int y = crop.y0 / tileSize * tileSize; y < crop.y1; y += tileSize)
             for (int x = crop.x0 / tileSize * tileSize; x < crop.x1; x += tileSize)
                 tiles_.push_back({std::max(x, crop.x0), std::max(y, crop.y0),
-                                  std::min(x + tileSize, crop.x1), std::min(y + tileSize, crop.y1)});
-        pathsPerSample_ = static_cast<std::uint64_t>(crop.width()) *
-                          static_cast<std::uint64_t>(crop.height());
+                                  std::min(x + tileSize, crop.x1),
+                                  std::min(y + tileSize, crop.y1)});
+        pathsPerSample_ =
+            static_cast<std::uint64_t>(crop.width()) * static_cast<std::uint64_t>(crop.height());
     }
 
     RenderResult run(const std::function<bool(const RenderProgress&)>& onProgress) {
@@ -64,7 +69,7 @@ public:
             const Monitor monitor(*this, onProgress);
             runPasses();
         }
-        RenderResult result{std::move(film_), needs_, reason_, completeSamples_,
+        RenderResult result{std::move(film_),     needs_,   reason_, completeSamples_,
                             secondsSince(start_), counters_};
         return result;
     }
@@ -107,8 +112,8 @@ private:
     RenderProgress progress() const {
         RenderProgress p;
         p.seconds = secondsSince(start_);
-        const auto total = static_cast<double>(pathsPerSample_) *
-                           (settings_.endSample - settings_.firstSample);
+        const auto total =
+            static_cast<double>(pathsPerSample_) * (settings_.endSample - settings_.firstSample);
         p.fraction = std::min(1.0, static_cast<double>(pathsDone_.load()) / total);
         p.samples = completeSamples_.load() - settings_.firstSample;
         p.noise = noise_.load();
@@ -123,8 +128,7 @@ private:
     }
 
     void runPasses() {
-        const int threads =
-            settings_.threads > 0 ? settings_.threads : tbb::task_arena::automatic;
+        const int threads = settings_.threads > 0 ? settings_.threads : tbb::task_arena::automatic;
         std::optional<tbb::global_control> allow;  // more threads than cores, where asked for
         if (settings_.threads > 0)
             allow.emplace(tbb::global_control::max_allowed_parallelism,
@@ -190,7 +194,8 @@ private:
         add(counters_, tracer->counters());
     }
 
-    static constexpr int fewestSamplesForNoise = 8;  // below, the estimate of the error is itself noise
+    static constexpr int fewestSamplesForNoise =
+        8;  // below, the estimate of the error is itself noise
 
     const Scene& scene_;
     const RenderSettings settings_;

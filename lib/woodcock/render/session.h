@@ -14,14 +14,14 @@ namespace woodcock {
 
 struct RenderSettings {
     int width = 960, height = 540;
-    std::optional<Film::Window> crop;      ///< absent: the whole image
-    int firstSample = 0, endSample = 64;   ///< the half-open range of sample indices to render
+    std::optional<Film::Window> crop;     ///< absent: the whole image
+    int firstSample = 0, endSample = 64;  ///< the half-open range of sample indices to render
     std::uint64_t seed = 0;
-    std::optional<int> maxScatterings;     ///< absent: unlimited
-    int threads = 0;                       ///< 0: all cores
-    double timeLimit = 0;                  ///< seconds; 0: none. Checked between passes.
-    double noise = 0;                      ///< stop once Film::noise() is below it; 0: never
-    bool depthLayers = false;              ///< also sample transmittance and depth of camera rays
+    std::optional<int> maxScatterings;  ///< absent: unlimited
+    int threads = 0;                    ///< 0: all cores
+    double timeLimit = 0;               ///< seconds; 0: none. Checked between passes.
+    double noise = 0;                   ///< stop once Film::noise() is below it; 0: never
+    bool depthLayers = false;           ///< also sample transmittance and depth of camera rays
 };
 
 struct RenderProgress {
@@ -45,8 +45,8 @@ struct RenderResult {
 
 /// Renders `scene`: the same scene, seed and sample range give the same film, bit for bit, whatever
 /// the number of threads. Passes over the whole crop, so that a stop leaves an even picture.
-/// `onProgress` is called a few times a second from one thread; returning false stops at once: tiles
-/// of the pass at work that are finished stay, so that some pixels may hold more samples than
+/// `onProgress` is called a few times a second from one thread; returning false stops at once:
+/// tiles of the pass at work that are finished stay, so that some pixels may hold more samples than
 /// endSample - firstSample (Film::Pixel::samples tells), or, in the first pass, none.
 /// Throws Error{Usage} on an empty crop, image or sample range.
 RenderResult render(const Scene& scene, const RenderSettings& settings,

@@ -24,10 +24,12 @@ struct GridCoefficient {
     bool operator==(const GridCoefficient&) const = default;
 };
 
-/// sigma_a and sigma_s of an extinction and an albedo, without the cancellation of sigma_t - sigma_s.
+/// sigma_a and sigma_s of an extinction and an albedo, without the cancellation of sigma_t -
+/// sigma_s.
 inline std::pair<Rgb, Rgb> splitByAlbedo(Rgb sigmaT, Vec3d albedo) {
     const auto part = [&](auto&& share) {
-        return Rgb::map([&](int c) { return static_cast<float>(double{sigmaT[c]} * share(albedo[c])); });
+        return Rgb::map(
+            [&](int c) { return static_cast<float>(double{sigmaT[c]} * share(albedo[c])); });
     };
     return {part([](double a) { return 1 - a; }), part([](double a) { return a; })};
 }
@@ -36,8 +38,8 @@ inline std::pair<Rgb, Rgb> splitByAlbedo(Rgb sigmaT, Vec3d albedo) {
 struct DensityCoefficients {
     std::string density;       ///< grid name; empty: found by its role
     std::optional<Rgb> scale;  ///< absent: chosen for a reasonable optical depth
-    Vec3d albedo{1, 1, 1};  ///< double: 1 - albedo is what absorbs, and may be 1e-7
-    std::string albedoGrid;  ///< vec3 or scalar grid that multiplies `albedo`; empty: none
+    Vec3d albedo{1, 1, 1};     ///< double: 1 - albedo is what absorbs, and may be 1e-7
+    std::string albedoGrid;    ///< vec3 or scalar grid that multiplies `albedo`; empty: none
     bool operator==(const DensityCoefficients&) const = default;
 };
 

@@ -69,9 +69,8 @@ HomogeneousBox parseBox(const SceneTable& table, const SceneValue& box) {
     c.box = parseBounds(box);
     if (const auto scale = table.find("scale")) {
         const auto albedo = table.find("albedo");
-        std::tie(c.sigmaA, c.sigmaS) =
-            splitByAlbedo(scale->colour(notNegative),
-                          albedo ? albedo->exactColour(zeroToOne) : Vec3d{1, 1, 1});
+        std::tie(c.sigmaA, c.sigmaS) = splitByAlbedo(
+            scale->colour(notNegative), albedo ? albedo->exactColour(zeroToOne) : Vec3d{1, 1, 1});
     } else if (table.has("albedo")) {
         throw table.need("albedo", "").error("needs a scale: sigma_t = scale in a box");
     } else if (!table.has("sigma_a") && !table.has("sigma_s")) {

@@ -55,7 +55,7 @@ public:
     Vec3d vector() const;
     Rgb colour(NumberRange range) const;  ///< from a number or [r, g, b]
     Vec3d exactColour(NumberRange range) const;
-    Affine3d affine() const;              ///< from four rows of four, regular
+    Affine3d affine() const;  ///< from four rows of four, regular
     /// With ~ and variables expanded, relative to `base` (an override: to the working directory).
     std::filesystem::path path(const std::filesystem::path& base) const;
     /// The index in `known` of this text; `what` names the kind of thing ("light type").

@@ -16,6 +16,6 @@ std::string tomlNumber(double v);             ///< shortest
 std::string tomlVector(Vec3d v);              ///< [x, y, z]
 std::string tomlColour(Rgb v);                ///< a number where grey, [r, g, b] otherwise
 std::string tomlColour(Vec3d v);
-std::string tomlMatrix(const Affine3d& m);    ///< four rows, on lines of their own
+std::string tomlMatrix(const Affine3d& m);  ///< four rows, on lines of their own
 
 }  // namespace woodcock
