@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tests/support/environment_variable.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
 
@@ -32,17 +33,6 @@ float grey(const ColorConfig& config, const DisplaySettings& settings, float v) 
     EXPECT_NEAR(rgba[0], rgba[1], 1e-4);
     EXPECT_NEAR(rgba[2], rgba[1], 1e-4);
     return rgba[1];
-}
-
-template <class F>
-std::string messageOf(ErrorKind kind, F f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), kind) << e.what();
-        return e.what();
-    }
-    return "no error";
 }
 
 class ShippedConfig : public testing::Test {
@@ -101,7 +91,7 @@ TEST_F(ShippedConfig, WorksInLinearRec709) {
 
 TEST_F(ShippedConfig, UnknownNamesListTheKnown) {
     const auto message = [&](const DisplaySettings& settings) {
-        return messageOf(ErrorKind::Usage, [&] { config_.displayTransform(settings); });
+        return test::messageOf(ErrorKind::Usage, [&] { config_.displayTransform(settings); });
     };
     EXPECT_EQ(message({"sRGB", "Filmc", "", 0}),
               "view 'Filmc' not found for display 'sRGB' in the OpenColorIO config that Woodcock "
@@ -198,7 +188,7 @@ TEST_F(ConfigWithTables, OneOfALaterVersionIsUsedAsFarAsItGoes) {
               std::string::npos);
     EXPECT_NE(config.note().find("need the built-in transform 'OF - THE FUTURE'"),
               std::string::npos);
-    const std::string message = messageOf(ErrorKind::Usage, [&] {
+    const std::string message = test::messageOf(ErrorKind::Usage, [&] {
         config.displayTransform({"sRGB", "New", "", 0});
     });
     EXPECT_NE(message.find("view 'New' of display 'sRGB' needs 'OF - THE FUTURE' of OpenColorIO "
@@ -219,7 +209,7 @@ TEST_F(ConfigWithTables, ExplicitComesBeforeTheVariableBeforeTheShippedOne) {
 
 TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
     const auto message = [](const std::filesystem::path& file) {
-        return messageOf(ErrorKind::Input, [&] { ColorConfig config(file); });
+        return test::messageOf(ErrorKind::Input, [&] { ColorConfig config(file); });
     };
     EXPECT_EQ(message("/nowhere/config.ocio"),
               "cannot read the OpenColorIO config '/nowhere/config.ocio'");
@@ -235,7 +225,7 @@ TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
 TEST_F(ConfigWithTables, AMissingTableIsNamed) {
     const ColorConfig config(write("2.1"));
     std::filesystem::remove(dir_ / "tables/filmic.spi1d");
-    const std::string message = messageOf(ErrorKind::Input, [&] {
+    const std::string message = test::messageOf(ErrorKind::Input, [&] {
         config.displayTransform({"", "Filmic", "", 0});
     });
     EXPECT_NE(message.find("view 'Filmic'"), std::string::npos) << message;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/environment_variable.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 #include "tests/support/read_back.h"
 #include "woodcock/base/error.h"
@@ -27,20 +28,9 @@ protected:
         return test::readBack(dir_ / name);
     }
 
-    template <class F>
-    std::string messageOf(ErrorKind kind, F f) {
-        try {
-            f();
-        } catch (const Error& e) {
-            EXPECT_EQ(e.kind(), kind);
-            return e.what();
-        }
-        return "no error";
-    }
-
     std::string refusal(std::vector<std::filesystem::path> files) {
         settings_.files = std::move(files);
-        return messageOf(ErrorKind::Usage, [&] { Outputs outputs(settings_); });
+        return test::messageOf(ErrorKind::Usage, [&] { Outputs outputs(settings_); });
     }
 
     const test::EnvironmentVariable none_{"OCIO", std::nullopt};
@@ -104,7 +94,8 @@ TEST_F(OutputsTest, OneThatFailsLetsTheOthersBeWritten) {
     settings_.files = {dir_ / "sub/a.exr", dir_ / "a.png"};
     const Outputs outputs(settings_);
     remove(dir_ / "sub");
-    const std::string message = messageOf(ErrorKind::Failure, [&] { outputs.write(film_, {}); });
+    const std::string message =
+        test::messageOf(ErrorKind::Failure, [&] { outputs.write(film_, {}); });
     EXPECT_EQ(message,
               "cannot write '" + (dir_ / "sub/a.exr").string() + "': No such file or directory");
     EXPECT_TRUE(exists(dir_ / "a.png"));

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 #include "tests/support/read_back.h"
 #include "woodcock/base/error.h"
@@ -12,14 +13,8 @@
 namespace woodcock {
 namespace {
 
-std::string messageOf(const std::filesystem::path& file) {
-    try {
-        readImage(file);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::Input);
-        return e.what();
-    }
-    return "no error";
+std::string refusalOf(const std::filesystem::path& file) {
+    return test::messageOf(ErrorKind::Input, [&] { readImage(file); });
 }
 
 class ReadImage : public testing::Test {
@@ -53,23 +48,23 @@ TEST_F(ReadImage, NamesCountAndPlaceOfWhatIsNoLight) {
     const float inf = std::numeric_limits<float>::infinity();
     test::writeFloats(dir_ / "a.exr", 3, 2, 3,
                       {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, -2.5f, 1, nan, 1, inf});
-    const std::string message = messageOf(dir_ / "a.exr");
+    const std::string message = refusalOf(dir_ / "a.exr");
     EXPECT_NE(message.find("3 negative, NaN or infinite values"), std::string::npos) << message;
     EXPECT_NE(message.find("-2.5 in green at column 1, row 1"), std::string::npos) << message;
 }
 
 TEST_F(ReadImage, NamesTheFileThatCannotBeRead) {
-    EXPECT_EQ(messageOf("/nowhere/sky.exr"),
+    EXPECT_EQ(refusalOf("/nowhere/sky.exr"),
               "cannot read image '/nowhere/sky.exr': there is no such file");
-    EXPECT_NE(messageOf(dir_.path()).find("it is a directory"), std::string::npos);
+    EXPECT_NE(refusalOf(dir_.path()).find("it is a directory"), std::string::npos);
 
     test::writeText(dir_ / "text.exr", "this is no image");
-    EXPECT_NE(messageOf(dir_ / "text.exr").find("text.exr"), std::string::npos);
+    EXPECT_NE(refusalOf(dir_ / "text.exr").find("text.exr"), std::string::npos);
 
     test::writeFloats(dir_ / "whole.exr", 64, 64, 3, std::vector<float>(64 * 64 * 3, 0.3f));
     const std::string bytes = test::readText(dir_ / "whole.exr");
     test::writeText(dir_ / "cut.exr", bytes.substr(0, bytes.size() / 2));
-    EXPECT_NE(messageOf(dir_ / "cut.exr").find("cut.exr"), std::string::npos);
+    EXPECT_NE(refusalOf(dir_ / "cut.exr").find("cut.exr"), std::string::npos);
 }
 
 }  // namespace

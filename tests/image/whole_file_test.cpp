@@ -8,6 +8,7 @@
 #include <csignal>
 #include <iterator>
 
+#include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
 
@@ -38,17 +39,6 @@ auto filesIn(const fs::path& directory) {
     return std::distance(fs::directory_iterator(directory), fs::directory_iterator());
 }
 
-template <class F>
-std::string messageOf(ErrorKind kind, F f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), kind);
-        return e.what();
-    }
-    return "no error";
-}
-
 TEST(WholeFile, WritesAndReplaces) {
     const test::TempDir dir;
     const std::vector<unsigned char> bytes{'a', 0, 255};
@@ -63,7 +53,7 @@ TEST(WholeFile, AFullDiskLeavesNothing) {
     // More than a buffer, so that writing fails; less than one, so that closing does.
     for (const size_t size : {1u << 20, 2000u}) {
         const std::vector<unsigned char> bytes(size, 7);
-        const std::string message = messageOf(ErrorKind::Failure, [&] {
+        const std::string message = test::messageOf(ErrorKind::Failure, [&] {
             const FileSizeLimit limit(1000);
             writeWholeFile(dir / "a.bin", bytes);
         });
@@ -87,7 +77,7 @@ TEST(WholeFile, AFailureKeepsTheFormerFile) {
 }
 
 std::string check(const fs::path& file) {
-    return messageOf(ErrorKind::Usage, [&] { checkWritable(file); });
+    return test::messageOf(ErrorKind::Usage, [&] { checkWritable(file); });
 }
 
 TEST(WholeFile, ChecksThePlaceBeforehand) {

@@ -22,4 +22,16 @@ void expectError(ErrorKind kind, const std::string& part, F&& act) {
     }
 }
 
+/// The message of the Error of this kind that `act` throws; "no error" when it throws none.
+template <class F>
+std::string messageOf(ErrorKind kind, F&& act) {
+    try {
+        act();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), kind) << e.what();
+        return e.what();
+    }
+    return "no error";
+}
+
 }  // namespace woodcock::test

@@ -237,8 +237,8 @@ void trackManyParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulett
 /// How many times the least possible rate of collisions a shadow ray of this weight is worth. More
 /// collisions, each of less weight, estimate the same transmittance with less variance; rays that
 /// are about to meet Russian roulette are not worth them. Any rate above the least is unbiased, as
-/// it depends on what is behind the ray only. 4 is the best of 1, 2, 4, 8 on optically thin media,
-/// where it saves 2.3 of 3 in cost.
+/// it depends on what is behind the ray only. Of 1, 2, 4 and 8 as the most, 4 measured best: on an
+/// optically thin cloud the cost (time x variance) falls to 0.58 of that at 1.
 double effort(float weight, float roulette) {
     return roulette > 0 ? std::clamp(0.5f * weight / roulette, 1.0f, 4.0f) : 1.0f;
 }
