@@ -246,8 +246,10 @@ private:
         Range r = ownRange(field_.table_.find(block).value->ref, {8, 8, 8});
         for (int i = 1; i < 8; ++i) {
             const Vec3i side{i & 1, i >> 1 & 1, i >> 2};
-            r.add(ownRange(field_.table_.find(block + side).value->ref,
-                           {side.x ? 1 : 8, side.y ? 1 : 8, side.z ? 1 : 8}));
+            const std::uint32_t ref = field_.table_.find(block + side).value->ref;
+            const Range whole = ownRange(ref, {8, 8, 8});
+            if (whole.min >= r.min && whole.max <= r.max) continue;  // then so is its layer
+            r.add(ownRange(ref, {side.x ? 1 : 8, side.y ? 1 : 8, side.z ? 1 : 8}));
         }
         return r;
     }
