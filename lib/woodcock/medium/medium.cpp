@@ -20,7 +20,8 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
     largestExtinction_ = extinction().maximum();
     channelWeight_ = Rgb::map([&](int c) {
-        const float albedo = d_.scattering[c] > 0 ? d_.scattering[c] / extinction()[c] : 0;
+        const float sigmaT = extinction()[c];
+        const float albedo = sigmaT > 0 ? d_.scattering[c] / sigmaT : 1;  // vacuum loses nothing
         return 0.05f + albedo * albedo;
     });
     if (!d_.field) {
