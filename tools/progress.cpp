@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "woodcock/base/parse.h"
@@ -50,7 +51,7 @@ void Progress::update(const RenderProgress& progress) {
         constexpr int width = 30;
         const int full = static_cast<int>(progress.fraction * width);
         const std::string noise =
-            progress.noise > 0 ? fmt::format(", noise {:.2f} %", 100 * progress.noise) : "";
+            std::isfinite(progress.noise) ? ", " + noiseText(progress.noise) : "";
         // Carriage return, and erase to the end of the line.
         fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %, {} left, {} samples{}\x1b[K", "", full,
                    "", width - full, 100 * progress.fraction, formatDuration(progress.secondsLeft),
@@ -69,6 +70,10 @@ void Progress::finish(const RenderResult& result) {
                    {"non_finite", result.film.nonFiniteCount()}});
     else if (style_ == ProgressStyle::Bar)
         fmt::print(stderr, "\r\x1b[K");
+}
+
+std::string noiseText(double noise) {
+    return std::isfinite(noise) ? fmt::format("noise {:.2f} %", 100 * noise) : "noise unknown";
 }
 
 std::string stopReasonName(StopReason reason) {

@@ -25,6 +25,9 @@ private:
     ProgressStyle style_;
 };
 
+/// "noise 1.25 %", or "noise unknown" where it is infinite.
+std::string noiseText(double noise);
+
 /// complete, time-limit, noise-reached or interrupted.
 std::string stopReasonName(StopReason reason);
 

@@ -149,9 +149,9 @@ RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settin
         return !interrupted();
     });
     progress.finish(result);
-    spdlog::info("{} in {}: samples {}:{} of each pixel, noise {:.2f} %",
-                 stopReasonName(result.reason), formatDuration(result.seconds),
-                 settings.firstSample, result.endSample, 100 * result.film.noise());
+    spdlog::info("{} in {}: samples {}:{} of each pixel, {}", stopReasonName(result.reason),
+                 formatDuration(result.seconds), settings.firstSample, result.endSample,
+                 noiseText(result.film.noise()));
     if (const std::uint64_t count = result.film.nonFiniteCount())
         spdlog::warn("{} samples were not finite and are left out", count);
     return result;

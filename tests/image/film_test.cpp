@@ -35,11 +35,11 @@ TEST(Film, NothingIsNaNWithoutSamples) {
     film.add(0, 0, FilmSample{Rgb(1.0f), 1});
     for (int x : {0, 1}) {
         EXPECT_TRUE(film.radiance(x, 0).isFinite());
-        EXPECT_EQ(film.standardError(x, 0), Rgb(0.0f));
+        EXPECT_EQ(film.standardError(x, 0), Rgb(inf));  // one sample says nothing of its error
         EXPECT_TRUE(film.transmittance(x, 0).isFinite());
         EXPECT_EQ(film.depth(x, 0), Film::noDepth);
     }
-    EXPECT_EQ(film.noise(), 0.0);
+    EXPECT_EQ(film.noise(), double{inf});
 }
 
 TEST(Film, EqualSamplesHaveNoErrorWhateverTheirRounding) {

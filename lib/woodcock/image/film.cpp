@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "woodcock/base/error.h"
 
@@ -115,7 +116,7 @@ Rgb Film::transmittance(int x, int y) const {
 
 Rgb Film::standardError(int x, int y) const {
     const Pixel& p = at(x, y);
-    if (p.samples < 2) return Rgb(0.0f);
+    if (p.samples < 2) return Rgb(std::numeric_limits<float>::infinity());
     return Rgb::map([&](int i) {
         return standardErrorOfMean(p.radiance[i], p.radianceSquared[i],
                                    static_cast<double>(p.samples));
@@ -150,7 +151,8 @@ double Film::noise() const {
             ++pixels;
         }
     }
-    return pixels == 0 ? 0 : sum / static_cast<double>(pixels);
+    return pixels == 0 ? std::numeric_limits<double>::infinity()
+                       : sum / static_cast<double>(pixels);
 }
 
 }  // namespace woodcock

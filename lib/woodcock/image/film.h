@@ -66,7 +66,8 @@ public:
     Rgb radiance(int x, int y) const;
     float alpha(int x, int y) const;
     Rgb transmittance(int x, int y) const;
-    /// Of the mean radiance, from the samples' variance; zero below two samples.
+    /// Of the mean radiance, from the samples' variance; infinite, as unknown, below two
+    /// samples.
     Rgb standardError(int x, int y) const;
     /// Mean distance to what the camera ray meets, world units; `noDepth` where it meets nothing.
     float depth(int x, int y) const;
@@ -76,7 +77,7 @@ public:
     /// Of all pixels; above the fewest after a render was interrupted inside a pass.
     std::uint64_t mostSamples() const;
     /// Mean over pixels of standard error / mean radiance (channels averaged first); pixels without
-    /// light or with fewer than two samples are left out; 0 when none is left.
+    /// light or with fewer than two samples are left out; infinite, as unknown, when none is left.
     double noise() const;
 
 private:

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -119,7 +120,8 @@ private:
         p.noise = noise_.load();
         if (settings_.timeLimit > 0)
             p.fraction = std::max(p.fraction, std::min(1.0, p.seconds / settings_.timeLimit));
-        if (settings_.noise > 0 && p.noise > 0) {  // the error falls with the root of the time
+        if (settings_.noise > 0 && p.noise > 0 &&
+            std::isfinite(p.noise)) {  // the error falls with the root of the time
             const double ratio = settings_.noise / p.noise;
             p.fraction = std::max(p.fraction, std::min(1.0, ratio * ratio));
         }
@@ -139,9 +141,8 @@ private:
         while (completeSamples_ < settings_.endSample) {
             const int first = completeSamples_;
             const int end = std::min(first + length, settings_.endSample);
-            arena.execute([&] { runPass(first, end); });
-            if (stop_) {
-                reason_ = StopReason::Interrupted;
+            if (!arena.execute([&] { return runPass(first, end); })) {
+                reason_ = stop_ ? StopReason::Interrupted : StopReason::TimeLimit;
                 return;
             }
             completeSamples_ = end;
@@ -164,17 +165,25 @@ private:
         }
     }
 
-    void runPass(int first, int end) {
+    /// False when it was stopped before its last tile.
+    bool runPass(int first, int end) {
+        const auto stopping = [&] {
+            return stop_ || (first > settings_.firstSample && settings_.timeLimit > 0 &&
+                             secondsSince(start_) > settings_.timeLimit);
+        };
+        std::atomic<std::size_t> tilesDone{0};
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, tiles_.size(), 1),
             [&](const tbb::blocked_range<std::size_t>& range) {
-                for (std::size_t i = range.begin(); i < range.end() && !stop_; ++i)
-                    renderTile(tiles_[i], first, end);
+                for (std::size_t i = range.begin(); i < range.end() && !stopping(); ++i)
+                    tilesDone += renderTile(tiles_[i], first, end, stopping);
             },
             tbb::simple_partitioner{});
+        return tilesDone == tiles_.size();
     }
 
-    void renderTile(const Film::Window& tile, int first, int end) {
+    bool renderTile(const Film::Window& tile, int first, int end,
+                    const std::function<bool()>& stopping) {
         std::vector<PathJob> jobs;
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x)
@@ -184,7 +193,7 @@ private:
         const auto tracer = PathTracer::make(scene_, needs_,
                                              {settings_.width, settings_.height, settings_.seed,
                                               settings_.maxScatterings, settings_.depthLayers});
-        if (!tracer->trace(jobs, results, [this] { return stop_.load(); })) return;
+        if (!tracer->trace(jobs, results, stopping)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);
             if (settings_.depthLayers) film_.add(jobs[i].x, jobs[i].y, results[i].depth);
@@ -192,6 +201,7 @@ private:
         pathsDone_ += jobs.size();
         const std::lock_guard lock(countersMutex_);
         add(counters_, tracer->counters());
+        return true;
     }
 
     static constexpr int fewestSamplesForNoise =
@@ -209,7 +219,7 @@ private:
     std::atomic<bool> stop_{false};
     std::atomic<std::uint64_t> pathsDone_{0};
     std::atomic<int> completeSamples_{0};
-    std::atomic<double> noise_{0};
+    std::atomic<double> noise_{std::numeric_limits<double>::infinity()};
     std::mutex countersMutex_;
     RenderCounters counters_;
 };

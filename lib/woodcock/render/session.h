@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -19,7 +20,7 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
     int threads = 0;                    ///< 0: all cores
-    double timeLimit = 0;               ///< seconds; 0: none. Checked between passes.
+    double timeLimit = 0;               ///< seconds; 0: none. The first sample is always whole.
     double noise = 0;                   ///< stop once Film::noise() is below it; 0: never
     bool depthLayers = false;           ///< also sample transmittance and depth of camera rays
 };
@@ -29,7 +30,8 @@ struct RenderProgress {
     double seconds = 0;      ///< since the render began
     double secondsLeft = 0;  ///< estimate
     int samples = 0;         ///< per pixel, complete so far
-    double noise = 0;        ///< Film::noise() after the last complete pass; 0 before
+    ///< Film::noise() after the last complete pass; infinite before
+    double noise = std::numeric_limits<double>::infinity();
 };
 
 enum class StopReason { Complete, TimeLimit, NoiseReached, Interrupted };
@@ -45,9 +47,10 @@ struct RenderResult {
 
 /// Renders `scene`: the same scene, seed and sample range give the same film, bit for bit, whatever
 /// the number of threads. Passes over the whole crop, so that a stop leaves an even picture.
-/// `onProgress` is called a few times a second from one thread; returning false stops at once:
-/// tiles of the pass at work that are finished stay, so that some pixels may hold more samples than
-/// endSample - firstSample (Film::Pixel::samples tells), or, in the first pass, none.
+/// `onProgress` is called a few times a second from one thread; returning false stops at once, as
+/// does the time limit: tiles of the pass at work that are finished stay, so that some pixels may
+/// hold more samples than endSample - firstSample (Film::Pixel::samples tells), or, where the first
+/// pass is interrupted, none.
 /// Throws Error{Usage} on an empty crop, image or sample range.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress = {});
