@@ -7,6 +7,7 @@
 #include "woodcock/base/sample_sequence.h"
 #include "woodcock/medium/phase.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/render/equiangular.h"
 
 namespace woodcock {
 
@@ -364,32 +365,13 @@ private:
         }
     }
 
-    /// Distances along a ray in proportion to the inverse square distance to a lamp: Kulla and
-    /// Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media",
-    /// sec. 4.
-    struct Equiangular {
-        double t0, t1, nearest, distance, angle0, angle1;
-        double sample(double u) const {
-            return std::clamp(nearest + distance * std::tan(angle0 + u * (angle1 - angle0)), t0,
-                              t1);
-        }
-        double pdf(double t) const {
-            if (!(angle1 > angle0) || t < t0 || t > t1) return 0;
-            const double s = t - nearest;
-            return distance / ((angle1 - angle0) * (distance * distance + s * s));
-        }
-    };
     Equiangular equiangular(Vec3d origin, Vec3d direction, Vec3d lamp) const {
-        Equiangular e{0, infinity, dot(lamp - origin, direction), 0, 0, 0};
-        if (!unbounded_ && !clip({origin, direction}, bounds_, e.t0, e.t1)) return e;
-        const double scale = length(bounds_.size()) * 1e-9;  // a ray through the lamp itself
-        e.distance = std::max(length(origin + direction * e.nearest - lamp), scale);
-        e.angle0 = std::atan2(e.t0 - e.nearest, e.distance);
-        e.angle1 = std::atan2(e.t1 - e.nearest, e.distance);
-        return e;
+        double t0 = 0, t1 = infinity;
+        if (!unbounded_ && !clip({origin, direction}, bounds_, t0, t1)) return {};
+        return {origin, direction, lamp, t0, t1, length(bounds_.size()) * 1e-9};
     }
     double flightDensity(const Equiangular& e, double t) const {
-        return meanExtinction_ * std::exp(-meanExtinction_ * std::max(0.0, t - e.t0));
+        return meanExtinction_ * std::exp(-meanExtinction_ * std::max(0.0, t - e.t0()));
     }
 
     void addEquiangular(std::size_t i, double u, double pick) {
