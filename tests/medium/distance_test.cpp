@@ -3,6 +3,7 @@
 
 #include "tests/medium/media.h"
 #include "tests/support/statistics.h"
+#include "woodcock/medium/optical_depth.h"
 #include "woodcock/medium/tracking.h"
 
 namespace woodcock::test {

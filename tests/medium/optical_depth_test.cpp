@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/medium/media.h"
-#include "woodcock/medium/tracking.h"
+#include "woodcock/medium/optical_depth.h"
 
 namespace woodcock::test {
 namespace {

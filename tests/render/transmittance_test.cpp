@@ -9,7 +9,7 @@
 #include "tests/support/render_scene.h"
 #include "tests/support/write_vdb.h"
 #include "woodcock/base/random.h"
-#include "woodcock/medium/tracking.h"
+#include "woodcock/medium/optical_depth.h"
 
 namespace woodcock::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/write_vdb.h"
-#include "woodcock/medium/tracking.h"
+#include "woodcock/medium/optical_depth.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "woodcock/medium/medium.h"
+#include "woodcock/medium/refined_walk.h"
 
 namespace woodcock {
 
@@ -23,18 +24,22 @@ Spectrum<N> tap(const Field& field, Vec3d index, std::uint64_t bits) {
     return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });
 }
 
+/// Inside tight bounds the full interpolation.
 template <int N>
-Spectrum<N> density(const MediumPart& part, Vec3d index, std::uint64_t bits) {
-    if (part.unbounded()) index = part.field()->nearSupport(index);  // else it is inside
-    return tap<N>(*part.field(), index, bits);
+Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64_t bits) {
+    const Field& field = *part.field();
+    if (part.unbounded()) index = field.nearSupport(index);  // else it is inside
+    if (!tight) return tap<N>(field, index, bits);
+    if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
+    return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
 }
 
 /// What a tentative collision meets. Where the bounds meet, f is known without a lookup.
 template <int N>
 Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, Vec3d direction,
-                    double t, Range range, RandomStream& random) {
+                    double t, Range range, bool tight, RandomStream& random) {
     Sampled<N> s{Spectrum<N>(range.max), Spectrum<N>(1.0f)};
-    if (range.min != range.max) s.f = density<N>(part, ray.at(t), random.bits());
+    if (range.min != range.max) s.f = density<N>(part, ray.at(t), tight, random.bits());
     if (const Field* albedo = part.albedo()) {
         const Vec3d index = albedo->nearSupport(part.albedoIndex(origin + direction * t));
         s.albedo = tap<N>(*albedo, index, random.bits());
@@ -138,12 +143,14 @@ public:
     double t() const { return t_; }
     float mu() const { return mu_; }
     Range range() const { return segment_.range; }
+    bool tight() const { return walk_.tight(); }
 
     /// After a null collision that left these channels.
     template <int N>
     void redraw(double u, Spectrum<N> throughput) {
         depth_ = -std::log(u);
         extinction_ = liveExtinction<N>(*part_, throughput);
+        walk_.collided(*part_, ray_, t_, segment_);
         mu_ = segment_.range.max * extinction_;
     }
 
@@ -161,7 +168,7 @@ public:
             if (mu_ > 0 && end > t_) depth_ = std::max(0.0, depth_ - (end - t_) * mu_);
             t_ = std::max(t_, end);
             if (segment_.t1 > limit) return false;
-            if (ended_ || !walk_.next(segment_)) {
+            if (ended_ || !walk_.next(*part_, ray_, segment_)) {
                 ended_ = true, mu_ = 0, segment_.t1 = std::numeric_limits<double>::infinity();
                 return false;
             }
@@ -175,7 +182,7 @@ private:
     const MediumPart* part_;
     int index_;
     IndexRay ray_;
-    PartWalk walk_;
+    RefinedWalk walk_;
     Segment segment_{0, 0, {}};
     float extinction_, mu_ = 0;
     double t_ = 0, depth_;
@@ -186,7 +193,7 @@ private:
 template <int N>
 bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) {
     const auto s = sampleAt<N>(process.part(), process.ray(), q.origin, q.direction, process.t(),
-                               process.range(), q.random);
+                               process.range(), process.tight(), q.random);
     const bool scatters = collide<N>(process.part(), s, process.mu(), q.absorptionToo,
                                      q.random.uniform(), q.throughput);
     if (!(q.throughput.maximum() > 0) || roulette.kills(q.throughput.maximum())) {
@@ -249,8 +256,8 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
                TrackingCounters& counters) {
     const IndexRay ray = part.indexRay(q.origin, q.direction);
     const Spectrum<N> extinction = channels<N>(part.extinction());
-    PartWalk walk(part, ray, q.tMax);
-    Segment s;
+    RefinedWalk walk(part, ray, q.tMax);
+    Segment s{0, 0, {}};
     Spectrum<N> ratio = q.contribution;
     double control = 0;  // integral of the lower bound
     double depth = -std::log(q.random.uniformOpenLow());
@@ -265,10 +272,10 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         const float weight = arrived().maximum();
         return roulette.kills(weight) || !(weight > 0);
     };
-    while (walk.next(s)) {
+    while (walk.next(part, ray, s)) {
         ++counters.segments;
-        const double width = s.range.max - s.range.min;
         const auto rateNow = [&] {
+            const double width = s.range.max - s.range.min;
             if (!(width > 0)) return 0.0;
             const Spectrum<N> weight = arrived();
             return width * liveExtinction<N>(part, weight) * effort(weight.maximum(), q.roulette);
@@ -278,13 +285,16 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
             t += depth / rate;
-            const Spectrum<N> f = density<N>(part, ray.at(t), q.random.bits());
+            const Spectrum<N> f = density<N>(part, ray.at(t), walk.tight(), q.random.bits());
             for (int c = 0; c < N; ++c)
                 ratio[c] *= std::max(
                     0.0f, 1 - (f[c] - s.range.min) * extinction[c] / static_cast<float>(rate));
             if (spent()) return false;
             depth = -std::log(q.random.uniformOpenLow());
-            if (N > 1) rate = rateNow();
+            const double controlled = (t - s.t0) * s.range.min;
+            const bool cut = walk.collided(part, ray, t, s);
+            if (cut) control += controlled;
+            if (N > 1 || cut) rate = rateNow();
         }
         if (rate > 0) depth -= (s.t1 - t) * rate;
         if (s.range.min > 0) {
@@ -334,52 +344,5 @@ template void trackTransmittance<1>(const Medium&, std::span<TransmittanceQuery<
                                     TrackingCounters&);
 template void trackTransmittance<3>(const Medium&, std::span<TransmittanceQuery<3>>,
                                     TrackingCounters&);
-
-Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1) {
-    Vec3d depth;
-    std::vector<double> planes;
-    for (const MediumPart& part : medium.parts) {
-        const IndexRay ray = part.indexRay(origin + direction * t0, direction);
-        PartWalk walk(part, ray, t1 - t0);
-        Segment s;
-        while (walk.next(s)) {
-            const auto add = [&](double length, auto&& valueOf) {
-                for (int c = 0; c < 3; ++c) {
-                    const double sigma = valueOf(c) * double{part.extinction()[c]};
-                    if (sigma > 0) depth[c] += length * sigma;  // lengths may be infinite
-                }
-            };
-            if (s.range.min == s.range.max) {
-                add(s.t1 - s.t0, [&](int) { return double{s.range.min}; });
-                continue;
-            }
-            if (!walk.insideSupport(s)) {
-                add(s.t1 - s.t0, [&](int c) { return double{part.field()->background(c)}; });
-                continue;
-            }
-            planes = {s.t0, s.t1};
-            for (int i = 0; i < 3; ++i) {
-                if (ray.direction[i] == 0) continue;
-                const double a = ray.at(s.t0)[i], b = ray.at(s.t1)[i];
-                for (double x = std::ceil(std::min(a, b)); x <= std::floor(std::max(a, b)); ++x) {
-                    const double t = (x - ray.origin[i]) / ray.direction[i];
-                    if (t > s.t0 && t < s.t1) planes.push_back(t);
-                }
-            }
-            std::sort(planes.begin(), planes.end());
-            const Field& field = *part.field();
-            for (std::size_t i = 0; i + 1 < planes.size(); ++i) {
-                const double middle = (planes[i] + planes[i + 1]) / 2;
-                const double half = (planes[i + 1] - planes[i]) / 2;
-                for (double node : {-0.57735026918962576, 0.57735026918962576})
-                    add(half, [&](int c) {
-                        return double{field.trilinear(ray.at(middle + half * node),
-                                                      field.channels() == 1 ? 0 : c)};
-                    });
-            }
-        }
-    }
-    return {static_cast<float>(depth.x), static_cast<float>(depth.y), static_cast<float>(depth.z)};
-}
 
 }  // namespace woodcock

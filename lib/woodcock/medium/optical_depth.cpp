@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/optical_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "woodcock/medium/medium.h"
+
+namespace woodcock {
+
+Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1) {
+    Vec3d depth;
+    std::vector<double> planes;
+    for (const MediumPart& part : medium.parts) {
+        const IndexRay ray = part.indexRay(origin + direction * t0, direction);
+        PartWalk walk(part, ray, t1 - t0);
+        Segment s;
+        while (walk.next(s)) {
+            const auto add = [&](double length, auto&& valueOf) {
+                for (int c = 0; c < 3; ++c) {
+                    const double sigma = valueOf(c) * double{part.extinction()[c]};
+                    if (sigma > 0) depth[c] += length * sigma;  // lengths may be infinite
+                }
+            };
+            if (s.range.min == s.range.max) {
+                add(s.t1 - s.t0, [&](int) { return double{s.range.min}; });
+                continue;
+            }
+            if (!walk.insideSupport(s)) {
+                add(s.t1 - s.t0, [&](int c) { return double{part.field()->background(c)}; });
+                continue;
+            }
+            planes = {s.t0, s.t1};
+            for (int i = 0; i < 3; ++i) {
+                if (ray.direction[i] == 0) continue;
+                const double a = ray.at(s.t0)[i], b = ray.at(s.t1)[i];
+                for (double x = std::ceil(std::min(a, b)); x <= std::floor(std::max(a, b)); ++x) {
+                    const double t = (x - ray.origin[i]) / ray.direction[i];
+                    if (t > s.t0 && t < s.t1) planes.push_back(t);
+                }
+            }
+            std::sort(planes.begin(), planes.end());
+            const Field& field = *part.field();
+            for (std::size_t i = 0; i + 1 < planes.size(); ++i) {
+                const double middle = (planes[i] + planes[i + 1]) / 2;
+                const double half = (planes[i + 1] - planes[i]) / 2;
+                for (double node : {-0.57735026918962576, 0.57735026918962576})
+                    add(half, [&](int c) {
+                        return double{field.trilinear(ray.at(middle + half * node),
+                                                      field.channels() == 1 ? 0 : c)};
+                    });
+            }
+        }
+    }
+    return {static_cast<float>(depth.x), static_cast<float>(depth.y), static_cast<float>(depth.z)};
+}
+
+}  // namespace woodcock

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/base/spectrum.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+struct Medium;
+
+/// Exact optical depth of every channel along [t0, t1] of a world ray (no randomness, up to
+/// rounding): trilinear density is a cubic along a ray inside a cell of the voxel lattice, where
+/// two-point Gauss-Legendre is exact. Slow: the reference for the estimators above.
+Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1);
+
+}  // namespace woodcock

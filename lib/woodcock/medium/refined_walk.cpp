@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/refined_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace woodcock {
+
+namespace {
+
+/// Majorant optical depth below which a piece needs no better bounds, and a whole cell.
+constexpr double shallow = 1, shallowCell = 16;
+/// Bounds whose ratio is at most this are tight: every second collision is real.
+constexpr float closeRatio = 2;
+/// The bounds below are exact but for rounding: of floats, and of index positions.
+constexpr double slack = 1e-6, positionSlack = 4e-16;
+
+/// The corners of one cell of the voxel lattice.
+struct Lattice {
+    Vec3i corner;
+    double values[2][2][2];
+
+    Lattice(const Field& field, Vec3i v, int channel) : corner(v) {
+        for (int i : {0, 1})
+            for (int j : {0, 1})
+                for (int k : {0, 1}) values[i][j][k] = field.voxel(v + Vec3i{i, j, k}, channel);
+    }
+    double at(double x, double y, double z) const {
+        const double u[3] = {x - corner.x, y - corner.y, z - corner.z};
+        double sum = 0;
+        for (int i : {0, 1})
+            for (int j : {0, 1})
+                for (int k : {0, 1})
+                    sum += (i ? u[0] : 1 - u[0]) * (j ? u[1] : 1 - u[1]) * (k ? u[2] : 1 - u[2]) *
+                           values[i][j][k];
+        return sum;
+    }
+    /// Bounds of the reconstruction from a to b: along a line it is a cubic, whose Bezier points
+    /// are means of its polar form, and that is the trilinear function with mixed arguments.
+    /// Ramshaw 1989, "Blossoms are polar forms".
+    Range between(Vec3d a, Vec3d b) const {
+        const double points[4] = {
+            at(a.x, a.y, a.z), (at(b.x, a.y, a.z) + at(a.x, b.y, a.z) + at(a.x, a.y, b.z)) / 3,
+            (at(b.x, b.y, a.z) + at(b.x, a.y, b.z) + at(a.x, b.y, b.z)) / 3, at(b.x, b.y, b.z)};
+        const auto [low, high] = std::minmax_element(std::begin(points), std::end(points));
+        const double largest = *std::max_element(&values[0][0][0], &values[0][0][0] + 8);
+        const double place = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+        const double error = largest * positionSlack * (16 + place);
+        return {static_cast<float>(std::max(0.0, *low * (1 - slack) - error)),
+                static_cast<float>(std::max(0.0, *high * (1 + slack) + error))};
+    }
+};
+
+}  // namespace
+
+bool RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
+    if (tight_) return false;
+    cell_ = segment;
+    segment = piece(part, ray, t);
+    return tight_;
+}
+
+/// From `t` to at most the end of the cell being cut and of the voxel cell that holds it.
+Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t) {
+    const double largest = part.largestExtinction();
+    collisions_ = 0;
+    tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) > shallowCell;
+    if (!tight_) return {t, cell_.t1, cell_.range};
+    const Vec3d from = ray.at(t);
+    Vec3i v = floorToInt(from);
+    double end = cell_.t1;
+    for (int i = 0; i < 3; ++i) {
+        const double d = ray.direction[i];
+        if (d == 0) continue;
+        const auto faceAhead = [&] { return (v[i] + (d > 0 ? 1 : 0) - ray.origin[i]) / d; };
+        if (faceAhead() <= t) v[i] += d > 0 ? 1 : -1;  // `from` lies on a face, up to rounding
+        end = std::min(end, faceAhead());
+    }
+    const Field& field = *part.field();
+    Range range;
+    while (true) {
+        float largestMin = 0;
+        for (int c = 0; c < field.channels(); ++c) {
+            const Range r = Lattice(field, v, c).between(from, ray.at(end));
+            if (c == 0) range = r;
+            range.add(r);
+            largestMin = std::max(largestMin, r.min);
+        }
+        if (range.max <= closeRatio * largestMin) break;
+        if (double{range.max} * largest * (end - t) <= shallow) break;
+        const double middle = t + (end - t) / 2;
+        if (!(middle > t && middle < end)) break;
+        end = middle;
+    }
+    return {t, end, range};
+}
+
+}  // namespace woodcock

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/plain_medium.h"
+#include "tests/support/statistics.h"
+#include "woodcock/medium/refined_walk.h"
+#include "woodcock/medium/tracking.h"
+
+namespace woodcock::test {
+namespace {
+
+/// Zero but for single voxels of value 1 in the middle of a leaf.
+PlainGrid spikes(int channels = 1) {
+    PlainGrid grid(channels);
+    grid.setLeaf({0, 0, 0}, [](Vec3i v, int c) {
+        return v == Vec3i{3, 3, 3} || v == Vec3i{5, 4 - c % 2, 3} ? 1.0f : 0.0f;
+    });
+    return grid;
+}
+
+/// Through the foot of the spikes, their top, their sides; along axes, planes and edges.
+std::vector<TestRay> spikeRays() {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return {{{-5, 3, 3}, {1, 0, 0}, infinity},
+            {{-5, 3.4, 2.7}, {1, 0, 0}, infinity},
+            {{9, 3.999, 3.999}, {-1, 0, 0}, infinity},
+            {{3, 3, 20}, {0, 0, -1}, infinity},
+            {{2.0001, 3, -7}, {0, 0, 1}, infinity},
+            {{0, 0, 0}, normalize(Vec3d{1, 1, 1}), infinity},
+            {{3.1, 3.2, 2.9}, normalize(Vec3d{-0.3, 0.2, 0.9}), infinity},
+            {{10, 7, 5}, normalize(Vec3d{-1, -0.61, -0.34}), infinity}};
+}
+
+/// Every piece joins the one before, lies in the cell, and bounds what is inside.
+TEST(RefinedWalk, PiecesAreContiguousAndBounding) {
+    for (int channels : {1, 3}) {
+        const PlainGrid grid = spikes(channels);
+        const Medium medium = PlainMedium({{.grid = grid, .scattering = Rgb(1e12f)}}).medium(1, 3);
+        const MediumPart& part = medium.parts[0];
+        int cuts = 0;
+        for (const TestRay& r : spikeRays()) {
+            const IndexRay ray = part.indexRay(r.origin, r.direction);
+            RefinedWalk walk(part, ray, r.tMax);
+            PartWalk coarse(part, ray, r.tMax);
+            Segment s{0, 0, {}}, cell{0, 0, {}};
+            double end = -1;
+            for (int steps = 0; walk.next(part, ray, s); ++steps) {
+                ASSERT_LT(steps, 2000);
+                while (cell.t1 <= s.t0) ASSERT_TRUE(coarse.next(cell));
+                for (int i = 0; i < 20; ++i) {  // collide just inside until it is cut
+                    const double t = s.t0 + (s.t1 - s.t0) * 1e-3;
+                    if (!walk.collided(part, ray, t, s)) continue;
+                    EXPECT_EQ(s.t0, t);
+                    end = t, ++cuts;
+                    break;
+                }
+                if (end >= 0) {
+                    EXPECT_EQ(s.t0, end);
+                }
+                EXPECT_LE(s.t1, cell.t1);
+                EXPECT_GT(s.t1, s.t0);
+                EXPECT_LE(s.range.max, cell.range.max * 1.001f);
+                for (double u : {0.0, 1e-9, 0.01, 0.3, 0.5, 0.8, 1.0}) {
+                    const Vec3d p = ray.at(s.t0 + u * (s.t1 - s.t0));
+                    for (int c = 0; c < channels; ++c) {
+                        EXPECT_LE(grid.trilinear(p, c), s.range.max);
+                        EXPECT_GE(grid.trilinear(p, c), s.range.min);
+                    }
+                }
+                end = s.t1;
+            }
+        }
+        EXPECT_GE(cuts, 5);
+    }
+}
+
+/// Depth D across one voxel: the walk reaches the foot of a linear ramp with density D x, so it
+/// ends where D x^2 / 2 is an exponential variate. The bounds of the voxels alone would take the
+/// root of D null collisions for that.
+TEST(RefinedWalk, DeepRampsCostFewCollisions) {
+    for (double depth : {1e2, 1e6, 1e12, 1e18}) {
+        PlainGrid grid;
+        grid.setLeaf({0, 0, 0}, [](Vec3i v, int) { return v.x >= 4 ? 1.0f : 0.0f; });
+        const Medium medium =
+            PlainMedium({{.grid = grid, .scattering = Rgb(static_cast<float>(depth))}})
+                .medium(1, 3);
+        constexpr int n = 20000;
+        std::vector<DistanceQuery<1>> queries;
+        for (int i = 0; i < n; ++i) {
+            RandomStream random(hashOf(7, i));
+            const double u = random.uniformOpenLow();
+            queries.push_back({{2, 3.5, 3.5}, {1, 0, 0}, 1e3, u, random, 0, false, Spectrum<1>(1)});
+        }
+        TrackingCounters counters;
+        trackDistance<1>(medium, queries, counters);
+        EXPECT_LT(static_cast<double>(counters.collisions) / n, 40) << depth;
+        EXPECT_LT(static_cast<double>(counters.segments) / n, 80) << depth;
+        // Means of the optical depth (1) and of its square (2), both of variance known exactly.
+        Moments first, second;
+        for (const DistanceQuery<1>& q : queries) {
+            ASSERT_EQ(q.part, 0);
+            const double x = q.t - 1, tau = depth * x * x / 2;
+            if (depth == 1e2 && x > 0.99) continue;  // the plateau; e^-50 gets there
+            first.add(tau), second.add(tau * tau);
+        }
+        expectMean(first, 1, 0.01, fmt::format("optical depth at depth {}", depth));
+        expectMean(second, 2, 0.05, fmt::format("its square at depth {}", depth));
+    }
+}
+
+/// The transmittance of a ray across the foot of a spike, where the voxels' bounds allow a depth of
+/// millions: depth = D int (1 - |x|) b c dx = D b c for a ray at the edge (b, c) of the spike.
+TEST(RefinedWalk, TransmittanceAcrossTheFootOfADeepSpike) {
+    for (double depth : {1e4, 1e8, 1e12}) {
+        PlainGrid grid;
+        grid.setLeaf({0, 0, 0}, [](Vec3i v, int) { return v == Vec3i{3, 3, 3} ? 1.0f : 0.0f; });
+        const Medium medium = PlainMedium({{.grid = grid,
+                                            .absorption = Rgb(static_cast<float>(depth)),
+                                            .scattering = Rgb(0.0f)}})
+                                  .medium(1, 3);
+        const double b = std::sqrt(0.5 / depth);  // an optical depth of one half
+        constexpr int n = 4000;
+        std::vector<TransmittanceQuery<1>> queries;
+        for (int i = 0; i < n; ++i)
+            queries.push_back({{-2, 4 - b, 4 - b},
+                               {1, 0, 0},
+                               1e3,
+                               RandomStream(hashOf(9, i)),
+                               0,
+                               Spectrum<1>(1)});
+        TrackingCounters counters;
+        trackTransmittance<1>(medium, queries, counters);
+        EXPECT_LT(static_cast<double>(counters.collisions) / n, 100) << depth;
+        Moments m;
+        for (const auto& q : queries) m.add(q.contribution[0]);
+        expectMean(m, std::exp(-0.5), 0.01, fmt::format("depth {}", depth));
+    }
+}
+
+}  // namespace
+}  // namespace woodcock::test
