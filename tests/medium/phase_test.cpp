@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/medium/phase.h"
+#include "tests/support/expect_mean.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/expect_mean.h"
 #include "tests/support/plain_medium.h"
 #include "tests/support/statistics.h"
 #include "woodcock/medium/refined_walk.h"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/medium/media.h"
+#include "tests/support/expect_mean.h"
 #include "tests/support/statistics.h"
 #include "woodcock/medium/tracking.h"
 

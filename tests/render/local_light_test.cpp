@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/expect_estimate.h"
 #include "tests/support/render_scene.h"
 
 namespace woodcock::test {

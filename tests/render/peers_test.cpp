@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/oracle/brute_force.h"
+#include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
+#include "tests/support/peer_scene.h"
 #include "tests/support/read_back.h"
 #include "tests/support/render_scene.h"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
 #include "tests/support/read_back.h"
 #include "tests/support/render_scene.h"

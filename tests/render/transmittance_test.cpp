@@ -5,6 +5,7 @@
 
 #include "tests/oracle/line_integral.h"
 #include "tests/oracle/vdb_values.h"
+#include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/write_vdb.h"

@@ -14,9 +14,6 @@ namespace woodcock::test {
 /// Parses, loads and builds the scene of a text whose relative paths start in `directory`.
 Scene sceneFrom(const std::string& text, const std::filesystem::path& directory = ".");
 
-/// A scene of `sharedDir()/images`, with the volumes of `sharedDir()/assets`.
-Scene peerScene(const std::string& name);
-
 /// `scene` with each part of its medium made anew from an edited description.
 Scene withParts(const Scene& scene, const std::function<void(MediumPart::Description&)>& edit);
 
@@ -26,7 +23,7 @@ struct Picture {
     std::optional<int> maxScatterings{};
 };
 
-/// Renders; expects that no sample was NaN or infinite.
+/// Renders; throws where a sample was NaN or infinite.
 RenderResult renderScene(const Scene& scene, const Picture& picture);
 
 /// Of pixels that all expect the same radiance (or alpha): their mean, with the error that their

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "woodcock/base/vec.h"
@@ -34,14 +32,6 @@ double upperGamma(double a, double x) {
 }
 
 }  // namespace
-
-void expectMean(const Moments& samples, double expected, double largestError,
-                const std::string& what) {
-    const double error = samples.standardError();
-    EXPECT_LE(std::abs(samples.mean() - expected), 4 * error + 1e-6 * std::abs(expected))
-        << what << ": mean " << samples.mean() << " +- " << error << ", expected " << expected;
-    EXPECT_LE(error, largestError) << what << ": too noisy to mean anything";
-}
 
 double chiSquareProbability(const std::vector<double>& counts,
                             const std::vector<double>& expected) {

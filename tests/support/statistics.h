@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "woodcock/base/statistics.h"
-
 namespace woodcock::test {
-
-/// The mean must lie within four standard errors of `expected` (and a millionth, for the rounding
-/// of floats), and the standard error be no more than `largestError`, so that passing means
-/// something.
-void expectMean(const Moments& samples, double expected, double largestError,
-                const std::string& what);
 
 /// Probability that chance alone makes counts differ this much from what is expected of them. Cells
 /// expected to hold few are pooled. Anything in a cell expected to hold none: 0.

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/proof/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/read_back.h"
+#include "tests/support/write_vdb.h"
+#include "woodcock/base/random.h"
+
+namespace woodcock::proof {
+
+using namespace test;
+
+double Precision::of(double value) const { return std::max(floor, relative * std::abs(value)); }
+
+Precision usualPrecision(const Lab& lab) {
+    return lab.full() ? Precision{5e-4, 5e-7} : Precision{1e-2, 1e-4};
+}
+
+Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, lab.directory()); }
+
+RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
+                        const Precision& precision, std::vector<int> channels) {
+    constexpr int side = 32, pilotSamples = 16;
+    constexpr double margin = 1.3, mostSamples = 1 << 20;  // the pilot's variance is a guess
+    Picture picture{side, side, pilotSamples, hashOf(lab.seed(name), 0)};
+    const RgbEstimate pilot = evenRadiance(renderScene(scene, picture).film);
+    double samples = 8;
+    for (const int c : channels) {
+        const Estimate& e = pilot[static_cast<std::size_t>(c)];
+        const double ratio = e.error / precision.of(e.mean);
+        samples = std::max(samples, margin * pilotSamples * ratio * ratio);
+    }
+    picture.samples = static_cast<int>(std::min(samples, mostSamples));
+    picture.seed = hashOf(lab.seed(name), 1);
+    return evenRadiance(renderScene(scene, picture).film);
+}
+
+Case caseOf(std::string name, double expected, Estimate measured, const Precision& precision) {
+    return {.name = std::move(name),
+            .expected = expected,
+            .measured = measured.mean,
+            .standardError = measured.error,
+            .largestError = precision.of(expected),
+            .allowance = 2e-6 * std::abs(expected)};
+}
+
+void writeTwoColouredSky(const Lab& lab) {
+    constexpr int rows = 2048, columns = 4;
+    std::vector<float> rgb;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            for (const float v : {y < rows / 2 ? 1.0f : 0.0f, 0.0f, y < rows / 2 ? 0.0f : 1.0f})
+                rgb.push_back(v);
+    writeFloats(lab.file("sky.exr"), columns, rows, 3, rgb);
+}
+
+void writeSlab(const Lab& lab, const std::string& file, const std::vector<double>& weights,
+               double width) {
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    GridSpec grid;
+    grid.box = {{0, 0, 0}, {15, static_cast<int>(weights.size()) - 1, 15}};
+    grid.value = [=](Vec3i p) { return weights[static_cast<std::size_t>(p.y)] / sum; };
+    grid.worldFromIndex =
+        Affine3d::translate({-7.5 * width, 0, -7.5 * width}) * Affine3d::scale({width, 1, width});
+    writeVdb(lab.file(file), {grid});
+}
+
+std::string cameraAbove(double mu) {
+    return pencilCamera({0, 50, 0}, {std::sqrt((1 - mu) * (1 + mu)), -mu, 0});
+}
+
+}  // namespace woodcock::proof

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/proof/proof.h"
+#include "tests/support/render_scene.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock::proof {
+
+/// Errors of a mean that are worth reaching: relative to it, but not below `floor`.
+struct Precision {
+    double relative, floor;
+    double of(double value) const;
+};
+/// Two digits quickly, three and more in full.
+Precision usualPrecision(const Lab& lab);
+
+/// The scene of a text whose files lie in the lab.
+Scene sceneIn(const Lab& lab, const std::string& text);
+
+/// Radiance of a scene all of whose pixels expect the same (see pencilCamera), per channel, with as
+/// many samples as `precision` asks for of the channels in use: a pilot tells how many, and is
+/// thrown away, so that the answer stays unbiased.
+test::RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
+                              const Precision& precision, std::vector<int> channels = {0, 1, 2});
+
+/// Fills measured and standardError.
+Case caseOf(std::string name, double expected, test::Estimate measured, const Precision& precision);
+
+/// Writes sky.exr: red above the horizon (+y), blue below, green where `green`. The horizon is
+/// smeared over a row of 1/2048 of half a circle, which holds 1e-6 of a face's flux.
+void writeTwoColouredSky(const Lab& lab);
+inline constexpr const char* twoColouredSky =
+    "[[light]]\ntype = \"environment\"\nimage = \"sky.exr\"\n";
+inline constexpr double horizonAllowance = 2e-6;
+
+/// Writes a slab of voxels across y, 1 high each and as wide as infinite, with vertical optical
+/// depth 1 where scale is 1. Layers are in proportion to `weights`, from the lowest; the linear
+/// ramps of half a unit beyond the outer voxels belong to it.
+void writeSlab(const Lab& lab, const std::string& file, const std::vector<double>& weights,
+               double width = 1e6);
+
+/// A camera all of whose rays look down at the slab at this cosine to its normal.
+std::string cameraAbove(double mu);
+
+}  // namespace woodcock::proof

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/proof/proof.h"
+
+#include <cmath>
+#include <limits>
+
+#include "tests/proof/subjects.h"
+#include "woodcock/base/random.h"
+
+namespace woodcock::proof {
+
+const char* nameOf(Kind kind) {
+    switch (kind) {
+        case Kind::ClosedForm:
+            return "closed form";
+        case Kind::Slab:
+            return "slab";
+        case Kind::Property:
+            return "property";
+        case Kind::Sampling:
+            return "sampling";
+        case Kind::Extreme:
+            return "extreme";
+    }
+    return "";
+}
+
+const char* nameOf(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::Pass:
+            return "pass";
+        case Verdict::Fail:
+            return "FAIL";
+        case Verdict::Imprecise:
+            return "imprecise";
+    }
+    return "";
+}
+
+double Case::z() const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (!std::isfinite(measured) || !std::isfinite(standardError)) return infinity;
+    const double difference = measured - expected;
+    const double excess = std::max(0.0, std::abs(difference) - allowance);
+    if (excess == 0) return 0;
+    return std::copysign(standardError > 0 ? excess / standardError : infinity, difference);
+}
+
+Verdict Case::verdict() const {
+    if (!(std::abs(z()) <= largestZ)) return Verdict::Fail;
+    return standardError <= largestError ? Verdict::Pass : Verdict::Imprecise;
+}
+
+std::uint64_t Lab::seed(const std::string& name) const {
+    std::uint64_t h = options_.seed;
+    for (const char c : name) h = hashOf(h, static_cast<unsigned char>(c));
+    return h;
+}
+
+const std::vector<Check>& checks() {
+    static const std::vector<Check> all = [] {
+        std::vector<Check> list;
+        for (const auto& subject : {closedForms(), slabs(), properties(), sampling(), extremes()})
+            list.insert(list.end(), subject.begin(), subject.end());
+        return list;
+    }();
+    return all;
+}
+
+std::vector<Case> run(const Check& check, const Options& options) {
+    Lab lab(options);
+    try {
+        check.run(lab);
+    } catch (const std::exception& error) {
+        lab.add({.name = std::string(check.name) + ", to its end",
+                 .expected = 1,
+                 .measured = 0,
+                 .note = error.what()});
+    }
+    std::vector<Case> cases = lab.takeCases();
+    for (Case& c : cases) c.kind = check.kind;
+    return cases;
+}
+
+}  // namespace woodcock::proof

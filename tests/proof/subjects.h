@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tests/proof/proof.h"
+
+namespace woodcock::proof {
+
+// One file each.
+std::vector<Check> closedForms();
+std::vector<Check> slabs();
+std::vector<Check> properties();
+std::vector<Check> sampling();
+std::vector<Check> extremes();
+
+}  // namespace woodcock::proof
