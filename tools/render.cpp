@@ -31,9 +31,9 @@ constexpr int interruptedCode = 130;
 SceneDescription parseInput(const RenderOptions& options,
                             const std::vector<std::string>& overrides) {
     if (options.inputIsScene()) return parseScene(options.inputs.front(), overrides);
-    SceneDescription scene =
-        parseSceneText(defaultSceneText(options.inputs), "command line", "", overrides);
-    for (VolumeDescription& volume : scene.volumes) volume.where.clear();
+    const std::string name = "command line";
+    SceneDescription scene = parseSceneText(defaultSceneText(options.inputs), name, "", overrides);
+    std::erase_if(scene.places, [&](const auto& place) { return place.second.starts_with(name); });
     return scene;
 }
 

@@ -39,8 +39,8 @@ VolumeDescription volumeOf(const Json& j) {
 
 LightDescription lightOf(const Json& j) {
     if (j.at("type") == "sun")
-        return {SunDescription{vectorOf(j.at("direction")), colourOf(j.at("irradiance"))}, ""};
-    return {EnvironmentDescription{.radiance = colourOf(j.at("radiance"))}, ""};
+        return {SunDescription{vectorOf(j.at("direction")), colourOf(j.at("irradiance"))}};
+    return {EnvironmentDescription{.radiance = colourOf(j.at("radiance"))}};
 }
 
 std::string text(Vec3d v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
