@@ -44,6 +44,8 @@ struct RenderOptions {
     void check() const;
     /// One .toml, rather than .vdb files.
     bool inputIsScene() const;
+    /// Or only saves the scene.
+    bool rendersImages() const { return writeScene.empty() || !outputs.empty(); }
 };
 
 }  // namespace woodcock::tool

@@ -273,7 +273,9 @@ TEST(ParseErrors, OfRenderSettings) {
         sectionMistake("[render]\nmax_scatterings = -1"),
         "scene.toml:4:19: render.max_scatterings is -1; it must lie between 0 and 2147483647");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 0.5"),
-              "scene.toml:4:18: render.majorant_scale is 0.5; it must be at least 1");
+              "scene.toml:4:18: render.majorant_scale is 0.5; it must lie between 1 and 1000");
+    EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 1001"),
+              "scene.toml:4:18: render.majorant_scale is 1001; it must lie between 1 and 1000");
     EXPECT_EQ(sectionMistake("[render]\ntime_limit = -3"),
               "scene.toml:4:14: render.time_limit is -3; it must not be negative");
     EXPECT_EQ(sectionMistake("[render]\ntime_limit = \"2x\"").substr(0, 66),
@@ -294,6 +296,8 @@ TEST(ParseErrors, OfOutputs) {
               "scene.toml:4:20: output.layers[1] repeats the layer 'depth'");
     EXPECT_EQ(sectionMistake("[output]\nexposure = inf"),
               "scene.toml:4:12: output.exposure is inf; it must be finite");
+    EXPECT_EQ(sectionMistake("[output]\nexposure = 101"),
+              "scene.toml:4:12: output.exposure is 101; it must lie between -100 and 100");
 }
 
 std::string overrideMistake(const std::string& assignment) {

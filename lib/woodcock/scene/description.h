@@ -135,7 +135,7 @@ struct RenderDescription {
     std::optional<int> maxScatterings;  ///< absent: unlimited
     double timeLimit = 0;               ///< seconds; 0: none
     double noise = 0;                   ///< mean relative standard error to stop at; 0: none
-    double majorantScale = 1;           ///< >= 1; loosens the majorants: for experiments
+    double majorantScale = 1;           ///< 1 to 1000; loosens the majorants: for experiments
     bool operator==(const RenderDescription&) const = default;
 };
 
