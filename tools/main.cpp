@@ -71,9 +71,11 @@ Error explain(const CLI::ParseError& error, const CLI::App& app) {
         const std::vector<std::string> words = app.remaining();
         if (words.empty())
             return usageError("no command is given; there are: {}", joinNames(known));
-        return usageError("unknown {} '{}'{}",
-                          words.front().starts_with("-") ? "option" : "command", words.front(),
-                          suggestName(words.front(), "known", known));
+        return usageError(
+            "unknown {} '{}'{}", words.front().starts_with("-") ? "option" : "command",
+            words.front(),
+            suggestName(words.front(), "known",
+                        words.front().starts_with("-") ? namesOf(app.get_options()) : known));
     }
     const CLI::App& command = *commands.front();
     for (const std::string& word : command.remaining())

@@ -125,6 +125,11 @@ void checkFiles(const SceneDescription& scene, const RenderOptions& options) {
     }
 }
 
+/// Those of a scene file are known to be right.
+ExrLayers layersOf(const SceneDescription& scene) {
+    return inPlace("--layers", [&] { return layersFromNames(scene.output.layers); });
+}
+
 bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 
 Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& options) {
@@ -141,7 +146,7 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
         inPlace(findPlace(scene.places, fmt::format("output.files[{}]", i)),
                 [&] { checkWritable(settings.files[i]); });
     settings.half = scene.output.half;
-    settings.layers = layersFromNames(scene.output.layers);
+    settings.layers = layersOf(scene);
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
     settings.withAlpha = environmentIsHidden(scene);
@@ -187,7 +192,7 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
     settings.threads = options.threads.value_or(0);
     settings.timeLimit = render.timeLimit;
     settings.noise = render.noise;
-    const ExrLayers layers = layersFromNames(scene.output.layers);
+    const ExrLayers layers = layersOf(scene);
     settings.depthLayers = layers.depth || layers.transmittance;
     checkMemory(settings, scene);
     return settings;
@@ -240,6 +245,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     const std::vector<std::filesystem::path>& files = description.output.files;
     if (files.empty() && options.rendersImages())
         throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
+    if (options.rendersImages()) options.checkFor(files);
     checkFiles(description, options);
     const RenderSettings settings = renderSettings(description, options);
     const Outputs outputs = prepareOutputs(description, options);

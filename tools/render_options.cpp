@@ -140,6 +140,12 @@ bool hasExtension(const std::filesystem::path& file, const char* extension) {
 bool isSceneFile(const std::filesystem::path& file) { return hasExtension(file, ".toml"); }
 bool isExrFile(const std::filesystem::path& file) { return hasExtension(file, ".exr"); }
 
+/// An option that would do nothing is a mistake.
+void demandFile(bool given, const char* option, const char* kind, bool written) {
+    if (given && !written)
+        throw usageError("{} is for {} files, and no output is one", option, kind);
+}
+
 void exclude(bool first, bool second, const char* names) {
     if (first && second) throw usageError("{} contradict each other; give one of them", names);
 }
@@ -166,14 +172,25 @@ void RenderOptions::check() const {
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
     exclude(quiet, logLevel.has_value(), "--quiet and --log-level");
     exclude(quiet, progress == "bar" || progress == "json", "--quiet and --progress");
-    if (!layers.empty() && !outputs.empty() &&
-        std::none_of(outputs.begin(), outputs.end(), isExrFile))
-        throw usageError("--layers is for EXR files, and no output is one");
+    for (auto layer = layers.begin(); layer != layers.end(); ++layer)
+        if (std::find(layers.begin(), layer, *layer) != layer)
+            throw usageError("--layers names '{}' twice", *layer);
     if (!stats.empty() && !rendersImages())
         throw usageError(
             "--stats tells of a render, but --write-scene only saves the scene where no -o names "
             "an "
             "image");
+}
+
+void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) const {
+    const bool exr = std::any_of(files.begin(), files.end(), isExrFile);
+    const bool picture = !std::all_of(files.begin(), files.end(), isExrFile);
+    demandFile(!layers.empty(), "--layers", "EXR", exr);
+    demandFile(half, "--half", "EXR", exr);
+    demandFile(display.has_value(), "--display", "PNG and JPEG", picture);
+    demandFile(view.has_value(), "--view", "PNG and JPEG", picture);
+    demandFile(look.has_value(), "--look", "PNG and JPEG", picture);
+    demandFile(exposure.has_value(), "--exposure", "PNG and JPEG", picture);
 }
 
 }  // namespace woodcock::tool

@@ -173,7 +173,7 @@ TEST(ParseErrors, OfPaths) {
     ASSERT_EQ(unsetenv("WOODCOCK_TEST_UNSET"), 0);
     EXPECT_EQ(mistakeIn("[[volume]]\nfile = \"$WOODCOCK_TEST_UNSET/a.vdb\""),
               "scene.toml:2:8: volume[0].file is '$WOODCOCK_TEST_UNSET/a.vdb': the environment "
-              "variable WOODCOCK_TEST_UNSET is not set");
+              "variable WOODCOCK_TEST_UNSET is not set; set it, or give a path without it");
     EXPECT_EQ(
         mistakeIn("[[volume]]\nfile = \"a$.vdb\""),
         "scene.toml:2:8: volume[0].file is 'a$.vdb': '$' must be followed by a variable's name "
@@ -280,6 +280,8 @@ TEST(ParseErrors, OfRenderSettings) {
               "scene.toml:4:14: render.time_limit is -3; it must not be negative");
     EXPECT_EQ(sectionMistake("[render]\ntime_limit = \"2x\"").substr(0, 66),
               "scene.toml:4:14: render.time_limit: '2x' is not a duration; expect");
+    EXPECT_EQ(sectionMistake("[render]\nnoise = 5"),
+              "scene.toml:4:9: render.noise is 5; it must lie between 0 and 1");
     EXPECT_EQ(sectionMistake("[render]\nnoise = \"one\"").substr(0, 56),
               "scene.toml:4:9: render.noise: 'one' is not a fraction; e");
 }
@@ -310,9 +312,10 @@ TEST(ParseErrors, OfOverridesNameTheOverride) {
     EXPECT_EQ(overrideMistake("volume[0].scale=[1,-2,3]"),
               "--set volume[0].scale=[1,-2,3]: volume[0].scale[1] is -2; it must not be negative");
     EXPECT_EQ(overrideMistake("volume[3].scale=2"),
-              "--set volume[3].scale=2: the scene has 1 volume");
+              "--set volume[3].scale=2: the scene has 1 volume, volume[0]");
     EXPECT_EQ(overrideMistake("light[0].radiance=2"),
-              "--set light[0].radiance=2: the scene has no light");
+              "--set light[0].radiance=2: the scene has no light of its own; --write-scene saves "
+              "the chosen ones");
     EXPECT_EQ(mistakeIn("[[volume]]\nfile=\"a\"\n[[volume]]\nfile=\"a\"", {"volume[2].g=0"}),
               "--set volume[2].g=0: the scene has 2 volumes, volume[0] to volume[1]");
     EXPECT_EQ(overrideMistake("volume.scale=2"),

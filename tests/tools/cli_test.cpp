@@ -210,7 +210,7 @@ TEST_F(Cli, TheProgramKnowsItsVersionAndOptions) {
 TEST_F(Cli, WrongUsage) {
     expectFailure({}, 2, {"no command", "render", "info"});
     expectFailure({"rendr", "a.vdb"}, 2, {"'rendr'", "did you mean 'render'?"});
-    expectFailure({"--verison"}, 2, {"unknown option '--verison'"});
+    expectFailure({"--verison"}, 2, {"unknown option '--verison'; did you mean '--version'?"});
     expectFailure({"render"}, 2, {"woodcock render: no INPUT is given: A scene (.toml)"});
     expectFailure({"info"}, 2, {"woodcock info: no INPUT is given: One or more volumes (.vdb)"});
     expectFailure({"info", file("smoke.vdb"), "--grid"}, 2, {"--grid has no value", "--grid NAME"});
@@ -237,7 +237,9 @@ TEST_F(Cli, WrongUsage) {
     wrong({"--time-limit", "soon"}, {"--time-limit", "'soon'"});
     wrong({"--noise", "0"}, {"--noise", "'0'"});
     wrong({"--set", "volume"}, {"volume", "KEY=VALUE"});
-    wrong({"--layers", "dept"}, {"'dept'", "did you mean 'depth'?"});
+    wrong({"--noise", "5"}, {"--noise", "'5'", "up to 1 (100%)"});
+    wrong({"--layers", "dept"}, {"--layers: ", "'dept'", "did you mean 'depth'?"});
+    wrong({"--layers", "depth,depth"}, {"--layers names 'depth' twice"});
     wrong({"-o", file("a.png"), "--view", "Filmish"}, {"'Filmish'", "Standard"});
 }
 
@@ -250,6 +252,10 @@ TEST_F(Cli, ContradictoryOptions) {
     wrong({"--quiet", "--log-level", "debug"}, {"--quiet and --log-level"});
     expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--layers", "depth"}, 2,
                   {"--layers", "EXR"});
+    expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--half"}, 2,
+                  {"--half is for EXR files"});
+    for (const char* option : {"--display", "--view", "--look", "--exposure"})
+        wrong({option, "1"}, {std::string(option) + " is for PNG and JPEG files"});
     wrong({file("scene.toml")}, {"a scene file is rendered alone"});
     wrong({"--stats", file("out.exr")}, {"out.exr", "named twice"});
     wrong({"-o", file("smoke.vdb")}, {"smoke.vdb", "an input and an output"});

@@ -120,9 +120,10 @@ double parseFraction(std::string_view text) {
     const bool percent = !text.empty() && text.back() == '%';
     if (percent) digits.remove_suffix(1);
     const double fraction = positive(number<double>(digits), percent ? 0.01 : 1);
-    if (fraction == 0)
-        throw usageError("'{}' is not a fraction; expected a positive number such as 1% or 0.01",
-                         text);
+    if (fraction == 0 || fraction > 1)
+        throw usageError(
+            "'{}' is not a fraction; expected a positive number up to 1 (100%), such as 1% or 0.01",
+            text);
     return fraction;
 }
 

@@ -42,7 +42,7 @@ std::uint64_t parseCount(std::string_view text, std::uint64_t lowest, std::uint6
 /// A number from `lowest` to `highest`.
 double parseNumber(std::string_view text, double lowest, double highest);
 
-/// "1%" or "0.01": positive.
+/// "1%" or "0.01": positive, at most 1.
 double parseFraction(std::string_view text);
 
 }  // namespace woodcock

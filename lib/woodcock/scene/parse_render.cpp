@@ -57,7 +57,7 @@ RenderDescription parseRender(const SceneTable& table) {
     if (const auto v = table.find("time_limit"))
         render.timeLimit = v->isText() ? readText(*v, parseDuration) : v->number(notNegative);
     if (const auto v = table.find("noise"))
-        render.noise = v->isText() ? readText(*v, parseFraction) : v->number(notNegative);
+        render.noise = v->isText() ? readText(*v, parseFraction) : v->number({0, 1});
     if (const auto v = table.find("majorant_scale")) render.majorantScale = v->number({1, 1000});
     return render;
 }
