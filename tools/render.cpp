@@ -201,6 +201,7 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {
     if (isStdout(file)) {
         fmt::print("{}", text);
+        if (std::fflush(stdout) != 0) throw failure("cannot write to stdout");
         return;
     }
     const auto* const bytes = reinterpret_cast<const unsigned char*>(text.data());
