@@ -71,7 +71,9 @@ CLI::App& addInfoCommand(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App& command = *app.add_subcommand(
         "info", "Tells what VDB files hold: types, bounds, values, memory, and what looks wrong.");
-    command.add_option("files", options->files, "VDB files")->required()->type_name("FILE");
+    command.add_option("INPUT", options->files, "One or more volumes (.vdb)")
+        ->required()
+        ->type_name("FILE");
     command.add_option("--grid", options->grid, "Only this grid of each file")->type_name("NAME");
     command.add_flag("--json", options->json, "One JSON document for all files, on stdout");
     command.callback([options] { runInfo(*options); });

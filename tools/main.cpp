@@ -44,6 +44,23 @@ std::vector<std::string> namesOf(const std::vector<const CLI::Option*>& options)
     return names;
 }
 
+/// The mistake in one option, or in what is missing.
+std::string describeMistake(const CLI::ParseError& error, const CLI::App& command) {
+    const std::string text = error.what();
+    std::string name = text.substr(0, text.find_first_of(": "));
+    const CLI::Option* option = command.get_option_no_throw(name);
+    if (!option && (option = command.get_option_no_throw("--" + name))) name = "--" + name;
+    if (dynamic_cast<const CLI::RequiredError*>(&error) && option)
+        return fmt::format("no {} is given: {}", name, option->get_description());
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option) {
+        if (option->get_items_expected_max() == 0) return name + " takes no value";
+        if (option->results().size() > 1) return name + " is given twice; give it once";
+        return fmt::format("{} has no value; give one, as in {} {}", name, name,
+                           option->get_type_name());
+    }
+    return text;
+}
+
 /// The mistake in words that help.
 Error explain(const CLI::ParseError& error, const CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
@@ -54,15 +71,18 @@ Error explain(const CLI::ParseError& error, const CLI::App& app) {
         const std::vector<std::string> words = app.remaining();
         if (words.empty())
             return usageError("no command is given; there are: {}", joinNames(known));
-        return usageError("unknown command '{}'{}", words.front(),
-                          suggestName(words.front(), "known", known));
+        return usageError(
+            "unknown {} '{}'{}", words.front().starts_with("-") ? "option" : "command",
+            words.front(),
+            suggestName(words.front(), "known",
+                        words.front().starts_with("-") ? namesOf(app.get_options()) : known));
     }
     const CLI::App& command = *commands.front();
     for (const std::string& word : command.remaining())
         if (word.starts_with("-"))
             return usageError("woodcock {}: unknown option {}{}", command.get_name(), word,
                               suggestName(word, "known", namesOf(command.get_options())));
-    return usageError("woodcock {}: {}", command.get_name(), error.what());
+    return usageError("woodcock {}: {}", command.get_name(), describeMistake(error, command));
 }
 
 int run(int argc, char** argv) {
@@ -74,6 +94,8 @@ int run(int argc, char** argv) {
         "Exit codes: 0 done, 1 failed while working, 2 wrong usage, 3 bad input, 130 interrupted.");
     tool::addRenderCommand(app, commandLine(argc, argv));
     tool::addInfoCommand(app);
+    for (CLI::App* command : app.get_subcommands(nullptr))
+        for (CLI::Option* option : command->get_options()) option->disable_flag_override();
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -13,6 +13,7 @@
 #include "render_options.h"
 #include "stats.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/memory.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/image/whole_file.h"
 #include "woodcock/render/session.h"
@@ -31,9 +32,9 @@ constexpr int interruptedCode = 130;
 SceneDescription parseInput(const RenderOptions& options,
                             const std::vector<std::string>& overrides) {
     if (options.inputIsScene()) return parseScene(options.inputs.front(), overrides);
-    SceneDescription scene =
-        parseSceneText(defaultSceneText(options.inputs), "command line", "", overrides);
-    for (VolumeDescription& volume : scene.volumes) volume.where.clear();
+    const std::string name = "command line";
+    SceneDescription scene = parseSceneText(defaultSceneText(options.inputs), name, "", overrides);
+    std::erase_if(scene.places, [&](const auto& place) { return place.second.starts_with(name); });
     return scene;
 }
 
@@ -41,18 +42,22 @@ Storage storageOf(const std::string& name) {
     return name == "half" ? Storage::Half : name == "float" ? Storage::Float : Storage::Auto;
 }
 
-/// The size goes through the scene file, where cameras depend on it.
+/// The size goes through the scene file, where cameras depend on it. What it replaces is checked
+/// all the same.
 SceneDescription parseAtSize(const RenderOptions& options) {
-    if (!options.size) return parseInput(options, options.overrides);
+    SceneDescription scene = parseInput(options, options.overrides);
+    if (!options.size) return scene;
     const int width = options.size->width;
-    int height = options.size->height.value_or(0);
-    if (height == 0) {
-        const RenderDescription own = parseInput(options, options.overrides).render;
-        height = std::max(1, static_cast<int>(std::lround(double(width) * own.height / own.width)));
-    }
+    const double shape = double(scene.render.height) / scene.render.width;
+    const double height = options.size->height.value_or(std::max(1.0, std::round(width * shape)));
+    if (height > largestImageSide)
+        throw usageError("--res {} in the scene's shape is {} pixels high; the most are {}", width,
+                         height, largestImageSide);
     std::vector<std::string> overrides = options.overrides;
     overrides.push_back(fmt::format("render.resolution=[{}, {}]", width, height));
-    return parseInput(options, overrides);
+    scene = parseInput(options, overrides);
+    scene.places["render.resolution"] = "--res";
+    return scene;
 }
 
 SceneDescription describeScene(const RenderOptions& options) {
@@ -68,14 +73,21 @@ SceneDescription describeScene(const RenderOptions& options) {
     render.noise = options.noise.value_or(render.noise);
 
     OutputDescription& output = scene.output;
-    if (!options.outputs.empty()) output.files = options.outputs;
+    if (!options.outputs.empty()) {
+        output.files = options.outputs;
+        std::erase_if(scene.places,
+                      [](const auto& place) { return place.first.starts_with("output.files"); });
+    }
     if (!options.layers.empty()) output.layers = options.layers;
     output.half |= options.half;
     output.display = options.display.value_or(output.display);
     output.view = options.view.value_or(output.view);
     output.look = options.look.value_or(output.look);
     output.exposure = options.exposure.value_or(output.exposure);
-    if (!options.ocio.empty()) scene.ocio = options.ocio;
+    if (!options.ocio.empty()) {
+        scene.ocio = options.ocio;
+        scene.places["ocio"] = "--ocio";
+    }
     return scene;
 }
 
@@ -87,18 +99,77 @@ bool environmentIsHidden(const SceneDescription& scene) {
     return hidden;
 }
 
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code missing;
+    return a.lexically_normal() == b.lexically_normal() ||
+           std::filesystem::equivalent(a, b, missing);
+}
+
+/// Nothing that is read may be written over, and nothing that is written may be written twice.
+void checkFiles(const SceneDescription& scene, const RenderOptions& options) {
+    std::vector<std::filesystem::path> read = options.inputs, written;
+    for (const VolumeDescription& volume : scene.volumes) read.push_back(volume.file);
+    for (const LightDescription& light : scene.lights)
+        if (const auto* environment = std::get_if<EnvironmentDescription>(&light.light))
+            read.push_back(environment->image);
+    read.push_back(scene.ocio);
+    if (options.rendersImages()) written = scene.output.files;
+    for (const std::filesystem::path& file : {options.stats, options.writeScene})
+        if (!file.empty()) written.push_back(file);
+    for (auto file = written.begin(); file != written.end(); ++file) {
+        const auto isThis = [&](const auto& other) { return sameFile(*file, other); };
+        if (std::any_of(read.begin(), read.end(), isThis))
+            throw usageError("'{}' is an input and an output", file->string());
+        if (std::any_of(written.begin(), file, isThis))
+            throw usageError("'{}' is named twice as an output", file->string());
+    }
+}
+
+/// Those of a scene file are known to be right.
+ExrLayers layersOf(const SceneDescription& scene) {
+    return inPlace("--layers", [&] { return layersFromNames(scene.output.layers); });
+}
+
+bool isStdout(const std::filesystem::path& file) { return file == "-"; }
+
 Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& options) {
-    OutputSettings settings;
-    settings.files = scene.output.files;
+    const auto check = [](const std::string& place, const std::filesystem::path& file) {
+        if (!file.empty() && !isStdout(file)) inPlace(place, [&] { checkWritable(file); });
+    };
+    check("--stats", options.stats);
+    check("--write-scene", options.writeScene);
+    ColorConfig colour =
+        inPlace(findPlace(scene.places, "ocio"), [&] { return ColorConfig(scene.ocio); });
+    OutputSettings settings{.colour = std::move(colour)};
+    if (options.rendersImages()) settings.files = scene.output.files;
+    for (std::size_t i = 0; i < settings.files.size(); ++i)
+        inPlace(findPlace(scene.places, fmt::format("output.files[{}]", i)),
+                [&] { checkWritable(settings.files[i]); });
     settings.half = scene.output.half;
-    settings.layers = layersFromNames(scene.output.layers);
+    settings.layers = layersOf(scene);
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
-    settings.ocio = scene.ocio;
     settings.withAlpha = environmentIsHidden(scene);
-    for (const std::filesystem::path& file : {options.stats, options.writeScene})
-        if (!file.empty()) checkWritable(file);
     return Outputs(std::move(settings));
+}
+
+/// Throws where the image's sums cannot be held, before anything is loaded.
+void checkMemory(const RenderSettings& settings, const SceneDescription& scene) {
+    const auto crop = settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
+    constexpr double encoded = 32;  // bytes of a pixel in an image file with all layers, about
+    const double needed =
+        double(crop.width()) * crop.height() * (double(sizeof(Film::Pixel)) + encoded);
+    const auto possible = static_cast<double>(memoryLimit());
+    if (needed <= possible) return;
+    const double share = std::sqrt(possible / needed);
+    const std::string place = findPlace(scene.places, "render.resolution");
+    throw Error(
+        place == "--res" ? ErrorKind::Usage : ErrorKind::Input,
+        fmt::format("{}{}{} x {} pixels need {} of memory, and there are {}; {:.0f} x {:.0f} "
+                    "is possible, or parts of the image by --crop",
+                    place, place.empty() ? "" : ": ", crop.width(), crop.height(),
+                    formatGiB(needed), formatGiB(possible), std::floor(crop.width() * share),
+                    std::floor(crop.height() * share)));
 }
 
 RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions& options) {
@@ -121,12 +192,18 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
     settings.threads = options.threads.value_or(0);
     settings.timeLimit = render.timeLimit;
     settings.noise = render.noise;
-    const ExrLayers layers = layersFromNames(scene.output.layers);
+    const ExrLayers layers = layersOf(scene);
     settings.depthLayers = layers.depth || layers.transmittance;
+    checkMemory(settings, scene);
     return settings;
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {
+    if (isStdout(file)) {
+        fmt::print("{}", text);
+        if (std::fflush(stdout) != 0) throw failure("cannot write to stdout");
+        return;
+    }
     const auto* const bytes = reinterpret_cast<const unsigned char*>(text.data());
     writeWholeFile(file, {bytes, text.size()});
 }
@@ -167,8 +244,10 @@ void run(const RenderOptions& options, const std::string& commandLine) {
 
     SceneDescription description = describeScene(options);
     const std::vector<std::filesystem::path>& files = description.output.files;
-    if (files.empty() && options.writeScene.empty())
+    if (files.empty() && options.rendersImages())
         throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
+    if (options.rendersImages()) options.checkFor(files);
+    checkFiles(description, options);
     const RenderSettings settings = renderSettings(description, options);
     const Outputs outputs = prepareOutputs(description, options);
     if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
@@ -178,7 +257,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     if (!options.writeScene.empty())
         writeTextFile(options.writeScene,
                       writeScene(description, options.writeScene.parent_path()));
-    if (files.empty()) return;
+    if (!options.rendersImages()) return;
     const Scene scene = buildScene(description, std::move(loaded));
     const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart;
     if (interrupted()) throw CLI::RuntimeError(interruptedCode);

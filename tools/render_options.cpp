@@ -70,8 +70,10 @@ void addOutput(CLI::App& command, RenderOptions& o) {
         command.add_option("--view", o.view, "OpenColorIO view")->type_name("NAME"),
         command.add_option("--look", o.look, "OpenColorIO look, instead of the view's own")
             ->type_name("NAME"),
-        addParsed(command, "--exposure", o.exposure, parseNumber,
-                  "Stops, before the display transform")
+        addParsed(
+            command, "--exposure", o.exposure,
+            [](const std::string& text) { return parseNumber(text, -100, 100); },
+            "Stops, before the display transform")
             ->type_name("NUMBER"),
         command.add_option("--ocio", o.ocio, "OpenColorIO config, before the scene's and $OCIO")
             ->type_name("FILE")};
@@ -90,7 +92,7 @@ void addRendering(CLI::App& command, RenderOptions& o) {
         addParsed(command, "--samples", o.samples, parseSampleRange,
                   "Samples FIRST to END - 1 of each pixel, for farms that merge")
             ->type_name("FIRST:END"),
-        addCount(command, "--seed", o.seed, 0, UINT64_MAX, "Of the random numbers"),
+        addCount(command, "--seed", o.seed, 0, INT64_MAX, "Of the random numbers"),
         addParsed(command, "--time-limit", o.timeLimit, parseDuration,
                   "Stop after this long, such as 90s, 5m, 2h")
             ->type_name("TIME"),
@@ -109,7 +111,8 @@ void addScene(CLI::App& command, RenderOptions& o) {
             ->type_name("KEY=VALUE"),
         command
             .add_option("--write-scene", o.writeScene,
-                        "Save the scene as rendered; without an output, save it only")
+                        "Save the scene with all that was chosen, and render only where -o is "
+                        "given; - is stdout")
             ->type_name("FILE"),
         command.add_flag("--repair", o.repair,
                          "Set NaN, infinite and negative voxels to zero instead of stopping"),
@@ -123,7 +126,8 @@ void addReports(CLI::App& command, RenderOptions& o) {
     const std::vector<std::string> levels{"trace", "debug", "info", "warning", "error", "off"};
     std::vector<CLI::Option*> options{
         addChoice(command, "--progress", o.progress, styles, "How to show it:")->type_name("STYLE"),
-        command.add_option("--stats", o.stats, "Write counts and times as JSON")->type_name("FILE"),
+        command.add_option("--stats", o.stats, "Write counts and times as JSON; - is stdout")
+            ->type_name("FILE"),
         addChoice(command, "--log-level", o.logLevel, levels, "The least to report:")
             ->type_name("LEVEL"),
         command.add_flag("--quiet", o.quiet, "Report warnings and errors only")};
@@ -136,10 +140,10 @@ bool hasExtension(const std::filesystem::path& file, const char* extension) {
 bool isSceneFile(const std::filesystem::path& file) { return hasExtension(file, ".toml"); }
 bool isExrFile(const std::filesystem::path& file) { return hasExtension(file, ".exr"); }
 
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code missing;
-    return a.lexically_normal() == b.lexically_normal() ||
-           std::filesystem::equivalent(a, b, missing);
+/// An option that would do nothing is a mistake.
+void demandFile(bool given, const char* option, const char* kind, bool written) {
+    if (given && !written)
+        throw usageError("{} is for {} files, and no output is one", option, kind);
 }
 
 void exclude(bool first, bool second, const char* names) {
@@ -163,24 +167,30 @@ bool RenderOptions::inputIsScene() const { return isSceneFile(inputs.front()); }
 void RenderOptions::check() const {
     if (inputs.size() > 1 && std::any_of(inputs.begin(), inputs.end(), isSceneFile))
         throw usageError("a scene file is rendered alone, but {} inputs are given", inputs.size());
+    if (std::any_of(inputs.begin(), inputs.end(), [](const auto& file) { return file.empty(); }))
+        throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb)");
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
     exclude(quiet, logLevel.has_value(), "--quiet and --log-level");
     exclude(quiet, progress == "bar" || progress == "json", "--quiet and --progress");
-    if (!layers.empty() && !outputs.empty() &&
-        std::none_of(outputs.begin(), outputs.end(), isExrFile))
-        throw usageError("--layers is for EXR files, and no output is one");
+    for (auto layer = layers.begin(); layer != layers.end(); ++layer)
+        if (std::find(layers.begin(), layer, *layer) != layer)
+            throw usageError("--layers names '{}' twice", *layer);
+    if (!stats.empty() && !rendersImages())
+        throw usageError(
+            "--stats tells of a render, but --write-scene only saves the scene where no -o names "
+            "an "
+            "image");
+}
 
-    std::vector<std::filesystem::path> written = outputs;
-    if (!stats.empty()) written.push_back(stats);
-    if (!writeScene.empty()) written.push_back(writeScene);
-    for (std::size_t i = 0; i < written.size(); ++i) {
-        for (const std::filesystem::path& input : inputs)
-            if (sameFile(written[i], input))
-                throw usageError("'{}' is an input and an output", input.string());
-        for (std::size_t j = 0; j < i; ++j)
-            if (sameFile(written[i], written[j]))
-                throw usageError("'{}' is named twice as an output", written[i].string());
-    }
+void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) const {
+    const bool exr = std::any_of(files.begin(), files.end(), isExrFile);
+    const bool picture = !std::all_of(files.begin(), files.end(), isExrFile);
+    demandFile(!layers.empty(), "--layers", "EXR", exr);
+    demandFile(half, "--half", "EXR", exr);
+    demandFile(display.has_value(), "--display", "PNG and JPEG", picture);
+    demandFile(view.has_value(), "--view", "PNG and JPEG", picture);
+    demandFile(look.has_value(), "--look", "PNG and JPEG", picture);
+    demandFile(exposure.has_value(), "--exposure", "PNG and JPEG", picture);
 }
 
 }  // namespace woodcock::tool

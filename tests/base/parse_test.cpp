@@ -31,6 +31,8 @@ TEST(Parse, SampleRange) {
         EXPECT_NE(usageErrorOf(parseSampleRange, wrong).find("expected FIRST:END"),
                   std::string::npos)
             << wrong;
+    EXPECT_NE(usageErrorOf(parseSampleRange, "0:2147483648").find("END <= 2147483647"),
+              std::string::npos);
 }
 
 TEST(Parse, ImageSize) {
@@ -85,10 +87,12 @@ TEST(Parse, Count) {
 }
 
 TEST(Parse, Number) {
-    EXPECT_EQ(parseNumber("-1.5"), -1.5);
-    EXPECT_EQ(parseNumber("2e3"), 2000);
+    EXPECT_EQ(parseNumber("-1.5", -2, 2000), -1.5);
+    EXPECT_EQ(parseNumber("2e3", -2, 2000), 2000);
+    const auto parse = [](std::string_view text) { return parseNumber(text, -2, 2000); };
     for (const char* wrong : {"", "x", "1x", "nan", "inf", "1e999", "1 "})
-        EXPECT_EQ(usageErrorOf(parseNumber, wrong), "'" + std::string(wrong) + "' is not a number");
+        EXPECT_EQ(usageErrorOf(parse, wrong),
+                  "'" + std::string(wrong) + "' is not a number from -2 to 2000");
 }
 
 TEST(FormatDuration, RoundsWithinItsUnit) {

@@ -145,9 +145,14 @@ TEST_F(VdbFileTest, AWrongNameListsWhatThereIs) {
         {{.name = "density"}, {.name = "flame"}, {.name = "velocity", .type = VdbType::Vec3s}});
     expectError(ErrorKind::Input,
                 "grid 'desnity' not found in " + name() +
-                    "; did you mean 'density'?; it has: "
+                    "; did you mean 'density'? it has: "
                     "density (float), flame (float), velocity (vec3s)",
                 [&] { findGrid(file, "desnity"); });
+    expectError(ErrorKind::Input,
+                "grid 'flame[1]' not found in " + name() +
+                    "; [0], [1], ... tell grids of one name apart, in the file's order; it has: "
+                    "density (float), flame (float), velocity (vec3s)",
+                [&] { findGrid(file, "flame[1]"); });
     expectError(ErrorKind::Input, "grid 'xyz' not found in " + name() + "; it has: density (float)",
                 [&] { findGrid(file, "xyz"); });
 }

@@ -252,16 +252,46 @@ TEST(LoadScene, MistakesNameThePlaceInTheScene) {
     const std::string file = (dir / "a.vdb").string();
     const std::string unknown =
         loadMistake(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 1\ndensity = \"densty\"");
-    EXPECT_EQ(unknown.substr(0, 16), "scene.toml:1:1: ");
+    EXPECT_EQ(unknown.substr(0, 17), "scene.toml:4:11: ");
     EXPECT_NE(unknown.find("densty"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("density"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find(file), std::string::npos) << unknown;
     const std::string vector =
         loadMistake(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 1\ndensity = \"vel\"");
+    EXPECT_EQ(vector.substr(0, 17), "scene.toml:4:11: ");
     EXPECT_NE(vector.find("is a vector grid"), std::string::npos) << vector;
     const std::string image = loadMistake(
         dir, "[[volume]]\nfile = \"a.vdb\"\n[[light]]\ntype = \"environment\"\nimage = \"no.exr\"");
-    EXPECT_EQ(image.substr(0, 16), "scene.toml:3:1: ");
+    EXPECT_EQ(image.substr(0, 17), "scene.toml:5:9: c");
+}
+
+TEST(LoadScene, MistakesNameThePlaceOfTheValue) {
+    const TempDir dir;
+    GridSpec flaw = even("flaw", 1);
+    flaw.voxels = {{{1, 1, 1}, {-1}}};
+    writeVdb(dir / "a.vdb", {even("density", 1), flaw});
+    writeVdb(dir / "b.vdb", {evenColour("vel", {1, 2, 3})});
+    const auto place = [&](const std::string& lines, std::vector<std::string> overrides = {}) {
+        try {
+            loadScene(parseSceneText("[[volume]]\n" + lines, "scene.toml", dir.path(), overrides));
+        } catch (const Error& e) {
+            const std::string what = e.what();
+            return what.substr(0, what.find(": "));
+        }
+        return std::string("no mistake");
+    };
+    EXPECT_EQ(place("file = \"no.vdb\""), "scene.toml:2:8");
+    EXPECT_EQ(place("g = 0\n  file = \"b.vdb\""), "scene.toml:3:10");  // no density in it
+    EXPECT_EQ(place("file = \"a.vdb\"\ndensity = \"flaw\""), "scene.toml:3:11");
+    EXPECT_EQ(place("file = \"a.vdb\"\nalbedo_grid = \"Cd\""), "scene.toml:3:15");
+    EXPECT_EQ(place("file = \"a.vdb\"\nsigma_a = { scale = 1, grid = \"x\" }"), "scene.toml:3:31");
+    EXPECT_EQ(place("file = \"a.vdb\"\nsigma_s = { grid = \"x\" }"), "scene.toml:3:20");
+    EXPECT_EQ(place("file = \"a.vdb\"\nsigma_s = 2\ndensity = \"x\""), "scene.toml:4:11");
+    EXPECT_EQ(place("file = \"a.vdb\"", {"volume[0].density=x"}), "--set volume[0].density=x");
+    EXPECT_EQ(place("file = \"a.vdb\"\n[[volume]]\nfile = \"a.vdb\"", {"volume[1].file=no.vdb"}),
+              "--set volume[1].file=no.vdb");
+    EXPECT_EQ(place("file = \"a.vdb\"\n[[light]]\ntype = \"environment\"\nimage = \"a.vdb\""),
+              "scene.toml:5:9");
 }
 
 TEST(LoadScene, AlbedosAboveOneAreRefusedOrRepaired) {
@@ -275,7 +305,7 @@ TEST(LoadScene, AlbedosAboveOneAreRefusedOrRepaired) {
         "albedo grid 'Cd' in " + (dir / "a.vdb").string() + " holds 120 voxels above 1 (up to 2)";
     EXPECT_EQ(
         loadMistake(dir, text),
-        "scene.toml:1:1: " + found +
+        "scene.toml:4:15: " + found +
             "; an albedo lies between 0 and 1: --repair (in a scene file: repair = true) sets "
             "them to 1");
     const Built b = build(dir, text + "repair = true\n");

@@ -146,6 +146,58 @@ TEST(Defaults, FitAnOrthographicPictureToAGivenPose) {
     EXPECT_NEAR(*c.description.camera.height, 2 / 0.84, 0.01);
 }
 
+TEST(Defaults, LookFromAGivenEyeAtTheVolumes) {
+    for (const char* type : {"", "type = \"orthographic\"\n"}) {
+        const Completed c(box("[0, 0, 0]", "[4, 2, 1]") + "[camera]\neye = [9, 3, 7]\n" + type);
+        const auto& pose = std::get<LookAt>(*c.description.camera.pose);
+        EXPECT_EQ(pose.eye, (Vec3d{9, 3, 7}));
+        EXPECT_EQ(pose.target, (Vec3d{2, 1, 0.5}));
+        EXPECT_EQ(pose.up, (Vec3d{0, 1, 0}));
+        EXPECT_NO_THROW(c.scene());
+    }
+}
+
+TEST(Defaults, FrameTheVolumesAroundAGivenTarget) {
+    for (const char* type : {"", "type = \"orthographic\"\n"})
+        for (const char* target : {"[0, 0, 0]", "[2, 1, 0.5]", "[30, 0, 40]", "[-30, 0, -40]"}) {
+            const Completed c(box("[0, 0, 0]", "[4, 2, 1]") + "[camera]\nlook_at = " + target +
+                              "\n" + type);
+            const Camera camera = c.scene().camera;
+            const Box3d film = onFilm(c, cornersOfBoxes(c.description));
+            for (int axis = 0; axis < 2; ++axis) {
+                EXPECT_GT(film.lower[axis], -0.85) << target;
+                EXPECT_LT(film.upper[axis], 0.85) << target;
+            }
+            const Vec3d middle = std::get<LookAt>(*c.description.camera.pose).target;
+            const Vec3d seen = camera.worldFromCamera.inverse().point(middle);
+            EXPECT_NEAR(seen.x / seen.z, 0, 1e-9) << target;
+            EXPECT_NEAR(seen.y / seen.z, 0, 1e-9) << target;
+            EXPECT_LT(seen.z, 0) << target;
+        }
+}
+
+TEST(Defaults, KeepAGivenUp) {
+    for (const Vec3d up : {Vec3d{0, 0, 1}, {0, -1, 0}, {1, 0, 0}, {0.55, 0.35, 1}, {1, -1, 1}}) {
+        const Completed c(box("[0, 0, 0]", "[4, 2, 1]") +
+                          fmt::format("[camera]\nup = [{}, {}, {}]\n", up.x, up.y, up.z));
+        expectFramed(c, cornersOfBoxes(c.description));
+        EXPECT_GT(dot(c.scene().camera.worldFromCamera.column[1], up), 0.3);
+    }
+}
+
+TEST(Defaults, RefuseAnEyeThatCannotLookAtTheVolumes) {
+    for (const char* eye : {"[2, 9, 0.5]", "[2, 1, 0.5]"}) {
+        try {
+            Completed(box("[0, 0, 0]", "[4, 2, 1]") + "[camera]\neye = " + eye + "\n");
+            ADD_FAILURE() << eye;
+        } catch (const Error& e) {
+            EXPECT_EQ(std::string(e.what()),
+                      "scene.toml:5:7: camera.eye looks at the volumes' centre, [2, 1, 0.5], "
+                      "along up, [0, 1, 0], or stands in it; give a look_at or another up");
+        }
+    }
+}
+
 TEST(Defaults, LookDownALittleWithYUp) {
     const Completed c(box("[0, 0, 0]", "[1, 1, 1]"));
     const Affine3d camera = c.scene().camera.worldFromCamera;
@@ -230,6 +282,43 @@ TEST(Defaults, NotesAreTheTomlThatFixesThem) {
     const Completed fixed(toml);
     EXPECT_TRUE(fixed.notes.empty()) << toml;
     EXPECT_EQ(sceneDigest(fixed.description), sceneDigest(c.description));
+}
+
+TEST(Defaults, OfFilesAloneAreNotedAsTheWholeScene) {
+    const TempDir dir;
+    GridSpec smoke = ball({}), heat = ball({});
+    smoke.name = "Smoke";
+    heat.name = "heat";
+    writeVdb(dir / "a.vdb", {heat, smoke});
+    writeVdb(dir / "$b.vdb", {ball(Affine3d::translate({9, 0, 0}))});
+    SceneDescription scene =
+        parseSceneText(defaultSceneText({dir / "a.vdb", dir / "$b.vdb"}), "", "");
+    scene.places.clear();
+    std::string toml;
+    for (const std::string& note : completeScene(scene, loadScene(scene)))
+        toml += note.substr(note.find('\n') + 1);
+    for (const char* line : {"density = \"Smoke\"", "density = \"density\"", "g = 0.6", "scale = "})
+        EXPECT_NE(toml.find(line), std::string::npos) << toml;
+    SceneDescription printed = parseSceneText(toml, "printed.toml", "");
+    SceneDescription written = parseSceneText(writeScene(scene), "written.toml", "");
+    printed.places.clear(), written.places.clear();
+    EXPECT_EQ(printed, written) << toml;
+    EXPECT_EQ(sceneDigest(printed), sceneDigest(scene));
+}
+
+TEST(Defaults, NameTheDensityThatWasFound) {
+    const TempDir dir;
+    GridSpec smoke = ball({});
+    smoke.name = "Smoke";
+    writeVdb(dir / "a.vdb", {smoke});
+    const Completed c(
+        "[[volume]]\nfile = \"a.vdb\"\nscale = 2\n[[volume]]\nfile = \"a.vdb\"\nsigma_s = 3\n",
+        dir.path());
+    ASSERT_EQ(c.notes.size(), 4u);
+    EXPECT_EQ(c.notes[0], "chosen for volume[0]:\ndensity = \"Smoke\"\n");
+    EXPECT_EQ(c.notes[1], "chosen for volume[1]:\ndensity = \"Smoke\"\n");
+    const auto& separate = std::get<SeparateCoefficients>(c.description.volumes[1].coefficients);
+    EXPECT_EQ(separate.sigmaS, (GridCoefficient{"Smoke", Rgb(3)}));
 }
 
 TEST(Defaults, SurviveAVolumeWithoutDensity) {

@@ -34,7 +34,9 @@ TEST(Parse, LeavesDefaultsAndTheProgramsChoicesOpen) {
     SceneDescription expected;
     expected.volumes.resize(1);
     expected.volumes[0].file = "a.vdb";
-    expected.volumes[0].where = "scene.toml:1:1";
+    expected.places = {{"volume", "scene.toml:1:1"},
+                       {"volume[0]", "scene.toml:1:1"},
+                       {"volume[0].file", "scene.toml:2:8"}};
     EXPECT_EQ(scene, expected);
     EXPECT_FALSE(std::get<DensityCoefficients>(scene.volumes[0].coefficients).scale);
     EXPECT_FALSE(scene.camera.pose);
@@ -246,7 +248,7 @@ TEST(Parse, ReadsFiles) {
     test::writeText(dir / "scene.toml", "[[volume]]\nfile = \"a.vdb\"");
     const SceneDescription scene = parseScene(dir / "scene.toml");
     EXPECT_EQ(scene.volumes.at(0).file, dir / "a.vdb");
-    EXPECT_EQ(scene.volumes.at(0).where, (dir / "scene.toml").string() + ":1:1");
+    EXPECT_EQ(scene.places.at("volume[0].file"), (dir / "scene.toml").string() + ":2:8");
 }
 
 TEST(Overrides, ReplaceAndAddValues) {

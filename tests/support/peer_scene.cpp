@@ -37,8 +37,8 @@ VolumeDescription volumeOf(const Json& j) {
 
 LightDescription lightOf(const Json& j) {
     if (j.at("type") == "sun")
-        return {SunDescription{vectorOf(j.at("direction")), colourOf(j.at("irradiance"))}, ""};
-    return {EnvironmentDescription{.radiance = colourOf(j.at("radiance"))}, ""};
+        return {SunDescription{vectorOf(j.at("direction")), colourOf(j.at("irradiance"))}};
+    return {EnvironmentDescription{.radiance = colourOf(j.at("radiance"))}};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tests/support/write_vdb.h"
+#include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
 namespace {
@@ -94,6 +95,54 @@ TEST_F(Cli, SaysWhatItChoseAsTheSceneThatWouldFixIt) {
     EXPECT_EQ(digest("again.json"), digest("stats.json"));
 }
 
+TEST_F(Cli, PrintsTheSceneThatItWouldWrite) {
+    const ProgramResult result =
+        runProgram({"render", file("smoke.vdb"), "--write-scene", file("written.toml")});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    // Without the lines that introduce each choice.
+    std::istringstream lines(result.err);
+    std::string toml;
+    for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("info: ")) toml += line + "\n";
+    SceneDescription printed = parseSceneText(toml, "printed", "");
+    SceneDescription written = parseScene(file("written.toml"));
+    printed.places.clear(), written.places.clear();
+    EXPECT_EQ(printed, written) << result.err;
+    EXPECT_EQ(printed.volumes.at(0).g, 0.6f);
+    EXPECT_EQ(std::get<DensityCoefficients>(printed.volumes[0].coefficients).density, "density");
+}
+
+TEST_F(Cli, WritingASceneRendersOnlyWhatTheCommandLineNames) {
+    writeText(file("scene.toml"),
+              "[[volume]]\nfile = \"smoke.vdb\"\n[render]\nresolution = [8, 8]\nspp = 1\n"
+              "[output]\nfiles = [\"out.exr\"]\n");
+    const std::vector<std::string> save{"render", file("scene.toml"), "--write-scene",
+                                        file("full.toml"), "--quiet"};
+    EXPECT_EQ(runProgram(save).exitCode, 0);
+    EXPECT_FALSE(fs::exists(file("out.exr")));
+    EXPECT_NE(readText(file("full.toml")).find("out.exr\"]"), std::string::npos);
+
+    std::vector<std::string> both = save;
+    both.insert(both.end(), {"-o", file("other.exr")});
+    EXPECT_EQ(runProgram(both).exitCode, 0);
+    EXPECT_TRUE(fs::exists(file("other.exr")));
+    EXPECT_FALSE(fs::exists(file("out.exr")));
+
+    std::vector<std::string> stats = save;
+    stats.insert(stats.end(), {"--stats", file("stats.json")});
+    expectFailure(stats, 2, {"--stats", "--write-scene", "-o"});
+}
+
+TEST_F(Cli, StatsAndScenesGoToStdoutAsAMinus) {
+    const ProgramResult stats = runProgram(quick({"--stats", "-"}));
+    EXPECT_EQ(stats.exitCode, 0) << stats.err;
+    EXPECT_EQ(nlohmann::json::parse(stats.out).at("end_sample"), 2);
+    const ProgramResult scene = runProgram({"render", file("smoke.vdb"), "--write-scene", "-"});
+    EXPECT_EQ(scene.exitCode, 0) << scene.err;
+    EXPECT_EQ(parseSceneText(scene.out, "stdout", "").volumes.at(0).file, file("smoke.vdb"));
+    EXPECT_FALSE(fs::exists("-"));
+}
+
 TEST_F(Cli, AWidthAloneKeepsTheShape) {
     const ProgramResult result = runProgram(quick({"--res", "32", "--stats", file("stats.json")}));
     EXPECT_EQ(result.exitCode, 0) << result.err;
@@ -161,7 +210,11 @@ TEST_F(Cli, TheProgramKnowsItsVersionAndOptions) {
 TEST_F(Cli, WrongUsage) {
     expectFailure({}, 2, {"no command", "render", "info"});
     expectFailure({"rendr", "a.vdb"}, 2, {"'rendr'", "did you mean 'render'?"});
-    expectFailure({"render"}, 2, {"INPUT"});
+    expectFailure({"--verison"}, 2, {"unknown option '--verison'; did you mean '--version'?"});
+    expectFailure({"render"}, 2, {"woodcock render: no INPUT is given: A scene (.toml)"});
+    expectFailure({"info"}, 2, {"woodcock info: no INPUT is given: One or more volumes (.vdb)"});
+    expectFailure({"info", file("smoke.vdb"), "--grid"}, 2, {"--grid has no value", "--grid NAME"});
+    expectFailure({"render", "", "-o", file("out.exr")}, 2, {"an input is empty"});
     expectFailure({"render", file("smoke.vdb")}, 2, {"no output", "-o"});
     const auto wrong = [&](std::vector<std::string> options, std::vector<std::string> said) {
         expectFailure(render("smoke.vdb", options), 2, said);
@@ -169,7 +222,14 @@ TEST_F(Cli, WrongUsage) {
     wrong({"--progess", "bar"}, {"--progess", "did you mean '--progress'?"});
     wrong({"--progress", "baz"}, {"'baz'", "auto, bar, json, none"});
     wrong({"--spp", "0"}, {"--spp", "'0'", "from 1"});
+    wrong({"--spp", "1", "--spp", "2"}, {"--spp is given twice"});
+    wrong({"--spp"}, {"--spp has no value", "--spp COUNT"});
+    wrong({"--half=3"}, {"--half takes no value"});
     wrong({"--seed", "-1"}, {"--seed", "'-1'"});
+    wrong({"--seed", "9223372036854775808"}, {"--seed", "to 9223372036854775807"});
+    wrong({"--samples", "0:2147483648"}, {"--samples", "END <= 2147483647"});
+    wrong({"--exposure", "1e9"}, {"--exposure: '1e9'", "from -100 to 100"});
+    wrong({"--res", "65536x65536"}, {"--res: 65536 x 65536 pixels need 608 GiB", "--crop"});
     wrong({"--res", "0x8"}, {"--res", "'0x8'", "WIDTHxHEIGHT"});
     wrong({"--samples", "4:4"}, {"--samples", "'4:4'", "FIRST:END"});
     wrong({"--crop", "4,4,4,8"}, {"--crop", "'4,4,4,8'", "X0,Y0,X1,Y1"});
@@ -177,7 +237,9 @@ TEST_F(Cli, WrongUsage) {
     wrong({"--time-limit", "soon"}, {"--time-limit", "'soon'"});
     wrong({"--noise", "0"}, {"--noise", "'0'"});
     wrong({"--set", "volume"}, {"volume", "KEY=VALUE"});
-    wrong({"--layers", "dept"}, {"'dept'", "did you mean 'depth'?"});
+    wrong({"--noise", "5"}, {"--noise", "'5'", "up to 1 (100%)"});
+    wrong({"--layers", "dept"}, {"--layers: ", "'dept'", "did you mean 'depth'?"});
+    wrong({"--layers", "depth,depth"}, {"--layers names 'depth' twice"});
     wrong({"-o", file("a.png"), "--view", "Filmish"}, {"'Filmish'", "Standard"});
 }
 
@@ -190,9 +252,33 @@ TEST_F(Cli, ContradictoryOptions) {
     wrong({"--quiet", "--log-level", "debug"}, {"--quiet and --log-level"});
     expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--layers", "depth"}, 2,
                   {"--layers", "EXR"});
+    expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--half"}, 2,
+                  {"--half is for EXR files"});
+    for (const char* option : {"--display", "--view", "--look", "--exposure"})
+        wrong({option, "1"}, {std::string(option) + " is for PNG and JPEG files"});
     wrong({file("scene.toml")}, {"a scene file is rendered alone"});
     wrong({"--stats", file("out.exr")}, {"out.exr", "named twice"});
     wrong({"-o", file("smoke.vdb")}, {"smoke.vdb", "an input and an output"});
+}
+
+TEST_F(Cli, NothingThatIsReadIsWrittenOver) {
+    writeText(file("sky.exr"), "a picture of the sky");
+    writeText(file("scene.toml"),
+              "[[volume]]\nfile = \"smoke.vdb\"\n"
+              "[[light]]\ntype = \"environment\"\nimage = \"sky.exr\"\n");
+    expectFailure(render("scene.toml", {"-o", file("sky.exr")}), 2,
+                  {"sky.exr", "an input and an output"});
+    EXPECT_EQ(readText(file("sky.exr")), "a picture of the sky");
+}
+
+TEST_F(Cli, ValuesThatOptionsReplaceAreCheckedAllTheSame) {
+    for (const char* value : {"render=[]", "render.resolution=\"a\"", "render.spp=0"})
+        expectFailure({"render", file("smoke.vdb"), "-o", file("out.exr"), "--res", "16x8", "--spp",
+                       "1", "--set", value},
+                      3, {std::string("error: --set ") + value + ": render"});
+    expectFailure({"render", file("smoke.vdb"), "-o", file("out.exr"), "--res", "60000", "--set",
+                   "render.resolution=[100, 700]"},
+                  2, {"--res 60000", "420000 pixels high"});
 }
 
 TEST_F(Cli, UnwritableOutputsFailBeforeRendering) {
@@ -272,7 +358,10 @@ TEST_F(Cli, BadScenes) {
     bad("albedo = [1, 2, 3]", {":3:", "albedo", "between 0 and 1"});
     bad("albedo = ", {":3:"});
     bad("[render]\nspp = 0", {":4:", "spp"});
-    bad("density = \"dens\"", {"'dens'", "smoke.vdb", "density (float), flame (float)"});
+    bad("density = \"dens\"", {":3:11: ", "'dens'", "smoke.vdb", "density (float), flame (float)"});
+    writeText(file("scene.toml"), "ocio = \"no.ocio\"\n[[volume]]\nfile = \"smoke.vdb\"\n");
+    expectFailure(render("scene.toml"), 3, {file("scene.toml:1:8: cannot read the OpenColorIO")});
+    expectFailure(render("scene.toml", {"--ocio", "no.ocio"}), 3, {"error: --ocio: cannot read"});
     expectFailure(render("smoke.vdb", {"--set", "render.resolution=[0,8]"}), 3,
                   {"--set", "resolution[0] is 0"});
     expectFailure(render("missing.toml"), 3, {"missing.toml", "does not exist"});

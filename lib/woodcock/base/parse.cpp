@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "woodcock/base/error.h"
 
@@ -46,21 +47,20 @@ SampleRange parseSampleRange(std::string_view text) {
     const auto ends = integers<2>(text, ':');
     if (!ends || (*ends)[0] < 0 || (*ends)[1] <= (*ends)[0])
         throw usageError(
-            "'{}' is not a range of samples; expected FIRST:END with 0 <= FIRST < END, "
+            "'{}' is not a range of samples; expected FIRST:END with 0 <= FIRST < END <= {}, "
             "such as 0:16",
-            text);
+            text, std::numeric_limits<int>::max());
     return {(*ends)[0], (*ends)[1]};
 }
 
 ImageSize parseImageSize(std::string_view text) {
-    constexpr int largest = 65536;
-    const auto valid = [](int n) { return n >= 1 && n <= largest; };
+    const auto valid = [](int n) { return n >= 1 && n <= largestImageSide; };
     if (const auto width = number<int>(text); width && valid(*width)) return {*width, {}};
     if (const auto both = integers<2>(text, 'x'); both && valid((*both)[0]) && valid((*both)[1]))
         return {(*both)[0], (*both)[1]};
     throw usageError(
         "'{}' is not an image size; expected WIDTHxHEIGHT or WIDTH, each 1 to {}, such as 960x540",
-        text, largest);
+        text, largestImageSide);
 }
 
 PixelRectangle parsePixelRectangle(std::string_view text) {
@@ -108,9 +108,10 @@ std::uint64_t parseCount(std::string_view text, std::uint64_t lowest, std::uint6
     return *count;
 }
 
-double parseNumber(std::string_view text) {
+double parseNumber(std::string_view text, double lowest, double highest) {
     const auto value = number<double>(text);
-    if (!value || !std::isfinite(*value)) throw usageError("'{}' is not a number", text);
+    if (!value || !(*value >= lowest && *value <= highest))
+        throw usageError("'{}' is not a number from {} to {}", text, lowest, highest);
     return *value;
 }
 
@@ -119,9 +120,10 @@ double parseFraction(std::string_view text) {
     const bool percent = !text.empty() && text.back() == '%';
     if (percent) digits.remove_suffix(1);
     const double fraction = positive(number<double>(digits), percent ? 0.01 : 1);
-    if (fraction == 0)
-        throw usageError("'{}' is not a fraction; expected a positive number such as 1% or 0.01",
-                         text);
+    if (fraction == 0 || fraction > 1)
+        throw usageError(
+            "'{}' is not a fraction; expected a positive number up to 1 (100%), such as 1% or 0.01",
+            text);
     return fraction;
 }
 

@@ -10,6 +10,8 @@ namespace woodcock {
 
 // Words of a command line. Each throws Error{Usage} that says what was expected.
 
+inline constexpr int largestImageSide = 65536;
+
 /// "16:32": the half-open range of samples 16 to 31.
 struct SampleRange {
     int first = 0, end = 0;
@@ -37,10 +39,10 @@ std::string formatDuration(double seconds);
 /// A whole number from `lowest` to `highest`.
 std::uint64_t parseCount(std::string_view text, std::uint64_t lowest, std::uint64_t highest);
 
-/// Any finite number.
-double parseNumber(std::string_view text);
+/// A number from `lowest` to `highest`.
+double parseNumber(std::string_view text, double lowest, double highest);
 
-/// "1%" or "0.01": positive.
+/// "1%" or "0.01": positive, at most 1.
 double parseFraction(std::string_view text);
 
 }  // namespace woodcock

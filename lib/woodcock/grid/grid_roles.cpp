@@ -78,6 +78,14 @@ const GridListing* findByRoleName(const VdbFile& file, GridRole role) {
     return nullptr;
 }
 
+/// What the number of a "name[2]" counts, where `name` is a grid of the file.
+std::string explainNumber(const VdbFile& file, std::string_view name) {
+    const std::string_view base = name.substr(0, name.find('['));
+    const bool known = base.size() < name.size() && name.ends_with(']') &&
+                       firstWhere(file, [&](const GridListing& g) { return g.name == base; });
+    return known ? "; [0], [1], ... tell grids of one name apart, in the file's order" : "";
+}
+
 }  // namespace
 
 const char* roleName(GridRole role) {
@@ -112,8 +120,9 @@ FoundGrid findGrid(const VdbFile& file, std::string_view name) {
     std::vector<std::string> names;
     for (const GridListing& grid : file.grids) names.push_back(grid.uniqueName);
     const std::string near = nearestName(name, names);
-    throw inputError("grid '{}' not found in {}{}; it has: {}", name, file.path.string(),
-                     near.empty() ? "" : "; did you mean '" + near + "'?", describeGrids(file));
+    throw inputError("grid '{}' not found in {}{}; {}it has: {}", name, file.path.string(),
+                     explainNumber(file, name), near.empty() ? "" : "did you mean '" + near + "'? ",
+                     describeGrids(file));
 }
 
 FoundGrid findGrid(const VdbFile& file, GridRole role) {

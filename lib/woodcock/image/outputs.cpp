@@ -10,15 +10,15 @@
 
 namespace woodcock {
 
-Outputs::Outputs(OutputSettings settings)
-    : settings_(std::move(settings)), colour_(settings_.ocio) {
+Outputs::Outputs(OutputSettings settings) : settings_(std::move(settings)) {
     const auto& files = settings_.files;
     for (auto file = files.begin(); file != files.end(); ++file) {
         if (std::find(files.begin(), file, *file) != file)
             throw usageError("output '{}' is named twice", file->string());
         const bool display = imageFormat(*file) != ImageFormat::Exr;
         checkWritable(*file);
-        if (display && !transform_) transform_ = colour_.displayTransform(settings_.display);
+        if (display && !transform_)
+            transform_ = settings_.colour.displayTransform(settings_.display);
     }
 }
 
@@ -28,7 +28,7 @@ void Outputs::write(const Film& film, const RenderMetadata& metadata) const {
         try {
             if (imageFormat(file) == ImageFormat::Exr)
                 writeExr(file, film, metadata,
-                         {settings_.half, settings_.layers, colour_.chromaticities()});
+                         {settings_.half, settings_.layers, settings_.colour.chromaticities()});
             else
                 writeDisplay(file, film, *transform_, settings_.withAlpha);
         } catch (const Error& e) {

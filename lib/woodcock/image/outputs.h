@@ -13,11 +13,11 @@
 namespace woodcock {
 
 struct OutputSettings {
-    std::vector<std::filesystem::path> files;  ///< each in the format of its extension
-    bool half = false;                         ///< EXR colour in half instead of float
-    ExrLayers layers;                          ///< of the EXR files
-    DisplaySettings display;                   ///< of the PNG and JPEG files
-    std::filesystem::path ocio;                ///< empty: $OCIO, then the shipped config
+    std::vector<std::filesystem::path> files = {};  ///< each in the format of its extension
+    bool half = false;                              ///< EXR colour in half instead of float
+    ExrLayers layers = {};                          ///< of the EXR files
+    DisplaySettings display = {};                   ///< of the PNG and JPEG files
+    ColorConfig colour;                             ///< for them, and for the EXR's chromaticities
     bool withAlpha = false;  ///< PNG keeps alpha: for renders whose environment is not visible
 };
 
@@ -29,14 +29,13 @@ public:
     explicit Outputs(OutputSettings settings);
 
     /// What the user should know about the colour configuration; empty: nothing.
-    const std::string& note() const { return colour_.note(); }
+    const std::string& note() const { return settings_.colour.note(); }
 
     /// Writes every file, the others too when one fails; then throws Error{Failure} of those.
     void write(const Film& film, const RenderMetadata& metadata) const;
 
 private:
     OutputSettings settings_;
-    ColorConfig colour_;
     std::optional<DisplayTransform> transform_;  ///< where a file needs it
 };
 

@@ -56,7 +56,7 @@ Image readImage(const std::filesystem::path& file) {
     const auto channels = static_cast<std::size_t>(spec.nchannels);
     const auto pixels = static_cast<std::size_t>(spec.image_pixels());
     std::vector<float> all(pixels * channels);
-    if (all.empty() || spec.deep)
+    if (all.empty() || spec.deep || spec.depth > 1)
         throw inputError("cannot read image '{}': it has no flat pixels", file.string());
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data()))
         throw inputError("cannot read image '{}': {}", file.string(), input->geterror());

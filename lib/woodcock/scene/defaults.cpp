@@ -64,25 +64,53 @@ double typicalIntegral(const Field& field, const Affine3d& worldFromIndex) {
     return *middle;
 }
 
-std::optional<std::string> chooseScale(VolumeDescription& volume, const LoadedVolume& loaded,
-                                       size_t index) {
+/// Lines of TOML, and the reason for them.
+struct Choice {
+    std::string toml, reason;
+};
+
+/// The name of the density grid, where it was found by its role.
+Choice nameDensity(VolumeDescription& volume, const LoadedVolume& loaded) {
+    Choice choice;
+    const auto name = [&](std::string& grid, const LoadedField& field) {
+        if (!grid.empty()) return;
+        grid = field.grid;
+        choice = {fmt::format("density = {}\n", tomlText(grid)), ""};
+    };
+    if (auto* c = std::get_if<DensityCoefficients>(&volume.coefficients)) {
+        name(c->density, loaded.density);
+    } else if (auto* separate = std::get_if<SeparateCoefficients>(&volume.coefficients)) {
+        if (separate->sigmaA) name(separate->sigmaA->grid, loaded.sigmaA);
+        if (separate->sigmaS) name(separate->sigmaS->grid, loaded.sigmaS);
+    }
+    return choice;
+}
+
+Choice chooseScale(VolumeDescription& volume, const LoadedVolume& loaded) {
     auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
-    if (!c || c->scale) return std::nullopt;
+    if (!c || c->scale) return {};
     const double integral = typicalIntegral(
         *loaded.density.field, volume.worldFromObject * loaded.density.objectFromIndex);
     const double exact = typicalDepth / integral;
-    if (!(integral > 0) || !(exact < std::numeric_limits<float>::max())) {
-        c->scale = Rgb(1);
-        return fmt::format(
-            "volume[{}] seems empty: no ray of a bundle through it met any density; "
-            "chosen:\nscale = 1",
-            index);
-    }
-    c->scale = Rgb(static_cast<float>(roundTo(exact, magnitude(exact) - 2)));
-    return fmt::format(
-        "chosen for volume[{}], so that a typical ray through it has an optical "
-        "depth of {}:\nscale = {}",
-        index, typicalDepth, tomlColour(*c->scale));
+    const bool empty = !(integral > 0) || !(exact < std::numeric_limits<float>::max());
+    c->scale = empty ? Rgb(1) : Rgb(static_cast<float>(roundTo(exact, magnitude(exact) - 2)));
+    return {fmt::format("scale = {}\n", tomlColour(*c->scale)),
+            empty ? ", which seems empty (no ray of a bundle through it met any density)"
+                  : fmt::format(", so that a typical ray through it has an optical depth of {}",
+                                typicalDepth)};
+}
+
+std::optional<std::string> chooseVolume(SceneDescription& scene, const LoadedScene& loaded,
+                                        size_t index) {
+    VolumeDescription& volume = scene.volumes[index];
+    const Choice density = nameDensity(volume, loaded.volumes[index]);
+    const Choice scale = chooseScale(volume, loaded.volumes[index]);
+    std::string toml = density.toml + scale.toml;
+    if (!volume.file.empty() &&
+        findPlace(scene.places, fmt::format("volume[{}].file", index)).empty())
+        toml = writeVolume(volume);
+    if (toml.empty()) return std::nullopt;
+    return fmt::format("chosen for volume[{}]{}:\n{}", index, scale.reason, toml);
 }
 
 /// What points span along an axis.
@@ -118,11 +146,40 @@ Vec3d nearestEye(const std::vector<Vec3d>& points, const HalfPicture& half) {
                      (above.upper + below.upper) / (2 * half.y))};
 }
 
-/// A three-quarter view from slightly above that shows all points.
+/// How far from the origin, on its z axis, such a camera stands closest that looks there.
+double nearestDistance(const std::vector<Vec3d>& points, const HalfPicture& half) {
+    double distance = 0;
+    for (const Vec3d& p : points)
+        distance = std::max({distance, p.z + std::abs(p.x) / half.x, p.z + std::abs(p.y) / half.y});
+    return distance;
+}
+
+/// From the eye that is given.
+LookAt lookAtFrom(const SceneDescription& scene, Vec3d target, Vec3d up) {
+    const Vec3d eye = *scene.camera.given.eye, view = target - eye;
+    const double across = length(cross(normalize(view), normalize(up)));
+    if (!(across > 1e-9))
+        inPlace(findPlace(scene.places, "camera.eye"), [&] {
+            throw inputError(
+                "camera.eye looks at the volumes' centre, [{:.6g}, {:.6g}, {:.6g}], along up, "
+                "[{}, {}, {}], or stands in it; give a look_at or another up",
+                target.x, target.y, target.z, up.x, up.y, up.z);
+        });
+    return {eye, target, up};
+}
+
+/// A three-quarter view from slightly above that shows all points, unless what is given of the
+/// camera asks for another.
 LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& points, UpAxis up) {
+    const PartialPose& given = scene.camera.given;
     Box3d bounds;
     for (const Vec3d& p : points) bounds.add(p);
-    const Vec3d above = withUp({0, 1, 0}, up), centre = bounds.centre();
+    const double size = length(bounds.size());
+    const int grain = magnitude(size) - 3;
+    const Vec3d above = given.up.value_or(withUp({0, 1, 0}, up));
+    if (given.eye) return lookAtFrom(scene, roundTo(bounds.centre(), grain), above);
+    if (given.up) up = std::abs(above.z) > std::abs(above.y) ? UpAxis::Z : UpAxis::Y;
+    const Vec3d centre = given.target.value_or(bounds.centre());
     const Affine3d camera = lookAtTransform(withUp({0.55, 0.35, 1}, up), {0, 0, 0}, above);
     std::vector<Vec3d> turned;
     Extent x, y, z;
@@ -132,13 +189,16 @@ LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& point
             {dot(d, camera.column[0]), dot(d, camera.column[1]), dot(d, camera.column[2])});
         x.add(turned.back().x), y.add(turned.back().y), z.add(turned.back().z);
     }
-    const double size = length(bounds.size());
     Vec3d eye{x.centre(), y.centre(), z.upper + size};
     if (scene.camera.kind == CameraDescription::Kind::Perspective) {
         eye = nearestEye(turned, HalfPicture(scene));
+        if (given.target) eye.z = nearestDistance(turned, HalfPicture(scene));
         eye.z = std::max(eye.z, z.upper + 0.2 * size);  // a wide angle would touch the volume
     }
-    const int grain = magnitude(size) - 3;
+    if (given.target) {
+        eye = {0, 0, std::max(eye.z, 0.2 * size)};
+        return {roundTo(centre + camera.vector(eye), grain), centre, above};
+    }
     return {roundTo(centre + camera.vector(eye), grain),
             roundTo(centre + camera.vector({eye.x, eye.y, z.centre()}), grain), above};
 }
@@ -160,10 +220,14 @@ std::optional<std::string> chooseCamera(SceneDescription& scene, const std::vect
     CameraDescription& camera = scene.camera;
     const bool fits = camera.height || camera.kind == CameraDescription::Kind::Perspective;
     if (camera.pose && fits) return std::nullopt;
+    const bool upIsOpen = !camera.pose && !camera.given.up;
     if (!camera.pose) camera.pose = chooseView(scene, points, up);
+    camera.given = {};
     if (!fits) camera.height = chooseHeight(scene, points);
-    return fmt::format("chosen to frame the volumes (up is {}):\n{}",
-                       up == UpAxis::Z ? "+z, as in Blender, which wrote them" : "+y",
+    return fmt::format("chosen to frame the volumes{}:\n{}",
+                       !upIsOpen         ? ""
+                       : up == UpAxis::Z ? " (up is +z, as in Blender, which wrote them)"
+                                         : " (up is +y)",
                        writeCamera(camera));
 }
 
@@ -181,7 +245,7 @@ std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up) {
     sun.angularDiameter = 0.53;
     EnvironmentDescription sky;
     sky.radiance = Rgb(0.12f, 0.19f, 0.32f);
-    scene.lights = {{sun, ""}, {sky, ""}};
+    scene.lights = {{sun}, {sky}};
     return fmt::format("chosen, a warm sun from the upper left and a blue sky:\n{}\n{}",
                        writeLight(scene.lights[0]), writeLight(scene.lights[1]));
 }
@@ -211,7 +275,7 @@ std::vector<std::string> completeScene(SceneDescription& description, const Load
         if (note) notes.push_back(std::move(*note));
     };
     for (size_t i = 0; i < description.volumes.size(); ++i)
-        add(chooseScale(description.volumes[i], loaded.volumes[i], i));
+        add(chooseVolume(description, loaded, i));
     const UpAxis up = upOf(description, loaded);
     add(chooseCamera(description, sceneOutline(description, loaded), up));
     add(chooseLights(description, up));

@@ -11,6 +11,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/field_source.h"
+#include "woodcock/scene/places.h"
 
 namespace woodcock {
 
@@ -65,7 +66,6 @@ struct VolumeDescription {
     Affine3d worldFromObject;  ///< applied after the grid's own transform
     Storage storage = Storage::Auto;
     bool repair = false;  ///< NaN, infinite and negative voxels become zero instead of an error
-    std::string where;    ///< "scene.toml:12:1", for messages; empty when made by the program
     bool operator==(const VolumeDescription&) const = default;
 };
 
@@ -99,7 +99,6 @@ struct SphereDescription {
 };
 struct LightDescription {
     std::variant<SunDescription, EnvironmentDescription, PointDescription, SphereDescription> light;
-    std::string where;
     bool operator==(const LightDescription&) const = default;
 };
 
@@ -114,11 +113,18 @@ struct LookAt {
 /// up.
 using CameraPose = std::variant<LookAt, Affine3d>;
 
+/// What is given of a pose of which the rest is to be chosen.
+struct PartialPose {
+    std::optional<Vec3d> eye, target, up;
+    bool operator==(const PartialPose&) const = default;
+};
+
 struct CameraDescription {
     enum class Kind { Perspective, Orthographic } kind = Kind::Perspective;
     std::optional<CameraPose> pose;  ///< absent: chosen to frame the volumes
     double fovY = 40;                ///< full vertical angle, degrees (perspective)
     std::optional<double> height;  ///< world units from bottom to top (orthographic); absent: fits
+    PartialPose given = {};        ///< where `pose` is absent
     bool operator==(const CameraDescription&) const = default;
 };
 
@@ -129,7 +135,7 @@ struct RenderDescription {
     std::optional<int> maxScatterings;  ///< absent: unlimited
     double timeLimit = 0;               ///< seconds; 0: none
     double noise = 0;                   ///< mean relative standard error to stop at; 0: none
-    double majorantScale = 1;           ///< >= 1; loosens the majorants: for experiments
+    double majorantScale = 1;           ///< 1 to 1000; loosens the majorants: for experiments
     bool operator==(const RenderDescription&) const = default;
 };
 
@@ -142,8 +148,8 @@ struct OutputDescription {
     bool operator==(const OutputDescription&) const = default;
 };
 
-/// What is absent (lights, the camera's pose, a density's scale) is chosen by completeScene() of
-/// scene/defaults.h, which says what it chose.
+/// What is absent (lights, the camera's pose, a density's name and scale) is chosen by
+/// completeScene() of scene/defaults.h, which says what it chose.
 struct SceneDescription {
     std::vector<VolumeDescription> volumes;
     std::vector<LightDescription> lights;
@@ -151,6 +157,7 @@ struct SceneDescription {
     RenderDescription render;
     OutputDescription output;
     std::filesystem::path ocio;  ///< OpenColorIO config of this scene; empty: $OCIO, then built-in
+    Places places;               ///< of all its values
     bool operator==(const SceneDescription&) const = default;
 };
 

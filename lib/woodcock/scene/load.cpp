@@ -41,7 +41,7 @@ public:
         for (std::string& text : grid.notes) note(std::move(text));
         if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
         const LoadedField loaded{std::make_shared<Field>(std::move(grid.field)),
-                                 grid.worldFromIndex};
+                                 grid.worldFromIndex, found.grid.uniqueName};
         return fields_[key] = loaded;
     }
 
@@ -69,22 +69,37 @@ bool writtenByBlender(const VdbFile& file) {
     return false;
 }
 
-LoadedVolume loadVolume(const VolumeDescription& volume, Loader& loader) {
+LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader) {
+    const VolumeDescription& volume = scene.volumes[index];
     LoadedVolume loaded;
     if (std::holds_alternative<HomogeneousBox>(volume.coefficients)) return loaded;
+    const auto placeOf = [&](std::string_view key) {
+        return findPlace(scene.places, fmt::format("volume[{}].{}", index, key));
+    };
+    const VdbFile& file =
+        inPlace(placeOf("file"), [&]() -> const VdbFile& { return loader.file(volume.file); });
+    // The first of these keys that was written is to blame.
+    const auto load = [&](const std::string& grid, Purpose purpose,
+                          std::initializer_list<std::string_view> keys) {
+        std::string place;
+        for (const std::string_view key : keys)
+            if (place.empty()) place = placeOf(key);
+        return inPlace(place, [&] { return loader.field(volume, grid, purpose); });
+    };
     if (const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients)) {
-        loaded.density = loader.field(volume, c->density, Purpose::Density);
+        loaded.density = load(c->density, Purpose::Density, {"density", "file"});
         if (!c->albedoGrid.empty())
-            loaded.albedo = loader.field(volume, c->albedoGrid, Purpose::Albedo);
+            loaded.albedo = load(c->albedoGrid, Purpose::Albedo, {"albedo_grid"});
     } else {
         const auto& separate = std::get<SeparateCoefficients>(volume.coefficients);
-        const auto load = [&](const std::optional<GridCoefficient>& sigma) {
-            return sigma ? loader.field(volume, sigma->grid, Purpose::Coefficient) : LoadedField();
-        };
-        loaded.sigmaA = load(separate.sigmaA);
-        loaded.sigmaS = load(separate.sigmaS);
+        if (const auto& sigma = separate.sigmaA)
+            loaded.sigmaA =
+                load(sigma->grid, Purpose::Coefficient, {"sigma_a.grid", "density", "file"});
+        if (const auto& sigma = separate.sigmaS)
+            loaded.sigmaS =
+                load(sigma->grid, Purpose::Coefficient, {"sigma_s.grid", "density", "file"});
     }
-    if (writtenByBlender(loader.file(volume.file))) loaded.up = UpAxis::Z;
+    if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
 }
 
@@ -95,26 +110,17 @@ EnvironmentMap loadMap(const LightDescription& light) {
     return {image.width, image.height, std::move(image.rgb)};
 }
 
-/// What `load` returns; its errors gain the place in the scene file.
-template <class Load>
-auto at(const std::string& where, Load load) {
-    try {
-        return load();
-    } catch (const Error& e) {
-        if (where.empty()) throw;
-        throw Error(e.kind(), fmt::format("{}: {}", where, e.what()));
-    }
-}
-
 }  // namespace
 
 LoadedScene loadScene(const SceneDescription& scene) {
     LoadedScene loaded;
     Loader loader;
-    for (const VolumeDescription& volume : scene.volumes)
-        loaded.volumes.push_back(at(volume.where, [&] { return loadVolume(volume, loader); }));
-    for (const LightDescription& light : scene.lights)
-        loaded.environmentMaps.push_back(at(light.where, [&] { return loadMap(light); }));
+    for (size_t i = 0; i < scene.volumes.size(); ++i)
+        loaded.volumes.push_back(loadVolume(scene, i, loader));
+    for (size_t i = 0; i < scene.lights.size(); ++i)
+        loaded.environmentMaps.push_back(
+            inPlace(findPlace(scene.places, fmt::format("light[{}].image", i)),
+                    [&] { return loadMap(scene.lights[i]); }));
     loaded.notes = loader.takeNotes();
     return loaded;
 }

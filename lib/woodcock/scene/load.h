@@ -16,6 +16,7 @@ namespace woodcock {
 struct LoadedField {
     std::shared_ptr<const Field> field;
     Affine3d objectFromIndex;  ///< the grid's own transform
+    std::string grid;          ///< its name in the file
 
     explicit operator bool() const { return field != nullptr; }
 };

@@ -111,10 +111,13 @@ private:
     Error missing(const std::string& name, size_t size) const {
         if (name != "volume" && name != "light")
             return inputError("{}: {} has {} elements", place_, name, size);
-        const std::string owned =
-            size == 0 ? "no " + name : fmt::format("{} {}{}", size, name, size > 1 ? "s" : "");
-        return inputError("{}: the scene has {}{}", place_, owned,
-                          size > 1 ? fmt::format(", {}[0] to {}[{}]", name, name, size - 1) : "");
+        if (size == 0)
+            return inputError(
+                "{}: the scene has no {}{}", place_, name,
+                name == "light" ? " of its own; --write-scene saves the chosen ones" : "");
+        if (size == 1) return inputError("{}: the scene has 1 {}, {}[0]", place_, name, name);
+        return inputError("{}: the scene has {} {}s, {}[0] to {}[{}]", place_, size, name, name,
+                          name, size - 1);
     }
 
     /// Sets what steps_[first] and the keys after it lead to, in `table`.

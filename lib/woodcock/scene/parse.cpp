@@ -53,6 +53,16 @@ std::vector<SceneTable> tablesOf(const SceneTable& scene, const std::string& key
     return tables;
 }
 
+void collectPlaces(const toml::node& node, const std::string& name, Places& places) {
+    places[name] = placeOf(node.source());
+    if (const toml::table* table = node.as_table())
+        for (const auto& [key, value] : *table)
+            collectPlaces(value, name + "." + std::string(key.str()), places);
+    if (const toml::array* array = node.as_array())
+        for (size_t i = 0; i < array->size(); ++i)
+            collectPlaces(*array->get(i), fmt::format("{}[{}]", name, i), places);
+}
+
 SceneDescription readScene(const SceneTable& table, const std::string& name,
                            const std::filesystem::path& base) {
     table.allowOnly({"volume", "light", "camera", "render", "output", "ocio"}, "the scene");
@@ -82,7 +92,10 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
                                 const std::vector<std::string>& overrides) {
     toml::table table = parseToml(text, name);
     for (const std::string& assignment : overrides) applyOverride(table, assignment);
-    return readScene(SceneTable(table, ""), name, baseDirectory);
+    SceneDescription scene = readScene(SceneTable(table, ""), name, baseDirectory);
+    for (const auto& [key, value] : table)
+        collectPlaces(value, std::string(key.str()), scene.places);
+    return scene;
 }
 
 SceneDescription parseScene(const std::filesystem::path& file,

@@ -6,10 +6,23 @@
 namespace woodcock {
 namespace {
 
+PartialPose parsePartialPose(const SceneTable& table) {
+    PartialPose given;
+    if (const auto v = table.find("eye")) given.eye = v->vector();
+    if (const auto v = table.find("look_at")) given.target = v->vector();
+    if (const auto v = table.find("up")) {
+        given.up = v->vector();
+        if (!(length(*given.up) > 0) || !std::isfinite(length(*given.up)))
+            throw v->error("is [{}, {}, {}], which points nowhere", given.up->x, given.up->y,
+                           given.up->z);
+    }
+    return given;
+}
+
 LookAt parseLookAt(const SceneTable& table) {
     LookAt pose;
-    pose.eye = table.need("eye", "eye = [0, 1, 5]").vector();
-    const SceneValue target = table.need("look_at", "look_at = [0, 0, 0]");
+    pose.eye = table.find("eye")->vector();
+    const SceneValue target = *table.find("look_at");
     pose.target = target.vector();
     const Vec3d view = pose.target - pose.eye;
     if (!(length(view) > 0) || !std::isfinite(length(view)))
@@ -97,8 +110,10 @@ CameraDescription parseCamera(const SceneTable& table, double aspect) {
         table.exclude(key, "matrix", "the matrix places the camera alone");
     if (const auto v = table.find("matrix"))
         camera.pose = parsePose(*v);
-    else if (table.has("eye") || table.has("look_at") || table.has("up"))
+    else if (table.has("eye") && table.has("look_at"))
         camera.pose = parseLookAt(table);
+    else
+        camera.given = parsePartialPose(table);
     return camera;
 }
 

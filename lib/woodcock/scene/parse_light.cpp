@@ -109,7 +109,6 @@ SphereDescription parseSphere(const SceneTable& table) {
 LightDescription parseLight(const SceneTable& table, const std::filesystem::path& base) {
     const std::array<std::string, 4> types{"sun", "point", "sphere", "environment"};
     LightDescription light;
-    light.where = table.place();
     switch (table.need("type", "type = \"sun\"").choice("light type", types)) {
         case 0:
             light.light = parseSun(table);

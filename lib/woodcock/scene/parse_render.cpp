@@ -8,7 +8,6 @@
 namespace woodcock {
 namespace {
 
-constexpr int largestSide = 65536;
 constexpr int largestCount = std::numeric_limits<int>::max();
 
 /// What `read` makes of a value's text; its complaints gain the value's place.
@@ -48,8 +47,8 @@ RenderDescription parseRender(const SceneTable& table) {
     RenderDescription render;
     if (const auto v = table.find("resolution")) {
         const auto sides = v->elements("[width, height]", 2);
-        render.width = sides[0].integer(1, largestSide);
-        render.height = sides[1].integer(1, largestSide);
+        render.width = sides[0].integer(1, largestImageSide);
+        render.height = sides[1].integer(1, largestImageSide);
     }
     if (const auto v = table.find("spp")) render.spp = v->integer(1, largestCount);
     if (const auto v = table.find("seed")) render.seed = v->count();
@@ -58,8 +57,8 @@ RenderDescription parseRender(const SceneTable& table) {
     if (const auto v = table.find("time_limit"))
         render.timeLimit = v->isText() ? readText(*v, parseDuration) : v->number(notNegative);
     if (const auto v = table.find("noise"))
-        render.noise = v->isText() ? readText(*v, parseFraction) : v->number(notNegative);
-    if (const auto v = table.find("majorant_scale")) render.majorantScale = v->number({1});
+        render.noise = v->isText() ? readText(*v, parseFraction) : v->number({0, 1});
+    if (const auto v = table.find("majorant_scale")) render.majorantScale = v->number({1, 1000});
     return render;
 }
 
@@ -74,7 +73,7 @@ OutputDescription parseOutput(const SceneTable& table, const std::filesystem::pa
     if (const auto v = table.find("display")) output.display = v->text();
     if (const auto v = table.find("view")) output.view = v->text();
     if (const auto v = table.find("look")) output.look = v->text();
-    if (const auto v = table.find("exposure")) output.exposure = v->number();
+    if (const auto v = table.find("exposure")) output.exposure = v->number({-100, 100});
     return output;
 }
 

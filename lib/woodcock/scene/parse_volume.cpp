@@ -109,7 +109,6 @@ VolumeDescription parseVolume(const SceneTable& table, const std::filesystem::pa
     table.exclude("transform", "matrix", "both place the volume");
 
     VolumeDescription volume;
-    volume.where = table.place();
     if (const auto box = table.find("box")) {
         volume.coefficients = parseBox(table, *box);
     } else {

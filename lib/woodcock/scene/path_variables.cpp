@@ -11,7 +11,8 @@ namespace {
 
 std::string variable(const std::string& name) {
     if (const char* value = std::getenv(name.c_str())) return value;
-    throw inputError("the environment variable {} is not set", name);
+    throw inputError("the environment variable {} is not set; set it, or give a path without it",
+                     name);
 }
 
 bool isNameLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }

@@ -137,6 +137,12 @@ void write(Writer& out, const LookAt& pose) {
     out.line("up", tomlVector(pose.up));
 }
 
+void write(Writer& out, const PartialPose& given) {
+    if (given.eye) out.line("eye", tomlVector(*given.eye));
+    if (given.target) out.line("look_at", tomlVector(*given.target));
+    if (given.up) out.line("up", tomlVector(*given.up));
+}
+
 void write(Writer& out, const Affine3d& pose) {
     out.line("matrix", tomlMatrix(pose), "world from camera, which looks along -z");
 }
@@ -150,7 +156,10 @@ void write(Writer& out, const CameraDescription& camera) {
     } else {
         out.line("fov", tomlNumber(camera.fovY), "degrees, bottom to top");
     }
-    if (camera.pose) std::visit([&](const auto& pose) { write(out, pose); }, *camera.pose);
+    if (camera.pose)
+        std::visit([&](const auto& pose) { write(out, pose); }, *camera.pose);
+    else
+        write(out, camera.given);
 }
 
 void write(Writer& out, const RenderDescription& render) {
@@ -205,19 +214,18 @@ std::uint64_t hashOf(std::string_view text) {
     return hash;
 }
 
+template <class Section>
+std::string writeSection(const Section& section) {
+    Writer out(".", Writer::Comments::Yes);
+    write(out, section);
+    return out.text();
+}
+
 }  // namespace
 
-std::string writeCamera(const CameraDescription& camera) {
-    Writer out(".", Writer::Comments::Yes);
-    write(out, camera);
-    return out.text();
-}
-
-std::string writeLight(const LightDescription& light) {
-    Writer out(".", Writer::Comments::Yes);
-    write(out, light);
-    return out.text();
-}
+std::string writeVolume(const VolumeDescription& volume) { return writeSection(volume); }
+std::string writeCamera(const CameraDescription& camera) { return writeSection(camera); }
+std::string writeLight(const LightDescription& light) { return writeSection(light); }
 
 std::string writeScene(const SceneDescription& scene, const std::filesystem::path& directory) {
     Writer out(directory, Writer::Comments::Yes);

@@ -13,7 +13,8 @@ namespace woodcock {
 /// `directory`. Throws Error{Usage} where TOML cannot say it (a seed of 2^63 or more).
 std::string writeScene(const SceneDescription& scene, const std::filesystem::path& directory = ".");
 
-/// One section of it, with its heading.
+/// One section of it, with its heading; paths as they are.
+std::string writeVolume(const VolumeDescription& volume);
 std::string writeCamera(const CameraDescription& camera);
 std::string writeLight(const LightDescription& light);
 
