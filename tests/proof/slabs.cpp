@@ -80,9 +80,9 @@ Measured measure(const Lab& lab, const Parameters& p, const Precision& precision
 }
 
 void addSlab(Lab& lab, const Parameters& p, double reflected, double transmitted, double rounding,
-             const std::string& source) {
+             const std::string& source, Divide divide) {
     const Precision precision = usualPrecision(lab);
-    const Measured m = measure(lab, p, precision);
+    const Measured m = measure(lab, p, precision, divide);
     const auto add = [&](const char* what, double expected, const test::Estimate& measured) {
         if (expected < 4 * precision.floor) return;  // too few paths to know their scatter
         Case c = caseOf(fmt::format("{}, {}", what, p.name()), expected, measured, precision);
