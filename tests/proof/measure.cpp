@@ -22,7 +22,8 @@ Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, 
 
 RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
                         const Precision& precision, std::vector<int> channels) {
-    constexpr int side = 32, pilotSamples = 16;
+    constexpr int side = 32;
+    const int pilotSamples = lab.pick(4, 16);
     constexpr double margin = 1.3, mostSamples = 1 << 20;  // the pilot's variance is a guess
     Picture picture{side, side, pilotSamples, hashOf(lab.seed(name), 0)};
     const RgbEstimate pilot = evenRadiance(renderScene(scene, picture).film);
