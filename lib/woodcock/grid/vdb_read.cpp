@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/half.h"
 #include "woodcock/grid/vdb_header.h"
 #include "woodcock/grid/vdb_types.h"
 

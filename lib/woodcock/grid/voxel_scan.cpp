@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "woodcock/grid/half.h"
+
 namespace woodcock {
 
 namespace {
@@ -114,14 +116,6 @@ LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activ
 }
 
 }  // namespace
-
-bool isExactAsHalf(float v) {
-    const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(v) & 0x7fffffffu;
-    constexpr std::uint32_t smallestNormal = 0x38800000u, largest = 0x477fe000u;  // 2^-14, 65504
-    if (magnitude >= smallestNormal) return magnitude <= largest && (magnitude & 0x1fffu) == 0;
-    const float quanta = std::bit_cast<float>(magnitude) * 0x1p24f;  // of denormal halves
-    return quanta == static_cast<float>(static_cast<int>(quanta));
-}
 
 void VoxelCount::add(Vec3i at, std::uint64_t n) { add(VoxelCount{n, at}); }
 
