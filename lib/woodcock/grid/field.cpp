@@ -202,14 +202,18 @@ private:
             field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}};
     }
     void coverBrick(std::size_t brick, Box3d& box) const {
+        Box3i inside{{8, 8, 8}, {-1, -1, -1}};
         for (int i = 0; i < 512; ++i) {
             const Vec3i v{i >> 6, i >> 3 & 7, i & 7};
             bool differs = false;
             for (int c = 0; c < field_.channels_; ++c)
                 differs |=
                     field_.valueOf(static_cast<std::uint32_t>(brick), v, c) != field_.background(c);
-            if (differs) addCube(box, source_.leafOrigins[brick] + v, 1);
+            if (differs) inside = {min(inside.lower, v), max(inside.upper, v)};
         }
+        if (inside.empty()) return;
+        box.add((source_.leafOrigins[brick] + inside.lower).as<double>());
+        box.add((source_.leafOrigins[brick] + inside.upper).as<double>());
     }
 
     const FieldSource& source_;

@@ -55,8 +55,10 @@ template <int C>
 void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> activeMask,
                    const std::array<float, 3>& background, VoxelScan& scan) {
     constexpr std::size_t lanes = 8 * C;
-    std::array<float, lanes> low, high;
+    std::array<float, lanes> low, high, outside;
     std::array<double, lanes> sum{};
+    std::array<unsigned, lanes> bit;  // of a lane's voxel in a row's mask
+    for (std::size_t i = 0; i < lanes; ++i) outside[i] = background[i % C], bit[i] = 1u << (i / C);
     low.fill(largestFloat), high.fill(-largestFloat);
     for (std::size_t row = 0; row < 64; ++row) {
         const float* v = values + row * lanes;
@@ -69,16 +71,18 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
             }
             continue;
         }
-        for (std::size_t z = 0; z < 8; ++z) {
-            if (!(active >> z & 1u)) {
-                scan.inactiveValues += anyDiffers<C>(v + z * C, background);
-                continue;
-            }
-            for (std::size_t i = z * C; i < (z + 1) * C; ++i) {
-                low[i] = std::min(low[i], v[i]), high[i] = std::max(high[i], v[i]);
-                sum[i] += static_cast<double>(v[i]);
-            }
+        std::array<unsigned, lanes> differs;
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const bool on = (active & bit[i]) != 0;
+            const float below = on ? v[i] : largestFloat, above = on ? v[i] : -largestFloat;
+            low[i] = below < low[i] ? below : low[i];
+            high[i] = above > high[i] ? above : high[i];
+            sum[i] += static_cast<double>(on ? v[i] : 0.0f);
+            differs[i] = on || v[i] == outside[i] ? 0 : bit[i];
         }
+        unsigned strays = 0;
+        for (unsigned d : differs) strays |= d;
+        scan.inactiveValues += static_cast<std::uint64_t>(std::popcount(strays));
     }
     std::uint64_t count = 0;
     for (std::uint64_t word : activeMask) count += static_cast<std::uint64_t>(std::popcount(word));
@@ -94,14 +98,22 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
 template <int C>
 LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activeMask, Vec3i origin,
                     const std::array<float, 3>& background, VoxelScan& scan) {
+    constexpr std::size_t lanes = 8 * C;
+    std::array<float, lanes> first;
+    for (std::size_t i = 0; i < lanes; ++i) first[i] = values[i % C];
     unsigned faulty = 0, varying = 0;
-    for (std::size_t i = 0; i < 512; ++i)
-        for (std::size_t c = 0; c < C; ++c) {
-            const float v = values[i * C + c];
-            faulty |= static_cast<unsigned>(!(v >= 0 && v <= largestFloat));
-            varying |= static_cast<unsigned>(v != values[c]);
+    for (std::size_t row = 0; row < 64; ++row)
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const float v = values[row * lanes + i];
+            faulty |= static_cast<unsigned>(!(v >= 0)) | static_cast<unsigned>(v > largestFloat);
+            varying |= static_cast<unsigned>(v != first[i]);
         }
-    if (scan.exactAsHalf) scan.exactAsHalf = std::all_of(values, values + 512 * C, isExactAsHalf);
+    for (std::size_t row = 0; row < 64 && scan.exactAsHalf; ++row) {
+        unsigned exact = 1;
+        for (std::size_t i = 0; i < lanes; ++i)
+            exact &= static_cast<unsigned>(isExactAsHalf(values[row * lanes + i]));
+        scan.exactAsHalf = exact != 0;
+    }
     if (faulty) {
         for (int n = 0; n < 512; ++n) {
             const bool active = activeMask[static_cast<std::size_t>(n / 64)] >> (n % 64) & 1u;
