@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/grid/field.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <atomic>
 #include <unordered_set>
@@ -18,9 +20,9 @@ Range rangeOf(std::span<const float> values) {
     return r;
 }
 
-/// The same for a whole brick, in lanes that a compiler can keep in registers.
+/// The same for a whole brick, in more lanes than a compiler would unroll: vector code.
 Range rangeOfBrick(std::span<const float> values) {
-    constexpr std::size_t lanes = 8;
+    constexpr std::size_t lanes = 64;
     std::array<float, lanes> low, high;
     low.fill(values[0]), high.fill(values[0]);
     for (std::size_t i = 0; i < values.size(); i += lanes)
@@ -189,15 +191,28 @@ private:
                             source_.background.begin()))
                 addCube(box, t.origin, t.size);
         for (Vec3i o : source_.leafOrigins) addCube(blocks, o, 8);
+        const auto isOutermost = [&](Vec3i o) {
+            bool atEdge = false;
+            for (int axis = 0; axis < 3; ++axis)
+                atEdge |= o[axis] == blocks.lower[axis] || o[axis] + 7 == blocks.upper[axis];
+            return atEdge;
+        };
         // The outermost leaves first: few others then have voxels outside the box.
         for (const bool outermost : {true, false})
-            for (std::size_t i = 0; i < source_.leafOrigins.size(); ++i) {
-                const Vec3i o = source_.leafOrigins[i];
-                bool atEdge = false;
-                for (int axis = 0; axis < 3; ++axis)
-                    atEdge |= o[axis] == blocks.lower[axis] || o[axis] + 7 == blocks.upper[axis];
-                if (atEdge == outermost && !containsLeaf(box, o)) coverBrick(i, box);
-            }
+            box = tbb::parallel_reduce(
+                tbb::blocked_range<std::size_t>(0, source_.leafOrigins.size(), 256), box,
+                [&](const tbb::blocked_range<std::size_t>& range, Box3d part) {
+                    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        const Vec3i o = source_.leafOrigins[i];
+                        if (isOutermost(o) == outermost && !containsLeaf(part, o))
+                            coverBrick(i, part);
+                    }
+                    return part;
+                },
+                [](Box3d a, const Box3d& b) {
+                    a.add(b);
+                    return a;
+                });
         if (!box.empty())
             field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}};
     }

@@ -50,20 +50,21 @@ void scanVoxel(const float* v, bool active, Vec3i at, std::uint64_t n,
     }
 }
 
-/// A leaf without faults, a row of eight voxels at a time: lanes that the compiler can vectorise.
+/// A leaf without faults, a word of the mask at a time. As many lanes as voxels: shorter loops
+/// would be unrolled before the compiler sees that they are vector code.
 template <int C>
 void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> activeMask,
                    const std::array<float, 3>& background, VoxelScan& scan) {
-    constexpr std::size_t lanes = 8 * C;
-    std::array<float, lanes> low, high, outside;
+    constexpr std::size_t lanes = 64 * C;
+    std::array<float, lanes> low, high;
     std::array<double, lanes> sum{};
-    std::array<unsigned, lanes> bit;  // of a lane's voxel in a row's mask
-    for (std::size_t i = 0; i < lanes; ++i) outside[i] = background[i % C], bit[i] = 1u << (i / C);
     low.fill(largestFloat), high.fill(-largestFloat);
-    for (std::size_t row = 0; row < 64; ++row) {
-        const float* v = values + row * lanes;
-        const auto active = static_cast<unsigned>(activeMask[row / 8] >> (row % 8 * 8) & 0xffu);
-        if (active == 0xff) {
+    std::uint64_t count = 0;
+    for (std::uint64_t active : activeMask) {
+        const float* const v = values;
+        values += lanes;
+        count += static_cast<std::uint64_t>(std::popcount(active));
+        if (active == ~std::uint64_t{0}) {
             for (std::size_t i = 0; i < lanes; ++i) {
                 low[i] = v[i] < low[i] ? v[i] : low[i];
                 high[i] = v[i] > high[i] ? v[i] : high[i];
@@ -71,21 +72,17 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
             }
             continue;
         }
-        std::array<unsigned, lanes> differs;
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const bool on = (active & bit[i]) != 0;
-            const float below = on ? v[i] : largestFloat, above = on ? v[i] : -largestFloat;
-            low[i] = below < low[i] ? below : low[i];
-            high[i] = above > high[i] ? above : high[i];
-            sum[i] += static_cast<double>(on ? v[i] : 0.0f);
-            differs[i] = on || v[i] == outside[i] ? 0 : bit[i];
+        for (std::size_t n = 0; n < 64; ++n) {
+            if (!(active >> n & 1u)) {
+                scan.inactiveValues += anyDiffers<C>(v + n * C, background);
+                continue;
+            }
+            for (std::size_t i = n * C; i < (n + 1) * C; ++i) {
+                low[i] = std::min(low[i], v[i]), high[i] = std::max(high[i], v[i]);
+                sum[i] += static_cast<double>(v[i]);
+            }
         }
-        unsigned strays = 0;
-        for (unsigned d : differs) strays |= d;
-        scan.inactiveValues += static_cast<std::uint64_t>(std::popcount(strays));
     }
-    std::uint64_t count = 0;
-    for (std::uint64_t word : activeMask) count += static_cast<std::uint64_t>(std::popcount(word));
     scan.active += count, scan.finite += count;
     if (count == 0) return;
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -98,20 +95,15 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
 template <int C>
 LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activeMask, Vec3i origin,
                     const std::array<float, 3>& background, VoxelScan& scan) {
-    constexpr std::size_t lanes = 8 * C;
-    std::array<float, lanes> first;
-    for (std::size_t i = 0; i < lanes; ++i) first[i] = values[i % C];
+    constexpr std::size_t size = 512 * C, part = 64 * C;
     unsigned faulty = 0, varying = 0;
-    for (std::size_t row = 0; row < 64; ++row)
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const float v = values[row * lanes + i];
-            faulty |= static_cast<unsigned>(!(v >= 0)) | static_cast<unsigned>(v > largestFloat);
-            varying |= static_cast<unsigned>(v != first[i]);
-        }
-    for (std::size_t row = 0; row < 64 && scan.exactAsHalf; ++row) {
+    for (std::size_t i = 0; i < size; ++i)
+        faulty |= (values[i] >= 0 ? 0u : 1u) | (values[i] > largestFloat ? 1u : 0u);
+    for (std::size_t i = C; i < size; ++i) varying |= values[i] != values[i - C] ? 1u : 0u;
+    for (std::size_t first = 0; first < size && scan.exactAsHalf; first += part) {
         unsigned exact = 1;
-        for (std::size_t i = 0; i < lanes; ++i)
-            exact &= static_cast<unsigned>(isExactAsHalf(values[row * lanes + i]));
+        for (std::size_t i = first; i < first + part; ++i)
+            exact &= isExactAsHalf(values[i]) ? 1u : 0u;
         scan.exactAsHalf = exact != 0;
     }
     if (faulty) {
