@@ -59,7 +59,7 @@ TEST(BlockTable, VisitsEveryEntryAtItsPlace) {
         table.at({-18, 1001, -3}) = 7, table.at({-1, 1018, 3}) = 8;
         if (!dense) table.fill({-1024, -512, 512}, superLog2, 9);
         int found = 0;
-        table.forEach([&](Vec3i b, int log2Size, int& value) {
+        table.forEach([&](Vec3i b, int log2Size, const int& value) {
             EXPECT_EQ(table.find(b).value, &value);
             EXPECT_EQ(table.find(b).log2Size, log2Size);
             found += value;

@@ -122,43 +122,6 @@ TEST(Field, HalfRefusesWhatItCannotHoldAndRoundsTheRest) {
         EXPECT_NEAR(field.voxel({x, 0, 0}), 0.1 * (x + 1), 0.1 * (x + 1) * 0x1p-11);
 }
 
-TEST(Field, BlockRangesAreExactlyWhatInterpolationTouches) {
-    for (const PlainGrid& grid : grids()) {
-        const Field field = grid.field();
-        for (Vec3i leaf : grid.leaves())
-            for (int i = 0; i < 27; ++i) {
-                const Vec3i v = leaf + Vec3i{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1} * 8;
-                const auto found = field.findBlock({v.x >> 3, v.y >> 3, v.z >> 3});
-                if (found.log2Size > blockLog2) continue;  // shared: see below
-                EXPECT_EQ(found.value->range, grid.range(v, v + Vec3i{8, 8, 8}))
-                    << v.x << " " << v.y << " " << v.z;
-            }
-    }
-}
-
-TEST(Field, SharedRangesBoundEveryPointOfTheirCube) {
-    for (const PlainGrid& grid : grids()) {
-        const Field field = grid.field();
-        for (Vec3d p : points(grid, 400, 2)) {
-            const Vec3i v = floorToInt(p);
-            const Range r = field.findBlock({v.x >> 3, v.y >> 3, v.z >> 3}).value->range;
-            for (int c = 0; c < grid.channels(); ++c) {
-                ASSERT_LE(r.min, field.trilinear(p, c));
-                ASSERT_GE(r.max, field.trilinear(p, c));
-            }
-            ASSERT_LE(field.range().min, r.min);
-            ASSERT_GE(field.range().max, r.max);
-        }
-    }
-}
-
-TEST(Field, TheInsideOfALargeTileIsFlat) {
-    const Field field = scatteredGrid(5).field();
-    const auto found = field.findBlock({4096 / 8 + 100, -8192 / 8 + 200, 300});
-    EXPECT_GE(found.log2Size, regionLog2);
-    EXPECT_EQ(found.value->range, (Range{0.5f, 0.5f}));
-}
-
 TEST(Field, TrilinearIsTheSumOfEightWeightedVoxels) {
     for (const PlainGrid& grid : grids()) {
         const Field field = grid.field();
@@ -238,10 +201,8 @@ TEST(Field, AHugeTileCostsLittle) {
     grid.setTile({-4096, 0, 4096}, 4096, {1});
     grid.setTile({0, 0, 4096}, 4096, {1});
     const Field field = grid.field();
-    EXPECT_LT(field.bytes(), 4u << 20);
+    EXPECT_LT(field.bytes(), 4096u);
     EXPECT_EQ(field.support(), (Box3d{{-4097, -1, 4095}, {4096, 4096, 8192}}));
-    EXPECT_EQ(field.findBlock({-1, 256, 768}).value->range, (Range{1, 1}));
-    EXPECT_EQ(field.findBlock({511, 256, 768}).value->range, (Range{0, 1}));
 }
 
 }  // namespace

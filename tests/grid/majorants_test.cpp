@@ -5,6 +5,7 @@
 
 #include "tests/support/plain_grid.h"
 #include "woodcock/base/random.h"
+#include "woodcock/grid/block_ranges.h"
 
 namespace woodcock::test {
 namespace {
@@ -71,14 +72,14 @@ TEST(Majorants, AreAsTightAsTheirCellsAllow) {
     std::array<int, 8> cellsOfSize{};
     for (const PlainGrid& grid : {mixedGrid(1), mixedGrid(4, 3, haze), scatteredGrid(5)}) {
         const Field field = grid.field();
+        const BlockTable<Range> ranges = blockRanges(field);
         const std::vector<Vec3d> where = points(grid, 12);
         for (const MajorantGrid::Options& options : optionsFor(field)) {
             const MajorantGrid majorants(field, options);
             for (Vec3d p : where) {
                 const Vec3i v = floorToInt(p);
                 const MajorantGrid::Cell cell = majorants.find(v);
-                if (cell.log2Size > 4 ||
-                    field.findBlock({v.x >> 3, v.y >> 3, v.z >> 3}).log2Size > 3)
+                if (cell.log2Size > 4 || ranges.find({v.x >> 3, v.y >> 3, v.z >> 3}).log2Size > 3)
                     continue;
                 ++cellsOfSize[static_cast<std::size_t>(cell.log2Size)];
                 const Vec3i low = corner(v, cell.log2Size);

@@ -10,19 +10,19 @@
 namespace woodcock::test {
 namespace {
 
-void expectFrugal(const std::filesystem::path& file) {
-    const auto tree = static_cast<double>(VdbValues(file, "density").treeBytes);
+void expectFrugal(const std::filesystem::path& file, const std::string& what) {
+    const auto tree = static_cast<double>(vdbTreeBytes(file, "density"));
     const auto field = [&](Storage storage) {
         return static_cast<double>(loadGrid(file, "density", {.storage = storage}).field.bytes());
     };
-    EXPECT_LE(field(Storage::Float) / tree, 1);
-    EXPECT_LE(field(Storage::Half) / tree, 0.75);
+    EXPECT_LE(field(Storage::Float) / tree, 1) << what;
+    EXPECT_LE(field(Storage::Half) / tree, 0.75) << what;
 }
 
 TEST(FieldMemory, OfACloudFromProduction) {
     const auto teapot = sharedDir() / "assets" / "teapot_cloud.vdb";
     if (!std::filesystem::exists(teapot)) GTEST_SKIP() << "no " << teapot;
-    expectFrugal(teapot);
+    expectFrugal(teapot, "teapot");
 }
 
 TEST(FieldMemory, OfALargeBall) {
@@ -34,7 +34,44 @@ TEST(FieldMemory, OfALargeBall) {
     };
     const TempDir dir;
     writeVdb(dir / "ball.vdb", {ball}, VdbCompression::None);
-    expectFrugal(dir / "ball.vdb");
+    expectFrugal(dir / "ball.vdb", "ball");
+}
+
+/// A grid of single voxels, each made from a direction.
+GridSpec spots(int count, double radius) {
+    GridSpec grid;
+    for (int i = 0; i < count; ++i) {  // evenly over the sphere, by the golden angle
+        const double z = 1 - 2 * (i + 0.5) / count, turn = 2.399963 * i;
+        const double r = std::sqrt(1 - z * z);
+        const Vec3d at = Vec3d{r * std::cos(turn), r * std::sin(turn), z} * radius;
+        grid.voxels.push_back({floorToInt(at), {0.1 + 0.01 * (i % 7)}});
+    }
+    return grid;
+}
+
+TEST(FieldMemory, OfScatteredVoxels) {
+    const TempDir dir;
+    for (const auto& [count, radius] : {std::pair{4000, 900.0}, {200, 20000.0}, {1, 1.0}}) {
+        writeVdb(dir / "spots.vdb", {spots(count, radius)});
+        expectFrugal(dir / "spots.vdb", std::to_string(count) + " voxels");
+    }
+}
+
+TEST(FieldMemory, OfAThinShell) {
+    const TempDir dir;
+    writeVdb(dir / "shell.vdb", {spots(200000, 250)});
+    expectFrugal(dir / "shell.vdb", "shell");
+}
+
+TEST(FieldMemory, OfTilesAlone) {
+    GridSpec tiles;
+    for (int i = 0; i < 1000; ++i)
+        tiles.tiles.push_back({{i % 10 * 128, i / 10 % 10 * 128, i / 100 * 128}, 128, {0.5}});
+    for (int i = 0; i < 1000; ++i)
+        tiles.tiles.push_back({{i % 10 * -8 - 8, i / 10 % 10 * -8 - 8, i / -100 * 8}, 8, {0.5}});
+    const TempDir dir;
+    writeVdb(dir / "tiles.vdb", {tiles});
+    expectFrugal(dir / "tiles.vdb", "tiles");
 }
 
 }  // namespace

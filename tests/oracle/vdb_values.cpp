@@ -5,12 +5,23 @@
 
 namespace woodcock::test {
 
-VdbValues::VdbValues(const std::filesystem::path& file, const std::string& grid) {
+namespace {
+
+openvdb::FloatGrid::Ptr readFloats(const std::filesystem::path& file, const std::string& grid) {
     openvdb::initialize();
     openvdb::io::File in(file.string());
     in.open(/*delayLoad=*/false);
-    const auto values = openvdb::gridPtrCast<openvdb::FloatGrid>(in.readGrid(grid));
-    treeBytes = values->tree().memUsage();
+    return openvdb::gridPtrCast<openvdb::FloatGrid>(in.readGrid(grid));
+}
+
+}  // namespace
+
+std::size_t vdbTreeBytes(const std::filesystem::path& file, const std::string& grid) {
+    return readFloats(file, grid)->tree().memUsage();
+}
+
+VdbValues::VdbValues(const std::filesystem::path& file, const std::string& grid) {
+    const openvdb::FloatGrid::Ptr values = readFloats(file, grid);
     const openvdb::CoordBBox b = values->evalActiveVoxelBoundingBox();
     box = {{b.min().x(), b.min().y(), b.min().z()}, {b.max().x(), b.max().y(), b.max().z()}};
     const auto image = [&](double x, double y, double z) {

@@ -16,7 +16,6 @@ struct VdbValues {
 
     Box3i box;  ///< of the active voxels
     Affine3d worldFromIndex;
-    std::size_t treeBytes = 0;  ///< OpenVDB's own memUsage(), everything loaded
     double largest = 0;
 
     double at(Vec3i v) const {
@@ -35,5 +34,8 @@ private:
     }
     std::vector<float> values_;
 };
+
+/// OpenVDB's own memUsage() of a float grid's tree, everything loaded.
+std::size_t vdbTreeBytes(const std::filesystem::path& file, const std::string& grid);
 
 }  // namespace woodcock::test

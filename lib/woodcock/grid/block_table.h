@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -33,6 +34,10 @@ public:
         blocks_.assign(volume(bounds), outside);
     }
 
+    /// What a sparse table takes for so many regions and super-regions that are not uniform.
+    static std::size_t sparseBytes(std::size_t regions, std::size_t supers) {
+        return regions * regionBlocks * sizeof(T) + supers * superRegions * sizeof(std::uint32_t);
+    }
     static std::size_t volume(Box3i b) {
         std::size_t n = 1;
         for (int i = 0; i < 3; ++i)
@@ -66,11 +71,11 @@ public:
         if (dense_) return blocks_[denseIndex(b - bounds_.lower)];
         auto [super, fresh] = supers_.try_emplace(superKey(b), 0u);
         if (fresh) super->second = newUniform(outside_);
-        std::uint32_t& region = regions_[split(super->second, regions_, 32768,
+        std::uint32_t& region = regions_[split(super->second, regions_, superRegions,
                                                [](std::uint32_t uniform) { return uniform; }) +
                                          regionIndex(b)];
         return blocks_[split(
-                           region, blocks_, 4096,
+                           region, blocks_, regionBlocks,
                            [&](std::uint32_t uniform) { return uniform_[uniform & ~uniformBit]; }) +
                        blockIndex(b)];
     }
@@ -84,7 +89,7 @@ public:
         if (!dense_ && log2Size == regionLog2) {
             auto [super, fresh] = supers_.try_emplace(superKey(origin), 0u);
             if (fresh) super->second = newUniform(outside_);
-            regions_[split(super->second, regions_, 32768,
+            regions_[split(super->second, regions_, superRegions,
                            [](std::uint32_t uniform) { return uniform; }) +
                      regionIndex(origin)] = newUniform(value);
             return;
@@ -98,7 +103,7 @@ public:
     /// Calls f(firstBlock, log2Size, value) for every entry but those that were never set in a
     /// sparse table; in the same order on every machine.
     template <class F>
-    void forEach(F&& f) {
+    void forEach(F&& f) const {
         if (dense_) {
             std::size_t i = 0;
             for (int z = bounds_.lower.z; z <= bounds_.upper.z; ++z)
@@ -128,6 +133,28 @@ public:
         }
     }
 
+    /// Boxes that together hold all blocks with an entry of their own. at() may be called for
+    /// blocks of different boxes at the same time.
+    std::vector<Box3i> boxes() const {
+        std::vector<Box3i> boxes;
+        if (dense_) {
+            for (int z = bounds_.lower.z; z <= bounds_.upper.z; ++z)
+                boxes.push_back(
+                    {{bounds_.lower.x, bounds_.lower.y, z}, {bounds_.upper.x, bounds_.upper.y, z}});
+            return boxes;
+        }
+        for (std::uint64_t key : sortedSupers()) {
+            const std::uint32_t super = supers_.at(key);
+            if (super & uniformBit) continue;
+            for (int i = 0; i < 32768; ++i) {
+                if (regions_[super + static_cast<std::uint32_t>(i)] & uniformBit) continue;
+                const Vec3i r = superOrigin(key) + Vec3i{i & 31, (i >> 5) & 31, i >> 10} * 16;
+                boxes.push_back({r, r + Vec3i{15, 15, 15}});
+            }
+        }
+        return boxes;
+    }
+
     /// A table of the same shape, each value mapped.
     template <class U, class F>
     BlockTable<U> map(F&& f) const {
@@ -141,6 +168,10 @@ public:
         return t;
     }
 
+    /// Makes room in a sparse table for this many regions and super-regions.
+    void reserve(std::size_t regions, std::size_t supers) {
+        blocks_.reserve(regions * regionBlocks), regions_.reserve(supers * superRegions);
+    }
     /// Gives back what building took beyond need.
     void shrink() { blocks_.shrink_to_fit(), uniform_.shrink_to_fit(), regions_.shrink_to_fit(); }
 
@@ -154,6 +185,7 @@ private:
     friend class BlockTable;
 
     static constexpr std::uint32_t uniformBit = 0x80000000u;
+    static constexpr std::size_t regionBlocks = 4096, superRegions = 32768;
 
     std::size_t denseIndex(Vec3i o) const {
         return static_cast<std::size_t>(o.x) +
@@ -178,8 +210,9 @@ private:
     static std::uint32_t blockIndex(Vec3i b) {
         return static_cast<std::uint32_t>((b.x & 15) | (b.y & 15) << 4 | (b.z & 15) << 8);
     }
+    /// Neighbours of one value share it.
     std::uint32_t newUniform(const T& value) {
-        uniform_.push_back(value);
+        if (uniform_.empty() || uniform_.back() != value) uniform_.push_back(value);
         return uniformBit | static_cast<std::uint32_t>(uniform_.size() - 1);
     }
     /// The table that `slot` refers to, made from its uniform value if it has none yet.

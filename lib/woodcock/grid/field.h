@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bit>
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
-
-#ifdef __F16C__
-#include <immintrin.h>
-#endif
 
 #include "woodcock/base/vec.h"
 #include "woodcock/grid/block_table.h"
 #include "woodcock/grid/field_source.h"
+#include "woodcock/grid/half.h"
 
 namespace woodcock {
 
@@ -22,9 +20,9 @@ struct Range {
     bool operator==(const Range&) const = default;
 };
 
-/// A sparse grid made for reading: 8x8x8 bricks in flat memory, found in O(1), each block with the
-/// exact range of the *reconstructed* field. Values sit at integer index positions and are
-/// interpolated trilinearly; outside everything lies the background. Knows nothing of sigma.
+/// A sparse grid made for reading: 8x8x8 bricks in flat memory, found in O(1). Values sit at
+/// integer index positions and are interpolated trilinearly; outside everything lies the
+/// background. Knows nothing of sigma.
 class Field {
 public:
     int channels() const { return channels_; }
@@ -43,7 +41,7 @@ public:
 
     /// The stored value of voxel `v` (any index).
     float voxel(Vec3i v, int channel = 0) const {
-        return valueOf(table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value->ref, v, channel);
+        return valueOf(*table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value, v, channel);
     }
 
     /// Trilinear interpolation at index-space position `p`, at most 2^31 voxels away.
@@ -77,7 +75,7 @@ public:
     class BlockVoxels {
     public:
         BlockVoxels(const Field& field, Vec3i block)
-            : field_(&field), ref_(field.table_.find(block).value->ref) {}
+            : field_(&field), ref_(*field.table_.find(block).value) {}
         /// Of voxel `v` (any index; its last three bits count) of the block.
         float operator()(Vec3i v, int channel = 0) const {
             return field_->valueOf(ref_, v, channel);
@@ -88,18 +86,16 @@ public:
         std::uint32_t ref_;
     };
 
-    /// Bounds of the reconstruction over the closed cube of the block that holds voxel `8 block`,
-    /// over all channels. A cube may be shared by more than one block (Found::log2Size).
-    struct Block {
-        std::uint32_t ref = 0;  ///< brick, or constantBit | constant
-        Range range;
-    };
-    BlockTable<Block>::Found findBlock(Vec3i block) const { return table_.find(block); }
-    const BlockTable<Block>& blocks() const { return table_; }
+    /// What each block holds: the number of a brick or of a constant. Equal numbers, equal voxels.
+    const BlockTable<std::uint32_t>& blocks() const { return table_; }
+    /// Of the stored values of what `ref` names, over all channels: of all its voxels, or of the
+    /// first `n` along each axis.
+    Range storedRange(std::uint32_t ref) const;
+    Range storedRange(std::uint32_t ref, Vec3i n) const;
 
     /// The range over all of space.
     Range range() const { return range_; }
-    std::size_t brickCount() const { return brickCount_; }
+    std::size_t brickCount() const { return brickRanges_.size(); }
     std::size_t bytes() const;  ///< memory held, tables included
 
 private:
@@ -118,27 +114,17 @@ private:
     }
     float stored(std::size_t i) const { return half_ ? decodeHalf(halves_[i]) : floats_[i]; }
 
-    /// IEEE half to float, for finite values: exact, denormals included.
-    static float decodeHalf(std::uint16_t h) {
-#ifdef __F16C__
-        return _cvtsh_ss(h);
-#else
-        const std::uint32_t magnitude = (h & 0x7fffu) << 13;
-        const float v = std::bit_cast<float>(magnitude) * 0x1p112f;
-        return h & 0x8000u ? -v : v;
-#endif
-    }
-
     int channels_ = 1;
     bool half_ = false;
     std::array<float, 3> background_{};
     Box3d support_;
     Range range_;
-    std::size_t brickCount_ = 0;
-    BlockTable<Block> table_;
+    BlockTable<std::uint32_t> table_;  // bricks, or constantBit | constant
     std::vector<float> constants_;
-    std::vector<float> floats_;          // either these or
-    std::vector<std::uint16_t> halves_;  // these: 512 x channels values a brick
+    std::vector<Range> brickRanges_;
+    // 512 x channels values a brick, in one of these. No vectors: those would fill them with zeros.
+    std::unique_ptr<float[]> floats_;
+    std::unique_ptr<std::uint16_t[]> halves_;
 };
 
 /// Builds the field in parallel. Errors: Input when half storage is asked for values beyond 65504.

@@ -30,7 +30,7 @@ struct FieldSource {
     std::vector<Vec3i> leafOrigins;  ///< multiples of 8
     std::vector<FieldTile> tiles;    ///< overlapping neither each other nor a leaf
     /// Writes the 512 x channels values of leaf `i`: x slowest, z fastest, channels innermost.
-    /// Called once for each leaf, from many threads.
+    /// Called from many threads.
     std::function<void(size_t i, std::span<float> values)> copyLeaf;
 };
 

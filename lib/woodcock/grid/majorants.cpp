@@ -7,6 +7,7 @@
 
 #include "woodcock/base/random.h"
 #include "woodcock/base/statistics.h"
+#include "woodcock/grid/block_ranges.h"
 #include "woodcock/grid/cell_walk.h"
 
 namespace woodcock {
@@ -85,15 +86,13 @@ MajorantGrid::MajorantGrid(const Field& field, const Options& options) {
     const auto scaled = [&](Range r) {
         return Range{r.min, static_cast<float>(r.max * options.scale)};
     };
-    table_ = field.blocks().map<Entry>([&](const Field::Block& b) {
-        return Entry{scaled(b.range), blockLog2};
-    });
+    table_ = blockRanges(field).map<Entry>([&](Range r) { return Entry{scaled(r), blockLog2}; });
 
     // Split bricks whose bounds are loose enough to pay for it.
     std::vector<Vec3i> blocks;
     std::unordered_set<std::uint64_t> seen;
     std::vector<Vec3i> regions;
-    table_.forEach([&](Vec3i b, int log2Size, Entry& e) {
+    table_.forEach([&](Vec3i b, int log2Size, const Entry& e) {
         if (log2Size != blockLog2) return;
         const auto part = [](int v) { return static_cast<std::uint64_t>(v >> 4) & 0x1fffffu; };
         if (seen.insert(part(b.x) | part(b.y) << 21 | part(b.z) << 42).second)

@@ -57,6 +57,7 @@ private:
     struct Entry {
         Range range;
         std::int32_t code = blockLog2;
+        bool operator==(const Entry&) const = default;
     };
     /// Bounds inside a brick, as the upper halves of floats, rounded outwards.
     struct Part {

@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <memory>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/half.h"
 #include "woodcock/grid/vdb_header.h"
 #include "woodcock/grid/vdb_types.h"
 
@@ -46,10 +48,13 @@ std::array<float, 3> converted(const V& value) {
     return v;
 }
 
+template <class V>
+constexpr bool isMadeOfFloats = std::is_same_v<V, float> || std::is_same_v<V, openvdb::Vec3f>;
+
 template <class Leaf>
 void copyValues(const Leaf& leaf, float* to) {
     using V = typename Leaf::ValueType;
-    if constexpr (std::is_same_v<V, float> || std::is_same_v<V, openvdb::Vec3f>) {
+    if constexpr (isMadeOfFloats<V>) {
         std::memcpy(to, leaf.buffer().data(), 512 * sizeof(V));
     } else {
         for (openvdb::Index n = 0; n < 512; ++n)
@@ -59,8 +64,7 @@ void copyValues(const Leaf& leaf, float* to) {
 
 Vec3i toVec(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
-/// Reads one kind of tree: its leaves in parallel, since OpenVDB decompresses a leaf of a mapped
-/// file when it is first touched.
+/// Turns one kind of tree into a source, its leaves in parallel.
 template <class TreeT>
 class TreeReader {
 public:
@@ -113,8 +117,12 @@ private:
     }
 
     LeafKind scanOne(const Leaf& leaf, VoxelScan& scan) const {
-        std::array<float, 512 * channels> values;
-        copyValues(leaf, values.data());
+        std::array<float, 512 * channels> converted;
+        std::span<const float> values = converted;
+        if constexpr (isMadeOfFloats<Value>)
+            values = {reinterpret_cast<const float*>(leaf.buffer().data()), converted.size()};
+        else
+            copyValues(leaf, converted.data());
         std::array<std::uint64_t, 8> mask;
         for (openvdb::Index w = 0; w < 8; ++w)
             mask[w] = leaf.getValueMask().template getWord<std::uint64_t>(w);
@@ -140,27 +148,41 @@ private:
     void scanTiles() {
         using Upper = typename TreeT::RootNodeType::ChildNodeType;
         using Lower = typename Upper::ChildNodeType;
-        addTiles(grid_->tree().root(), Upper::DIM);
-        std::vector<const Upper*> uppers;
-        grid_->tree().getNodes(uppers);
-        for (const Upper* node : uppers) addTiles(*node, Lower::DIM);
-        std::vector<const Lower*> lowers;
-        grid_->tree().getNodes(lowers);
-        for (const Lower* node : lowers) addTiles(*node, Leaf::DIM);
+        for (auto it = grid_->tree().root().cbeginValueAll(); it; ++it)
+            addTile(*it, it.isValueOn(), it.getCoord(), Upper::DIM);
+        addTilesOf<Upper>();
+        addTilesOf<Lower>();
     }
 
+    /// Most tiles of most nodes are background: those that are not are found in parallel.
     template <class Node>
-    void addTiles(const Node& node, openvdb::Index size) {
-        for (auto it = node.cbeginValueAll(); it; ++it) {
-            const Value value = *it;
-            const bool active = it.isValueOn();
-            if (!active && value == grid_->tree().background()) continue;
-            const FieldTile tile{toVec(it.getCoord()), static_cast<int>(size), converted(value)};
-            scanTile(tile.value, channels, active, tile.origin, tile.size, source_.field.background,
-                     source_.statistics.voxels);
-            source_.statistics.activeTiles += active;
-            if (tile.value != source_.field.background) source_.field.tiles.push_back(tile);
-        }
+    void addTilesOf() {
+        std::vector<const Node*> nodes;
+        grid_->tree().getNodes(nodes);
+        std::vector<std::vector<openvdb::Index>> tiles(nodes.size());
+        const Value background = grid_->tree().background();
+        tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t i) {
+            const auto* table = nodes[i]->getTable();
+            const auto& children = nodes[i]->getChildMask();
+            const auto& active = nodes[i]->getValueMask();
+            for (openvdb::Index n = 0; n < Node::NUM_VALUES; ++n)
+                if (!children.isOn(n) && (active.isOn(n) || table[n].getValue() != background))
+                    tiles[i].push_back(n);
+        });
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            for (openvdb::Index n : tiles[i])
+                addTile(nodes[i]->getTable()[n].getValue(), nodes[i]->isValueMaskOn(n),
+                        nodes[i]->offsetToGlobalCoord(n), Node::ChildNodeType::DIM);
+    }
+
+    void addTile(const Value& value, bool active, const openvdb::Coord& origin,
+                 openvdb::Index size) {
+        if (!active && value == grid_->tree().background()) return;
+        const FieldTile tile{toVec(origin), static_cast<int>(size), converted(value)};
+        scanTile(tile.value, channels, active, tile.origin, tile.size, source_.field.background,
+                 source_.statistics.voxels);
+        source_.statistics.activeTiles += active;
+        if (tile.value != source_.field.background) source_.field.tiles.push_back(tile);
     }
 
     void describe() {
@@ -199,8 +221,9 @@ GridSource readGridSource(const VdbFile& file, const GridListing& grid, Repair r
         {
             const OpenVdbTypes types(header);
             openvdb::io::File vdb(file.path.string());
-            vdb.setCopyMaxBytes(0);  // map the file in place: all of it is read at once
-            vdb.open();
+            // Leaves that are read later can be read in parallel, but each then costs a stream and
+            // a look at the file's date: on few cores that takes longer, on many it gains little.
+            vdb.open(/*delayLoad=*/false);
             read = vdb.readGrid(grid.uniqueName);
         }
         using namespace openvdb;

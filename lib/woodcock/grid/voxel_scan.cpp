@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "woodcock/grid/half.h"
+
 namespace woodcock {
 
 namespace {
@@ -48,18 +50,21 @@ void scanVoxel(const float* v, bool active, Vec3i at, std::uint64_t n,
     }
 }
 
-/// A leaf without faults, a row of eight voxels at a time: lanes that the compiler can vectorise.
+/// A leaf without faults, a word of the mask at a time. As many lanes as voxels: shorter loops
+/// would be unrolled before the compiler sees that they are vector code.
 template <int C>
 void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> activeMask,
                    const std::array<float, 3>& background, VoxelScan& scan) {
-    constexpr std::size_t lanes = 8 * C;
+    constexpr std::size_t lanes = 64 * C;
     std::array<float, lanes> low, high;
     std::array<double, lanes> sum{};
     low.fill(largestFloat), high.fill(-largestFloat);
-    for (std::size_t row = 0; row < 64; ++row) {
-        const float* v = values + row * lanes;
-        const auto active = static_cast<unsigned>(activeMask[row / 8] >> (row % 8 * 8) & 0xffu);
-        if (active == 0xff) {
+    std::uint64_t count = 0;
+    for (std::uint64_t active : activeMask) {
+        const float* const v = values;
+        values += lanes;
+        count += static_cast<std::uint64_t>(std::popcount(active));
+        if (active == ~std::uint64_t{0}) {
             for (std::size_t i = 0; i < lanes; ++i) {
                 low[i] = v[i] < low[i] ? v[i] : low[i];
                 high[i] = v[i] > high[i] ? v[i] : high[i];
@@ -67,19 +72,17 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
             }
             continue;
         }
-        for (std::size_t z = 0; z < 8; ++z) {
-            if (!(active >> z & 1u)) {
-                scan.inactiveValues += anyDiffers<C>(v + z * C, background);
+        for (std::size_t n = 0; n < 64; ++n) {
+            if (!(active >> n & 1u)) {
+                scan.inactiveValues += anyDiffers<C>(v + n * C, background);
                 continue;
             }
-            for (std::size_t i = z * C; i < (z + 1) * C; ++i) {
+            for (std::size_t i = n * C; i < (n + 1) * C; ++i) {
                 low[i] = std::min(low[i], v[i]), high[i] = std::max(high[i], v[i]);
                 sum[i] += static_cast<double>(v[i]);
             }
         }
     }
-    std::uint64_t count = 0;
-    for (std::uint64_t word : activeMask) count += static_cast<std::uint64_t>(std::popcount(word));
     scan.active += count, scan.finite += count;
     if (count == 0) return;
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -92,14 +95,17 @@ void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> active
 template <int C>
 LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activeMask, Vec3i origin,
                     const std::array<float, 3>& background, VoxelScan& scan) {
+    constexpr std::size_t size = 512 * C, part = 64 * C;
     unsigned faulty = 0, varying = 0;
-    for (std::size_t i = 0; i < 512; ++i)
-        for (std::size_t c = 0; c < C; ++c) {
-            const float v = values[i * C + c];
-            faulty |= static_cast<unsigned>(!(v >= 0 && v <= largestFloat));
-            varying |= static_cast<unsigned>(v != values[c]);
-        }
-    if (scan.exactAsHalf) scan.exactAsHalf = std::all_of(values, values + 512 * C, isExactAsHalf);
+    for (std::size_t i = 0; i < size; ++i)
+        faulty |= (values[i] >= 0 ? 0u : 1u) | (values[i] > largestFloat ? 1u : 0u);
+    for (std::size_t i = C; i < size; ++i) varying |= values[i] != values[i - C] ? 1u : 0u;
+    for (std::size_t first = 0; first < size && scan.exactAsHalf; first += part) {
+        unsigned exact = 1;
+        for (std::size_t i = first; i < first + part; ++i)
+            exact &= isExactAsHalf(values[i]) ? 1u : 0u;
+        scan.exactAsHalf = exact != 0;
+    }
     if (faulty) {
         for (int n = 0; n < 512; ++n) {
             const bool active = activeMask[static_cast<std::size_t>(n / 64)] >> (n % 64) & 1u;
@@ -114,14 +120,6 @@ LeafKind scanLeafOf(const float* values, std::span<const std::uint64_t, 8> activ
 }
 
 }  // namespace
-
-bool isExactAsHalf(float v) {
-    const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(v) & 0x7fffffffu;
-    constexpr std::uint32_t smallestNormal = 0x38800000u, largest = 0x477fe000u;  // 2^-14, 65504
-    if (magnitude >= smallestNormal) return magnitude <= largest && (magnitude & 0x1fffu) == 0;
-    const float quanta = std::bit_cast<float>(magnitude) * 0x1p24f;  // of denormal halves
-    return quanta == static_cast<float>(static_cast<int>(quanta));
-}
 
 void VoxelCount::add(Vec3i at, std::uint64_t n) { add(VoxelCount{n, at}); }
 

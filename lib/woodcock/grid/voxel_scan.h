@@ -53,9 +53,6 @@ LeafKind scanLeaf(std::span<const float> values, int channels,
 void scanTile(const std::array<float, 3>& value, int channels, bool active, Vec3i origin, int size,
               const std::array<float, 3>& background, VoxelScan& scan);
 
-/// True for what a half holds without rounding; false for NaN and infinities.
-bool isExactAsHalf(float v);
-
 /// Sets NaN and infinite values to zero; with `negativeToo`, also those below zero.
 void repairValues(std::span<float> values, bool negativeToo);
 

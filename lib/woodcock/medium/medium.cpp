@@ -30,7 +30,7 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
         return;
     }
     support_ = d_.field->support();
-    background_ = d_.field->blocks().outside().range;
+    background_ = d_.field->storedRange(d_.field->blocks().outside());
     const double voxelWidth = std::cbrt(std::abs(determinant));
     majorants_ = MajorantGrid(
         *d_.field, {largestExtinction_ * voxelWidth, d_.majorantScale, d_.majorantSmallestLog2});

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "woodcock/grid/block_ranges.h"
+
 namespace woodcock {
 namespace {
 
@@ -23,7 +25,7 @@ Box3d occupiedPart(const Field& field, Vec3i first, Vec3i last) {
     const float least = wisp * field.range().max;
     Box3d part;
     for (Vec3i b = first; b.x <= last.x; ++b.x)
-        if (field.findBlock(b).value->range.max > least) {
+        if (blockRange(field, b).max > least) {
             const Vec3d corner = b.as<double>() * 8;
             part.add(Box3d{corner, corner + Vec3d{8, 8, 8}});
         }
