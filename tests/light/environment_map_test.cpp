@@ -7,6 +7,7 @@
 
 #include "tests/support/statistics.h"
 #include "woodcock/base/random.h"
+#include "woodcock/base/statistics.h"
 #include "woodcock/light/light.h"
 
 namespace woodcock::test {
