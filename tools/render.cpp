@@ -80,9 +80,14 @@ SceneDescription describeScene(const RenderOptions& options) {
     }
     if (!options.layers.empty()) output.layers = options.layers;
     output.half |= options.half;
-    output.display = options.display.value_or(output.display);
-    output.view = options.view.value_or(output.view);
-    output.look = options.look.value_or(output.look);
+    const auto replaceName = [&](const char* key, std::string& name, const auto& option) {
+        if (!option) return;
+        name = *option;
+        scene.places[fmt::format("output.{}", key)] = fmt::format("--{}", key);
+    };
+    replaceName("display", output.display, options.display);
+    replaceName("view", output.view, options.view);
+    replaceName("look", output.look, options.look);
     output.exposure = options.exposure.value_or(output.exposure);
     if (!options.ocio.empty()) {
         scene.ocio = options.ocio;
@@ -132,6 +137,15 @@ ExrLayers layersOf(const SceneDescription& scene) {
 
 bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 
+/// Where the name that a message of ColorConfig begins with was given: "scene.toml:9:8: ".
+std::string placeOfDisplayError(const SceneDescription& scene, std::string_view message) {
+    for (const std::string key : {"display", "view", "look"}) {
+        const std::string place = findPlace(scene.places, "output." + key);
+        if (message.starts_with(key + " '") && !place.empty()) return place + ": ";
+    }
+    return "";
+}
+
 Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& options) {
     const auto check = [](const std::string& place, const std::filesystem::path& file) {
         if (!file.empty() && !isStdout(file)) inPlace(place, [&] { checkWritable(file); });
@@ -150,7 +164,11 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
     settings.withAlpha = environmentIsHidden(scene);
-    return Outputs(std::move(settings));
+    try {
+        return Outputs(std::move(settings));
+    } catch (const Error& e) {
+        throw Error(e.kind(), placeOfDisplayError(scene, e.what()) + e.what());
+    }
 }
 
 /// Throws where the image's sums cannot be held, before anything is loaded.

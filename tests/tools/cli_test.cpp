@@ -367,6 +367,21 @@ TEST_F(Cli, BadScenes) {
     expectFailure(render("missing.toml"), 3, {"missing.toml", "does not exist"});
 }
 
+TEST_F(Cli, WrongNamesForDisplayTellWhereTheyWereGiven) {
+    const auto expectPlace = [&](const std::string& output, const std::vector<std::string>& more,
+                                 const std::string& place) {
+        writeText(dir / "view.toml", "[[volume]]\nfile = \"smoke.vdb\"\n[output]\n" + output);
+        std::vector<std::string> arguments{
+            "render", file("view.toml"), "-o", file("out.png"), "--spp", "1", "--res", "8x8"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expectFailure(arguments, 2, {place});
+    };
+    expectPlace("view = \"nosuch\"\n", {}, "view.toml:4:8: view 'nosuch' not found");
+    expectPlace("display = \"nosuch\"\n", {}, "view.toml:4:11: display 'nosuch' not found");
+    expectPlace("view = \"nosuch\"\n", {"--view", "other"}, "--view: view 'other' not found");
+    expectPlace("", {"--set", "output.look=\"none such\""}, "look 'none such' not found");
+}
+
 TEST_F(Cli, AFullDiskLeavesNoPartOfAnImage) {
     writeText(file("out.png"), "yesterday's");
     const ProgramResult result =
