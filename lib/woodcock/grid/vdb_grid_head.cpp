@@ -7,6 +7,8 @@
 #include <istream>
 #include <map>
 
+#include "woodcock/base/printable.h"
+
 namespace woodcock {
 
 namespace {
@@ -52,7 +54,7 @@ void readMetadata(FileBytes& file, VdbGridHead& head) {
         }
         const openvdb::Metadata::Ptr datum = readMetadatum(file, type);
         std::string text = datum ? datum->str() : "<binary data>";
-        if (key == openvdb::GridBase::META_GRID_NAME) head.name = text;
+        if (key == openvdb::GridBase::META_GRID_NAME) head.name = printable(text);
         if (key == openvdb::GridBase::META_GRID_CLASS) head.gridClass = text;
         if (key == openvdb::GridBase::META_SAVE_HALF_FLOAT)
             head.savedAsHalf = datum && datum->asBool();

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/printable.h"
 #include "woodcock/grid/vdb_grid_head.h"
 #include "woodcock/grid/vdb_layout.h"
 
@@ -24,7 +25,7 @@ std::string readableName(std::string name) {
         name[mark] = '[';
         name += ']';
     }
-    return name;
+    return printable(name);
 }
 
 Error notVdb(FileBytes& file) {
@@ -61,7 +62,7 @@ Error notVdb(FileBytes& file) {
 VdbHeader::Entry readEntry(FileBytes& file) {
     VdbHeader::Entry entry;
     entry.uniqueName = readableName(file.text());
-    entry.treeType = file.text();
+    entry.treeType = printable(file.text());
     if (entry.treeType.ends_with(halfSuffix)) {
         entry.savedAsHalf = true;
         entry.treeType.resize(entry.treeType.size() - halfSuffix.size());

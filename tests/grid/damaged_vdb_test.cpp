@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <future>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/damage_vdb.h"
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+
+namespace woodcock::test {
+namespace {
+
+constexpr std::size_t variants = 2400, batchSize = 40;
+constexpr unsigned secondsPerFile = 10;
+// All of a damaged file's parts together take at most this; see lib/README.md. The samples are
+// small, so that what the program takes by itself rules here.
+constexpr std::size_t residentLimit = 256u << 20;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool sanitized = true;  // reserves terabytes of addresses for itself
+#else
+constexpr bool sanitized = false;
+#endif
+
+ProgramLimits limits(unsigned seconds) {
+    ProgramLimits l{.seconds = seconds};
+    if (!sanitized) l.addressSpace = std::size_t(2) << 30;
+    return l;
+}
+
+struct Variant {
+    std::string name;  ///< sample and seed
+    std::filesystem::path file;
+};
+
+std::vector<Variant> writeVariants(const std::vector<VdbSample>& samples,
+                                   const std::filesystem::path& directory, std::size_t begin,
+                                   std::size_t end) {
+    std::vector<Variant> written;
+    for (std::size_t seed = begin; seed < end; ++seed) {
+        const VdbSample& sample = samples[seed % samples.size()];
+        written.push_back({fmt::format("'{}' damaged by {}", sample.name, seed),
+                           directory / fmt::format("{}.vdb", seed)});
+        writeText(written.back().file, damagedVdb(sample, seed));
+    }
+    return written;
+}
+
+struct Counts {
+    std::size_t files = 0, errors = 0, rendered = 0;
+    std::size_t residentBytes = 0;
+    void add(const Counts& other) {
+        files += other.files;
+        errors += other.errors;
+        rendered += other.rendered;
+        residentBytes = std::max(residentBytes, other.residentBytes);
+    }
+};
+
+std::vector<std::string> paths(const std::vector<Variant>& files) {
+    std::vector<std::string> texts;
+    for (const Variant& v : files) texts.push_back(v.file.string());
+    return texts;
+}
+
+/// The program looks at all files at once; where it fails, at each alone, to say at which.
+Counts inspect(const std::vector<Variant>& files) {
+    std::vector<std::string> words = paths(files);
+    words.insert(words.begin(), {"info", "--json"});
+    const ProgramResult run =
+        runProgram(words, limits(files.size() == 1 ? secondsPerFile : 10 * secondsPerFile));
+    Counts counts{files.size(), 0, 0, run.residentBytes};
+    if (run.exitCode != 0 && run.exitCode != 3) {
+        if (files.size() == 1) {
+            ADD_FAILURE() << files[0].name << ": exit " << run.exitCode << "\n" << run.err;
+            return counts;
+        }
+        for (const Variant& file : files) counts.add(inspect({file}));
+        return counts;
+    }
+    const auto json = nlohmann::json::parse(run.out);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const std::string text = json.at("files").at(i).dump();
+        const bool error = text.find("\"error\":") != std::string::npos;
+        counts.errors += error;
+        EXPECT_TRUE(!error || text.find(files[i].file.string()) != std::string::npos) << text;
+    }
+    return counts;
+}
+
+Counts render(const std::vector<Variant>& files) {
+    std::vector<std::string> words = paths(files);
+    words.insert(words.begin(), std::to_string(secondsPerFile));
+    const ProgramResult run = runProgram(words, limits(0), renderEachProgram());
+    Counts counts{0, 0, 0, run.residentBytes};
+    std::istringstream lines(run.out);
+    for (std::string line; std::getline(lines, line); ++counts.files) {
+        if (line == "rendered") {
+            ++counts.rendered;
+            continue;
+        }
+        ++counts.errors;
+        EXPECT_NE(line.find(files[counts.files].file.string()), std::string::npos) << line;
+    }
+    if (run.exitCode == 0) return counts;
+    ADD_FAILURE() << files[counts.files].name << ": exit " << run.exitCode << "\n" << run.err;
+    const auto next = files.begin() + static_cast<std::ptrdiff_t>(++counts.files);
+    if (next != files.end()) counts.add(render({next, files.end()}));
+    return counts;
+}
+
+/// Runs `handle` over batches of variants, two at a time.
+template <class Handle>
+Counts overBatches(Handle&& handle) {
+    const std::vector<VdbSample> samples = healthyVdbs();
+    const auto every = [&](std::size_t first) {
+        Counts counts;
+        for (std::size_t begin = first; begin < variants; begin += 2 * batchSize) {
+            const TempDir dir;
+            counts.add(handle(
+                writeVariants(samples, dir.path(), begin, std::min(begin + batchSize, variants))));
+        }
+        return counts;
+    };
+    auto other = std::async(std::launch::async, every, batchSize);
+    Counts counts = every(0);
+    counts.add(other.get());
+    return counts;
+}
+
+void report(const char* what, const Counts& counts) {
+    fmt::print("{}: {} damaged files, {} errors, {} taken as they are, at most {} MiB\n", what,
+               counts.files, counts.errors, counts.files - counts.errors,
+               counts.residentBytes >> 20);
+    EXPECT_EQ(counts.files, variants);
+    EXPECT_LT(counts.errors, counts.files);  // some damage is harmless
+    EXPECT_GT(counts.errors, counts.files / 3);
+    EXPECT_TRUE(sanitized || counts.residentBytes < residentLimit);
+}
+
+TEST(DamagedVdb, InfoSaysWhatIsWrong) { report("info", overBatches(inspect)); }
+
+TEST(DamagedVdb, RenderDrawsItOrSaysWhatIsWrong) { report("render", overBatches(render)); }
+
+}  // namespace
+}  // namespace woodcock::test
