@@ -2,14 +2,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <future>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/support/damage_vdb.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "woodcock/grid/vdb_load.h"
 
 namespace woodcock::test {
 namespace {
@@ -145,6 +149,82 @@ void report(const char* what, const Counts& counts) {
 TEST(DamagedVdb, InfoSaysWhatIsWrong) { report("info", overBatches(inspect)); }
 
 TEST(DamagedVdb, RenderDrawsItOrSaysWhatIsWrong) { report("render", overBatches(render)); }
+
+/// A file at a time, as users do it.
+TEST(DamagedVdb, TheProgramItselfRendersOrExitsWithThree) {
+    constexpr std::size_t files = 48;
+    const std::vector<VdbSample> samples = healthyVdbs();
+    const auto renderSome = [&](std::size_t begin) {
+        const TempDir dir;
+        std::map<int, int> exits;
+        for (const Variant& v : writeVariants(samples, dir.path(), begin, begin + files / 2)) {
+            const ProgramResult run = runProgram({"render", v.file.string(), "-o", dir / "out.exr",
+                                                  "--res", "8x8", "--spp", "1", "--repair"},
+                                                 limits(secondsPerFile));
+            ++exits[run.exitCode];
+            EXPECT_TRUE(run.exitCode == 0 || run.exitCode == 3)
+                << v.name << ": exit " << run.exitCode << "\n"
+                << run.err;
+            EXPECT_TRUE(run.exitCode == 0 || run.err.find(v.file.string()) != std::string::npos)
+                << run.err;
+        }
+        return exits;
+    };
+    auto other = std::async(std::launch::async, renderSome, variants + files / 2);
+    std::map<int, int> exits = renderSome(variants);
+    for (const auto& [code, count] : other.get()) exits[code] += count;
+    EXPECT_GT(exits[0], 0);
+    EXPECT_GT(exits[3], 0);
+}
+
+TEST(DamagedVdb, UndamagedFilesAreFine) {
+    const TempDir dir;
+    std::vector<std::string> words{"info"};
+    for (const VdbSample& sample : healthyVdbs()) {
+        words.push_back(dir / (sample.name + ".vdb"));
+        writeText(words.back(), sample.bytes);
+    }
+    const ProgramResult run = runProgram(words);
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+}
+
+TEST(DamagedVdb, GridsThatShareATreeAreBothRead) {
+    const TempDir dir;
+    const std::vector<VdbSample> samples = healthyVdbs();
+    const auto shared = std::find_if(samples.begin(), samples.end(),
+                                     [](const VdbSample& s) { return s.name == "shared tree"; });
+    ASSERT_NE(shared, samples.end());
+    writeText(dir / "a.vdb", shared->bytes);
+    const Field first = loadGrid(dir / "a.vdb", "density").field;
+    const Field second = loadGrid(dir / "a.vdb", "again").field;
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(first.voxel({i, 2 * i, i}), static_cast<float>(1 + i));
+        EXPECT_EQ(second.voxel({i, 2 * i, i}), static_cast<float>(1 + i));
+    }
+}
+
+/// What lies where a VDB file should.
+TEST(OddFiles, AreRefusedByNameAtOnce) {
+    const TempDir dir;
+    std::filesystem::create_directory(dir / "directory.vdb");
+    ASSERT_EQ(mkfifo((dir / "pipe.vdb").c_str(), 0600), 0);
+    writeText(dir / "empty.vdb", "");
+    writeText(dir / "text.vdb", "These are words.\n");
+    writeText(dir / "secret.vdb", healthyVdbs().front().bytes);
+    std::filesystem::permissions(dir / "secret.vdb", std::filesystem::perms::none);
+    std::vector<std::string> files{dir / "directory.vdb", dir / "pipe.vdb", dir / "empty.vdb",
+                                   dir / "text.vdb",      "/dev/null",      "/dev/zero"};
+    if (geteuid() != 0) files.push_back(dir / "secret.vdb");  // root may read anything
+    for (const std::string& file : files) {
+        for (const std::vector<std::string>& words :
+             {std::vector<std::string>{"info", file},
+              {"render", file, "-o", dir / "out.exr", "--res", "8x8", "--spp", "1"}}) {
+            const ProgramResult run = runProgram(words, limits(secondsPerFile));
+            EXPECT_EQ(run.exitCode, 3) << file << "\n" << run.err;
+            EXPECT_NE(run.err.find(file), std::string::npos) << run.err;
+        }
+    }
+}
 
 }  // namespace
 }  // namespace woodcock::test
