@@ -31,7 +31,11 @@ namespace {
         const rlimit limit{*limits.addressSpace, *limits.addressSpace};
         setrlimit(RLIMIT_AS, &limit);
     }
-    alarm(limits.seconds);
+    if (limits.seconds > 0) {
+        const rlimit limit{limits.seconds, limits.seconds};
+        setrlimit(RLIMIT_CPU, &limit);
+        alarm(12 * limits.seconds);  // one that waits, on a machine that may be busy
+    }
     std::vector<char*> argv{const_cast<char*>(name.c_str())};
     for (const std::string& argument : arguments)
         argv.push_back(const_cast<char*>(argument.c_str()));

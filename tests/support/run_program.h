@@ -20,7 +20,7 @@ struct ProgramResult {
 struct ProgramLimits {
     std::optional<std::size_t> fileSize{};      ///< writes beyond fail as on a full disk
     std::optional<std::size_t> addressSpace{};  ///< allocations beyond fail
-    unsigned seconds = 0;                       ///< until SIGALRM ends it; 0: as long as it takes
+    unsigned seconds = 0;  ///< of processor time until a signal ends it; 0: as long as it takes
 };
 
 /// Runs the `woodcock` program, or another, to its end, with no input.

@@ -84,10 +84,13 @@ private:
         return origin;
     }
 
-    void readPlainValue() {
-        const auto bytes = file_.bytes(type_.bytes);
-        if (type_.leaf != VdbValueType::Leaf::Values && static_cast<unsigned char>(bytes[0]) > 1)
-            throw file_.damaged("a value that is neither true nor false");
+    void readPlainValue() { readPlainValues(type_.bytes); }
+
+    void readPlainValues(std::uint64_t bytes) {
+        if (type_.leaf == VdbValueType::Leaf::Values) return file_.skip(bytes);
+        for (const char c : file_.bytes(bytes))
+            if (static_cast<unsigned char>(c) > 1)
+                throw file_.damaged("a value that is neither true nor false");
     }
 
     void readNode(int log2) {
@@ -117,8 +120,8 @@ private:
     void readValues(int log2, std::uint64_t active) {
         const auto kind = file_.value<std::uint8_t>();
         if (kind > AllValues) throw file_.damaged(fmt::format("values of unknown kind {}", kind));
-        if (kind == OneInactive || kind == MaskAndOneInactive) file_.skip(type_.bytes);
-        if (kind == MaskAndTwoInactive) file_.skip(2 * type_.bytes);
+        if (kind == OneInactive || kind == MaskAndOneInactive) readPlainValue();
+        if (kind == MaskAndTwoInactive) readPlainValues(2 * type_.bytes);
         if (kind == MaskOnly || kind == MaskAndOneInactive || kind == MaskAndTwoInactive)
             file_.skip(maskBytes(log2));
         const bool onlyActive = (compression_ & activeMask) && kind != AllValues;
@@ -128,12 +131,12 @@ private:
     void readStored(std::uint64_t count) {
         if (half_ && count == 0) return;
         const std::uint64_t bytes = count * storedBytes_;
-        if (!(compression_ & (zip | blosc))) return file_.skip(bytes);
+        if (!(compression_ & (zip | blosc))) return readPlainValues(bytes);
         const auto stored = file_.value<std::int64_t>();
         if (stored <= 0) {  // not compressed, as that would have gained nothing
             if (std::uint64_t(0) - static_cast<std::uint64_t>(stored) != bytes)
                 throw file_.damaged(fmt::format("{} bytes where {} are needed", stored, bytes));
-            return file_.skip(bytes);
+            return readPlainValues(bytes);
         }
         if (compression_ & blosc)
             skipBlosc(static_cast<std::uint64_t>(stored), bytes);
