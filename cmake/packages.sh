@@ -10,6 +10,7 @@ packages=(
     libtbb-dev libfmt-dev libspdlog-dev
     libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
     libgtest-dev
+    clang libclang-rt-14-dev
 )
 
 if ! command -v dpkg-query >/dev/null; then

@@ -12,6 +12,12 @@ if(PROJECT_IS_TOP_LEVEL)
     endif()
 endif()
 
+if(WOODCOCK_BUILD_FUZZERS AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "WOODCOCK_BUILD_FUZZERS needs clang and its libFuzzer "
+        "(Debian: clang, libclang-rt-14-dev): add -DCMAKE_CXX_COMPILER=clang++; "
+        "this is ${CMAKE_CXX_COMPILER_ID}.")
+endif()
+
 function(woodcock_target name)
     target_compile_features(${name} PUBLIC cxx_std_20)
     set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
@@ -22,6 +28,10 @@ function(woodcock_target name)
         $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
         -fno-math-errno -fno-trapping-math
         $<$<BOOL:${WOODCOCK_NATIVE}>:-march=native>)
+    if(WOODCOCK_BUILD_FUZZERS)
+        target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link,address)
+        target_link_options(${name} PUBLIC -fsanitize=address)
+    endif()
     if(WOODCOCK_SANITIZE)
         set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
         target_compile_options(${name} PRIVATE ${sanitizers} -fno-omit-frame-pointer)

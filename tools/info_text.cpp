@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "info_report.h"
+#include "woodcock/base/printable.h"
 
 namespace woodcock::tool {
 
@@ -129,7 +130,8 @@ private:
         for (const auto& [key, text] : grid_.metadata) width = std::max(width, key.size());
         bool first = true;
         for (const auto& [key, text] : grid_.metadata) {
-            line(first ? "metadata" : "", fmt::format("{:<{}}  {}", key, width, text));
+            line(first ? "metadata" : "",
+                 fmt::format("{:<{}}  {}", printable(key), width, printable(text)));
             first = false;
         }
     }

@@ -321,6 +321,7 @@ TEST(ParseErrors, OfOverridesNameTheOverride) {
     EXPECT_EQ(overrideMistake("volume.scale=2"),
               "--set volume.scale=2: volume is a list; say which, as in volume[0].scale");
     EXPECT_EQ(overrideMistake("render[0].spp=2"), "--set render[0].spp=2: render is not a list");
+    EXPECT_NE(overrideMistake("render.spp=\xff\x0e").find("invalid utf-8"), std::string::npos);
     EXPECT_EQ(overrideMistake("render.spp.x=2"),
               "--set render.spp.x=2: render.spp is a single value and has no key 'x'");
     EXPECT_EQ(overrideMistake("render.sppp=2").substr(0, 73),

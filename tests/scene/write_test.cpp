@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "woodcock/base/error.h"
 #include "woodcock/scene/parse.h"
 
@@ -88,6 +90,16 @@ TEST(WriteScene, ReadsBackEqualWithAPartOfAPose) {
     EXPECT_EQ(readBack(scene), scene) << writeScene(scene);
     scene.camera.given = {{}, Vec3d{1, 2, 1.0 / 3}, {}};
     EXPECT_EQ(readBack(scene), scene) << writeScene(scene);
+}
+
+TEST(WriteScene, ZeroKeepsItsSign) {
+    SceneDescription scene = fullScene();
+    scene.lights = {{SunDescription{{-0.0, -1, 0}, Rgb(1), 0, false}}};
+    const SceneDescription read = readBack(scene);
+    const Vec3d direction = std::get<SunDescription>(read.lights.at(0).light).direction;
+    EXPECT_TRUE(std::signbit(direction.x));
+    EXPECT_FALSE(std::signbit(direction.z));
+    EXPECT_EQ(sceneDigest(read), sceneDigest(scene));
 }
 
 TEST(WriteScene, PathsFollowTheDirectoryOfTheText) {

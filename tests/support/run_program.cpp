@@ -16,18 +16,26 @@ namespace woodcock::test {
 namespace {
 
 /// In the child: becomes the program, or ends with 127.
-[[noreturn]] void execute(const std::vector<std::string>& arguments, int out, int err,
-                          std::optional<std::size_t> fileSizeLimit) {
+[[noreturn]] void execute(const std::string& name, const std::vector<std::string>& arguments,
+                          int out, int err, const ProgramLimits& limits) {
     const int in = open("/dev/null", O_RDONLY);
     dup2(in, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
     dup2(err, STDERR_FILENO);
-    if (fileSizeLimit) {
-        const rlimit limit{*fileSizeLimit, *fileSizeLimit};
+    if (limits.fileSize) {
+        const rlimit limit{*limits.fileSize, *limits.fileSize};
         setrlimit(RLIMIT_FSIZE, &limit);
         ::signal(SIGXFSZ, SIG_IGN);
     }
-    const std::string name = program().string();
+    if (limits.addressSpace) {
+        const rlimit limit{*limits.addressSpace, *limits.addressSpace};
+        setrlimit(RLIMIT_AS, &limit);
+    }
+    if (limits.seconds > 0) {
+        const rlimit limit{limits.seconds, limits.seconds};
+        setrlimit(RLIMIT_CPU, &limit);
+        alarm(12 * limits.seconds);  // one that waits, on a machine that may be busy
+    }
     std::vector<char*> argv{const_cast<char*>(name.c_str())};
     for (const std::string& argument : arguments)
         argv.push_back(const_cast<char*>(argument.c_str()));
@@ -36,10 +44,12 @@ namespace {
     _exit(127);
 }
 
-int waitFor(pid_t process) {
+void waitFor(pid_t process, ProgramResult& result) {
     int status = 0;
-    if (waitpid(process, &status, 0) != process) throw std::runtime_error("waitpid failed");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    rusage used{};
+    if (wait4(process, &status, 0, &used) != process) throw std::runtime_error("wait4 failed");
+    result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.residentBytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;
 }
 
 int openFor(const std::filesystem::path& file) {
@@ -50,16 +60,17 @@ int openFor(const std::filesystem::path& file) {
 
 }  // namespace
 
-ProgramResult runProgram(const std::vector<std::string>& arguments,
-                         std::optional<std::size_t> fileSizeLimit) {
+ProgramResult runProgram(const std::vector<std::string>& arguments, const ProgramLimits& limits,
+                         const std::filesystem::path& program) {
+    const std::string name = (program.empty() ? test::program() : program).string();
     const TempDir dir;
     const int out = openFor(dir / "out"), err = openFor(dir / "err");
     const pid_t process = fork();
-    if (process == 0) execute(arguments, out, err, fileSizeLimit);
+    if (process == 0) execute(name, arguments, out, err, limits);
     close(out);
     close(err);
     ProgramResult result;
-    result.exitCode = waitFor(process);
+    waitFor(process, result);
     result.out = readText(dir / "out");
     result.err = readText(dir / "err");
     return result;
@@ -68,8 +79,9 @@ ProgramResult runProgram(const std::vector<std::string>& arguments,
 RunningProgram::RunningProgram(const std::vector<std::string>& arguments) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    const std::string name = program().string();
     process_ = fork();
-    if (process_ == 0) execute(arguments, open("/dev/null", O_WRONLY), ends[1], {});
+    if (process_ == 0) execute(name, arguments, open("/dev/null", O_WRONLY), ends[1], {});
     close(ends[1]);
     err_ = fdopen(ends[0], "r");
 }
@@ -100,7 +112,7 @@ void RunningProgram::signal(int number) { kill(process_, number); }
 ProgramResult RunningProgram::wait() {
     ProgramResult result;
     for (int c; (c = getc(err_)) != EOF;) result.err += static_cast<char>(c);
-    result.exitCode = waitFor(process_);
+    waitFor(process_, result);
     process_ = -1;
     return result;
 }

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,12 +14,19 @@ namespace woodcock::test {
 struct ProgramResult {
     int exitCode = -1;  ///< 128 + signal where one ended it
     std::string out, err;
+    std::size_t residentBytes = 0;  ///< the most memory that it held at once
 };
 
-/// Runs the `woodcock` program to its end, with no input. `fileSizeLimit`: bytes that each of its
-/// files may grow to; writes beyond fail as on a full disk.
+struct ProgramLimits {
+    std::optional<std::size_t> fileSize{};      ///< writes beyond fail as on a full disk
+    std::optional<std::size_t> addressSpace{};  ///< allocations beyond fail
+    unsigned seconds = 0;  ///< of processor time until a signal ends it; 0: as long as it takes
+};
+
+/// Runs the `woodcock` program, or another, to its end, with no input.
 ProgramResult runProgram(const std::vector<std::string>& arguments,
-                         std::optional<std::size_t> fileSizeLimit = {});
+                         const ProgramLimits& limits = {},
+                         const std::filesystem::path& program = {});
 
 /// A `woodcock` program at work.
 class RunningProgram {

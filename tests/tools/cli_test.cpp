@@ -387,7 +387,7 @@ TEST_F(Cli, AFullDiskLeavesNoPartOfAnImage) {
     const ProgramResult result =
         runProgram({"render", file("smoke.vdb"), "-o", file("out.exr"), "-o", file("out.png"),
                     "--res", "64x64", "--spp", "1", "--threads", "2"},
-                   1000);
+                   {.fileSize = 1000});
     EXPECT_EQ(result.exitCode, 1) << result.err;
     for (const char* said : {"out.exr", "out.png", "File too large"})
         EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;

@@ -3,18 +3,19 @@
 
 #include <openvdb/openvdb.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/vdb_grid_head.h"
 #include "woodcock/grid/vdb_header.h"
-#include "woodcock/grid/vdb_types.h"
+#include "woodcock/grid/vdb_layout.h"
 
 namespace woodcock {
 
 namespace {
 
-GridClass classOf(const openvdb::GridBase& grid) {
-    switch (grid.getGridClass()) {
+GridClass classFromName(const std::string& name) {
+    switch (openvdb::GridBase::stringToGridClass(name)) {
         case openvdb::GRID_LEVEL_SET:
             return GridClass::LevelSet;
         case openvdb::GRID_FOG_VOLUME:
@@ -26,35 +27,20 @@ GridClass classOf(const openvdb::GridBase& grid) {
     }
 }
 
-/// Through the map's own functions: its affine matrix refuses to exist for voxels below 1e-5.
-Affine3d affineOf(const openvdb::math::MapBase& map) {
-    const auto vec = [](const openvdb::Vec3d& v) { return Vec3d{v[0], v[1], v[2]}; };
-    Affine3d m;
-    for (int i = 0; i < 3; ++i) {
-        openvdb::Vec3d axis(0.0);
-        axis[i] = 1;
-        m.column[static_cast<std::size_t>(i)] = vec(map.applyJacobian(axis));
-    }
-    m.translation = vec(map.applyMap(openvdb::Vec3d(0.0)));
-    return m;
-}
-
 /// The first reason stands.
 void markUnusable(GridListing& listing, std::string reason) {
     if (listing.usable()) listing.unusable = std::move(reason);
 }
 
-void describeTransform(const openvdb::math::Transform& transform, GridListing& listing) {
-    if (!transform.isLinear()) {
-        listing.frustum = true;
+void describeTransform(GridListing& listing) {
+    if (listing.frustum) {
         markUnusable(listing,
                      "its transform is a frustum, which is not supported; resample it to a "
                      "linear transform (Houdini: VDB Resample)");
         return;
     }
-    const Affine3d m = affineOf(*transform.baseMap());
+    const Affine3d& m = *listing.worldFromIndex;
     const double determinant = m.determinant();
-    listing.worldFromIndex = m;
     listing.voxelSize = {length(m.column[0]), length(m.column[1]), length(m.column[2])};
     if (!isFinite(m.translation) || !isFinite(listing.voxelSize) || !std::isfinite(determinant))
         markUnusable(listing, "its transform is not finite");
@@ -62,18 +48,7 @@ void describeTransform(const openvdb::math::Transform& transform, GridListing& l
         markUnusable(listing, "its transform is singular: it flattens all voxels into a plane");
 }
 
-void copyMetadata(const openvdb::MetaMap& from, GridListing& listing) {
-    for (auto it = from.beginMeta(); it != from.endMeta(); ++it) {
-        if (it->first == openvdb::GridBase::META_FILE_DELAYED_LOAD) continue;  // a cache, no news
-        const std::string text = it->second->str();
-        if (text.size() <= 4096) listing.metadata.emplace_back(it->first, text);
-    }
-}
-
-void describeMetadata(const openvdb::GridBase& grid, GridListing& listing) {
-    listing.name = grid.getName();
-    listing.gridClass = classOf(grid);
-    copyMetadata(grid, listing);
+void describeUse(GridListing& listing) {
     if (listing.channels == 0) {
         markUnusable(
             listing,
@@ -88,53 +63,41 @@ void describeMetadata(const openvdb::GridBase& grid, GridListing& listing) {
     }
 }
 
-GridListing describe(openvdb::io::File& file, const std::string& uniqueName,
-                     const std::string& treeType, bool savedAsHalf) {
+GridListing describe(FileBytes& file, const VdbHeader::Entry& entry) {
     GridListing listing;
-    listing.name = listing.uniqueName = uniqueName;
-    const VdbValueType type = valueTypeOf(treeType);
-    listing.valueType = (savedAsHalf ? "half-saved " : "") + type.name;
+    listing.name = listing.uniqueName = entry.uniqueName;
+    const VdbValueType type = valueTypeOf(entry.treeType);
+    listing.valueType = (entry.savedAsHalf ? "half-saved " : "") + type.name;
     listing.channels = type.channels;
+    listing.fileBytes = entry.end - entry.begin;
     try {
-        const openvdb::GridBase::ConstPtr grid = file.readGridMetadata(uniqueName);
-        describeMetadata(*grid, listing);
-        describeTransform(grid->transform(), listing);
-    } catch (const openvdb::Exception& e) {
+        file.enter(entry.begin, entry.end, fmt::format("grid '{}'", entry.uniqueName));
+        VdbGridHead head = readGridHead(file);
+        listing.name = std::move(head.name);
+        listing.gridClass = classFromName(head.gridClass);
+        listing.metadata = std::move(head.metadata);
+        listing.frustum = head.frustum;
+        listing.worldFromIndex = head.worldFromIndex;
+        describeUse(listing);
+        describeTransform(listing);
+    } catch (const Error& e) {
         markUnusable(listing,
                      fmt::format("its metadata or transform cannot be read ({})", e.what()));
     }
     return listing;
 }
 
-std::vector<GridListing> describeAll(openvdb::io::File& file, const VdbHeader& header) {
-    std::vector<GridListing> grids;
-    for (const VdbHeader::Entry& entry : header.entries) {
-        grids.push_back(describe(file, entry.uniqueName, entry.treeType, entry.savedAsHalf));
-        grids.back().fileBytes = static_cast<std::uint64_t>(entry.end - entry.begin);
-    }
-    if (header.hasOffsets) return grids;
-    for (auto name = file.beginName(); name != file.endName(); ++name) {
-        const openvdb::GridBase::ConstPtr grid = file.readGridMetadata(*name);
-        grids.push_back(describe(file, *name, grid->type(), grid->saveFloatAsHalf()));
-    }
-    return grids;
-}
-
 }  // namespace
 
 VdbFile listGrids(const std::filesystem::path& path) {
-    const VdbHeader header = readVdbHeader(path);
+    FileBytes file(path);
+    const VdbHeader header = readVdbHeader(file);
     VdbFile listed{path,
                    fmt::format("OpenVDB {}.{}, file format {}", header.libraryMajor,
                                header.libraryMinor, header.fileVersion),
                    {}};
-    withOpenVdbErrors(path, [&] {
-        const OpenVdbTypes types(header);
-        openvdb::io::File file(path.string());
-        file.setCopyMaxBytes(0);
-        file.open();
-        listed.grids = describeAll(file, header);
-    });
+    for (const VdbHeader::Entry& entry : header.entries)
+        listed.grids.push_back(describe(file, entry));
     return listed;
 }
 

@@ -26,8 +26,8 @@ struct GridListing {
     bool frustum = false;
     Vec3d voxelSize;  ///< lengths of the images of the axes, world units
     std::vector<std::pair<std::string, std::string>>
-        metadata;                 ///< sorted by key, large blobs left out
-    std::uint64_t fileBytes = 0;  ///< 0 in a file without offsets
+        metadata;  ///< sorted by key, large blobs left out
+    std::uint64_t fileBytes = 0;
     /// Why the grid cannot be rendered, with what to do instead; empty when it can.
     std::string unusable;
 
@@ -40,7 +40,7 @@ struct VdbFile {
     std::vector<GridListing> grids;  ///< in the order of the file
 };
 
-/// Reads the list of grids and their metadata; no voxels, unless the file was written as a stream.
+/// Reads the list of grids and their metadata; no voxels.
 /// Errors: Input, naming the file and what is wrong with it. Grids that cannot be used are listed
 /// and marked, they are no error.
 VdbFile listGrids(const std::filesystem::path& path);

@@ -6,15 +6,20 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <istream>
 #include <limits>
 #include <memory>
+#include <new>
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/half.h"
+#include "woodcock/grid/vdb_bytes.h"
+#include "woodcock/grid/vdb_grid_head.h"
 #include "woodcock/grid/vdb_header.h"
-#include "woodcock/grid/vdb_types.h"
+#include "woodcock/grid/vdb_layout.h"
 
 namespace woodcock {
 
@@ -64,7 +69,34 @@ void copyValues(const Leaf& leaf, float* to) {
 
 Vec3i toVec(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
-/// Turns one kind of tree into a source, its leaves in parallel.
+/// The bytes of a tree in memory, and what is needed to read them.
+struct StoredTree {
+    std::string treeType;
+    openvdb::VersionId libraryVersion;
+    std::uint32_t fileVersion = 0, compression = 0;
+    bool savedAsHalf = false;
+    VdbLayout layout;
+    std::span<const char> bytes;  ///< from layout.topology to layout.end
+};
+
+/// Set up as OpenVDB's own archives set theirs up; reading beyond its end throws.
+class TreeStream : public std::istream {
+public:
+    explicit TreeStream(const StoredTree& tree)
+        : std::istream(nullptr), buffer_(tree.bytes), begin_(tree.layout.topology) {
+        rdbuf(&buffer_);
+        exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+        openvdb::io::setVersion(*this, tree.libraryVersion, tree.fileVersion);
+        openvdb::io::setDataCompression(*this, tree.compression);
+    }
+    void seek(std::uint64_t fileOffset) { seekg(static_cast<off_type>(fileOffset - begin_)); }
+
+private:
+    MemoryBuffer buffer_;
+    std::uint64_t begin_;
+};
+
+/// Reads one kind of tree: its nodes one after the other, then its leaves in parallel.
 template <class TreeT>
 class TreeReader {
 public:
@@ -72,14 +104,14 @@ public:
     using Value = typename TreeT::ValueType;
     static constexpr int channels = channelsOf<Value>;
 
-    TreeReader(typename openvdb::Grid<TreeT>::ConstPtr grid, Repair repair)
-        : grid_(std::move(grid)), repair_(repair) {}
+    TreeReader(const StoredTree& stored, Repair repair) : stored_(stored), repair_(repair) {}
 
     GridSource read() {
+        TreeStream stream(stored_);
+        tree_->readTopology(stream, stored_.savedAsHalf);
         source_.field.channels = channels;
-        source_.field.background = source_.statistics.background =
-            converted(grid_->tree().background());
-        scanLeaves();
+        source_.field.background = source_.statistics.background = converted(tree_->background());
+        readLeaves();
         scanTiles();
         describe();
         if (repair_.faulty) {
@@ -90,17 +122,23 @@ public:
     }
 
 private:
-    void scanLeaves() {
-        auto leaves = std::make_shared<std::vector<const Leaf*>>();
-        leaves->reserve(grid_->tree().leafCount());
-        grid_->tree().getNodes(*leaves);
+    void readLeaves() {
+        auto leaves = std::make_shared<std::vector<Leaf*>>();
+        leaves->reserve(stored_.layout.leaves.size());
+        tree_->getNodes(*leaves);
+        if (leaves->size() != stored_.layout.leaves.size())
+            throw std::runtime_error("its leaves are not where they should be");
         std::vector<LeafKind> kinds(leaves->size());
         // Deterministic, so that the mean of a grid is the same number each time.
         source_.statistics.voxels = tbb::parallel_deterministic_reduce(
             tbb::blocked_range<std::size_t>(0, leaves->size(), 128), VoxelScan{},
             [&](const tbb::blocked_range<std::size_t>& range, VoxelScan scan) {
-                for (std::size_t i = range.begin(); i != range.end(); ++i)
+                TreeStream stream(stored_);
+                openvdb::io::setGridBackgroundValuePtr(stream, &tree_->background());
+                for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                    readLeaf(stream, i, *(*leaves)[i]);
                     kinds[i] = scanOne(*(*leaves)[i], scan);
+                }
                 return scan;
             },
             [](VoxelScan a, const VoxelScan& b) {
@@ -109,11 +147,18 @@ private:
             });
         source_.statistics.leaves = leaves->size();
         keepVarying(*leaves, kinds);
-        source_.field.copyLeaf = [grid = grid_, leaves, repair = repair_](std::size_t i,
+        source_.field.copyLeaf = [tree = tree_, leaves, repair = repair_](std::size_t i,
                                                                           std::span<float> values) {
             copyValues(*(*leaves)[i], values.data());
             if (repair.faulty) repairValues(values, repair.negative);
         };
+    }
+
+    void readLeaf(TreeStream& stream, std::size_t i, Leaf& leaf) const {
+        const openvdb::Coord origin = leaf.origin();
+        stream.seek(stored_.layout.leaves[i]);
+        leaf.readBuffers(stream, stored_.savedAsHalf);
+        if (leaf.origin() != origin) throw std::runtime_error("a leaf says it lies elsewhere");
     }
 
     LeafKind scanOne(const Leaf& leaf, VoxelScan& scan) const {
@@ -131,7 +176,7 @@ private:
     }
 
     /// Leaves that say no more than a tile become one; those equal to the background vanish.
-    void keepVarying(std::vector<const Leaf*>& leaves, const std::vector<LeafKind>& kinds) {
+    void keepVarying(std::vector<Leaf*>& leaves, const std::vector<LeafKind>& kinds) {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
             const Vec3i origin = toVec(leaves[i]->origin());
@@ -148,7 +193,7 @@ private:
     void scanTiles() {
         using Upper = typename TreeT::RootNodeType::ChildNodeType;
         using Lower = typename Upper::ChildNodeType;
-        for (auto it = grid_->tree().root().cbeginValueAll(); it; ++it)
+        for (auto it = tree_->root().cbeginValueAll(); it; ++it)
             addTile(*it, it.isValueOn(), it.getCoord(), Upper::DIM);
         addTilesOf<Upper>();
         addTilesOf<Lower>();
@@ -158,9 +203,9 @@ private:
     template <class Node>
     void addTilesOf() {
         std::vector<const Node*> nodes;
-        grid_->tree().getNodes(nodes);
+        tree_->getNodes(nodes);
         std::vector<std::vector<openvdb::Index>> tiles(nodes.size());
-        const Value background = grid_->tree().background();
+        const Value background = tree_->background();
         tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t i) {
             const auto* table = nodes[i]->getTable();
             const auto& children = nodes[i]->getChildMask();
@@ -177,7 +222,7 @@ private:
 
     void addTile(const Value& value, bool active, const openvdb::Coord& origin,
                  openvdb::Index size) {
-        if (!active && value == grid_->tree().background()) return;
+        if (!active && value == tree_->background()) return;
         const FieldTile tile{toVec(origin), static_cast<int>(size), converted(value)};
         scanTile(tile.value, channels, active, tile.origin, tile.size, source_.field.background,
                  source_.statistics.voxels);
@@ -186,52 +231,84 @@ private:
     }
 
     void describe() {
-        source_.statistics.openVdbBytes = grid_->memUsage();
-        const openvdb::CoordBBox box = grid_->evalActiveVoxelBoundingBox();
-        if (!box.empty()) source_.statistics.activeBounds = {toVec(box.min()), toVec(box.max())};
+        source_.statistics.openVdbBytes = tree_->memUsage();
+        openvdb::CoordBBox box;
+        if (tree_->evalActiveVoxelBoundingBox(box))
+            source_.statistics.activeBounds = {toVec(box.min()), toVec(box.max())};
         bool& exactAsHalf = source_.statistics.voxels.exactAsHalf;
         for (float v : source_.statistics.background) exactAsHalf = exactAsHalf && isExactAsHalf(v);
     }
 
-    typename openvdb::Grid<TreeT>::ConstPtr grid_;
+    const StoredTree& stored_;
     Repair repair_;
+    std::shared_ptr<TreeT> tree_ = std::make_shared<TreeT>();
     GridSource source_;
 };
 
 template <class TreeT>
-bool readAs(const openvdb::GridBase::Ptr& grid, Repair repair, GridSource& source) {
-    const auto typed = openvdb::gridPtrCast<openvdb::Grid<TreeT>>(grid);
-    if (!typed) return false;
-    source = TreeReader<TreeT>(typed, repair).read();
+bool readAs(const StoredTree& stored, Repair repair, GridSource& source) {
+    if (stored.treeType != TreeT::treeType()) return false;
+    source = TreeReader<TreeT>(stored, repair).read();
     return true;
 }
 
 template <class... TreeT>
-bool readAsOneOf(const openvdb::GridBase::Ptr& grid, Repair repair, GridSource& source) {
-    return (readAs<TreeT>(grid, repair, source) || ...);
+bool readAsOneOf(const StoredTree& stored, Repair repair, GridSource& source) {
+    return (readAs<TreeT>(stored, repair, source) || ...);
+}
+
+const VdbHeader::Entry& findEntry(const FileBytes& file, const VdbHeader& header,
+                                  const std::string& uniqueName) {
+    const auto found =
+        std::find_if(header.entries.begin(), header.entries.end(),
+                     [&](const VdbHeader::Entry& e) { return e.uniqueName == uniqueName; });
+    if (found == header.entries.end())
+        throw inputError("grid '{}' not found in {}", uniqueName, file.path().string());
+    return *found;
+}
+
+/// Brings the grid into memory and makes sure that OpenVDB can read it there.
+StoredTree loadTree(FileBytes& file, const GridListing& grid) {
+    const VdbHeader header = readVdbHeader(file);
+    const VdbHeader::Entry* entry = &findEntry(file, header, grid.uniqueName);
+    if (!entry->treeOf.empty()) entry = &findEntry(file, header, entry->treeOf);
+    if (!entry->treeOf.empty())
+        throw inputError("grid '{}' in {} shares the tree of '{}', which has none of its own",
+                         grid.uniqueName, file.path().string(), entry->uniqueName);
+    StoredTree stored;
+    stored.treeType = entry->treeType;
+    stored.libraryVersion = {header.libraryMajor, header.libraryMinor};
+    stored.fileVersion = header.fileVersion;
+    const VdbValueType type = valueTypeOf(entry->treeType);
+    if (type.channels != grid.channels || type.channels == 0)
+        throw inputError("grid '{}' in {} has type {}, which holds no values to render",
+                         grid.uniqueName, file.path().string(), type.name);
+    file.enter(entry->begin, entry->end, fmt::format("grid '{}'", entry->uniqueName));
+    file.loadAll();
+    const VdbGridHead head = readGridHead(file);
+    stored.compression = head.compression;
+    stored.savedAsHalf = head.savedAsHalf;
+    stored.layout = findLayout(file, type, head.compression, head.savedAsHalf);
+    stored.bytes = file.loaded(stored.layout.topology, stored.layout.end);
+    return stored;
 }
 
 }  // namespace
 
-GridSource readGridSource(const VdbFile& file, const GridListing& grid, Repair repair) {
-    const VdbHeader header = readVdbHeader(file.path);
+GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair repair) {
+    FileBytes file(listed.path);
+    const StoredTree stored = loadTree(file, grid);
     GridSource source;
-    withOpenVdbErrors(file.path, [&] {
-        openvdb::GridBase::Ptr read;
-        {
-            const OpenVdbTypes types(header);
-            openvdb::io::File vdb(file.path.string());
-            // Leaves that are read later can be read in parallel, but each then costs a stream and
-            // a look at the file's date: on few cores that takes longer, on many it gains little.
-            vdb.open(/*delayLoad=*/false);
-            read = vdb.readGrid(grid.uniqueName);
-        }
+    try {
         using namespace openvdb;
-        if (!readAsOneOf<FloatTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree, Vec3STree,
-                         Vec3DTree, Vec3ITree>(read, repair, source))
-            throw inputError("grid '{}' in {} has type {}, which holds no values to render",
-                             grid.uniqueName, file.path.string(), grid.valueType);
-    });
+        readAsOneOf<FloatTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree, Vec3STree,
+                    Vec3DTree, Vec3ITree>(stored, repair, source);
+    } catch (const std::bad_alloc&) {
+        throw failure("out of memory while reading {}", listed.path.string());
+    } catch (const std::exception& e) {
+        throw inputError("{} is damaged: grid '{}': {}", listed.path.string(), grid.uniqueName,
+                         e.what());
+    }
     return source;
 }
 

@@ -33,6 +33,6 @@ struct GridSource {
 
 /// Reads the voxels of one grid (channels > 0), in parallel. Errors: Input when the file cannot be
 /// read.
-GridSource readGridSource(const VdbFile& file, const GridListing& grid, Repair repair);
+GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair repair);
 
 }  // namespace woodcock

@@ -239,7 +239,8 @@ std::shared_ptr<const ColorConfig::Impl> ColorConfig::load(const std::filesystem
     } catch (const OCIO::Exception& e) {
         throw inputError("the OpenColorIO config {} cannot be used: {}", impl->origin, e.what());
     }
-    if (!impl->config->hasRole(OCIO::ROLE_SCENE_LINEAR))
+    if (!impl->config->hasRole(OCIO::ROLE_SCENE_LINEAR) ||
+        !impl->config->getColorSpace(OCIO::ROLE_SCENE_LINEAR))
         throw inputError(
             "the OpenColorIO config {} has no role 'scene_linear', the space to render in",
             impl->origin);
@@ -260,7 +261,8 @@ DisplayTransform ColorConfig::displayTransform(const DisplaySettings& settings) 
     const DisplaySettings chosen = impl_->complete(settings);
     try {
         const auto cpu = pipeline(chosen)->getProcessor(impl_->config)->getDefaultCPUProcessor();
-        return DisplayTransform(std::make_shared<DisplayTransform::Processor>(cpu));
+        return DisplayTransform(
+            std::make_shared<DisplayTransform::Processor>(DisplayTransform::Processor{cpu}));
     } catch (const OCIO::Exception& e) {
         throw impl_->cannotShow(chosen, e.what());
     }

@@ -54,7 +54,11 @@ toml::table parseAssignment(const std::string& key, const std::string& value,
             // No TOML: a bare word.
         }
     }
-    return toml::parse(key + " = " + tomlText(value), place);
+    try {
+        return toml::parse(key + " = " + tomlText(value), place);
+    } catch (const toml::parse_error& e) {
+        throw inputError("{}: {}", place, e.description());
+    }
 }
 
 /// One override on its way down the scene.

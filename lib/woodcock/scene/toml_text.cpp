@@ -3,7 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace woodcock {
+
+namespace {
+
+/// Without a point, TOML reads an integer, which has no negative zero.
+template <class T>
+std::string number(T v) {
+    return v == 0 && std::signbit(v) ? "-0.0" : fmt::format("{}", v);
+}
+
+}  // namespace
 
 std::string tomlText(std::string_view text) {
     std::string quoted = "\"";
@@ -19,13 +31,15 @@ std::string tomlText(std::string_view text) {
     return quoted + '"';
 }
 
-std::string tomlNumber(double v) { return fmt::format("{}", v); }
+std::string tomlNumber(double v) { return number(v); }
 
-std::string tomlVector(Vec3d v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+std::string tomlVector(Vec3d v) {
+    return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z));
+}
 
 std::string tomlColour(Rgb v) {
-    if (isGrey(v)) return fmt::format("{}", v[0]);
-    return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
+    if (isGrey(v)) return number(v[0]);
+    return fmt::format("[{}, {}, {}]", number(v[0]), number(v[1]), number(v[2]));
 }
 
 std::string tomlColour(Vec3d v) {
@@ -35,8 +49,9 @@ std::string tomlColour(Vec3d v) {
 std::string tomlMatrix(const Affine3d& m) {
     std::string rows = "[";
     for (int i = 0; i < 3; ++i)
-        rows += fmt::format("\n    [{}, {}, {}, {}],", m.column[0][i], m.column[1][i],
-                            m.column[2][i], m.translation[i]);
+        rows +=
+            fmt::format("\n    [{}, {}, {}, {}],", number(m.column[0][i]), number(m.column[1][i]),
+                        number(m.column[2][i]), number(m.translation[i]));
     return rows + "\n    [0, 0, 0, 1],\n]";
 }
 

@@ -163,7 +163,6 @@ void write(Writer& out, const CameraDescription& camera) {
 }
 
 void write(Writer& out, const RenderDescription& render) {
-    const RenderDescription defaults;
     if (render.seed >> 63 != 0)
         throw usageError("the seed {} is larger than a scene file can hold (2^63 - 1)",
                          render.seed);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Input: a VDB file. Every grid is loaded, as a field with its majorants.
+#include <tbb/global_control.h>
+
+#include <cstdint>
+
+#include "tests/fuzz/memory_file.h"
+#include "woodcock/base/error.h"
+#include "woodcock/grid/majorants.h"
+#include "woodcock/grid/vdb_load.h"
+
+namespace {
+
+using namespace woodcock;
+
+void load(const VdbFile& file, const GridListing& grid) {
+    const LoadedGrid loaded = loadGrid(file, grid, {.use = GridUse::Colour, .repair = true});
+    majorantStatistics(loaded.field, MajorantGrid(loaded.field, {}), 16);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    // One thread, so that the same input always takes the same path.
+    static const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
+    const test::MemoryFile input(data, size);
+    try {
+        const VdbFile file = listGrids(input.path());
+        for (const GridListing& grid : file.grids) {
+            try {
+                load(file, grid);
+            } catch (const Error&) {  // the next grid may be sound
+            }
+        }
+    } catch (const Error&) {
+    }
+    return 0;
+}
