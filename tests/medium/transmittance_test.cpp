@@ -66,6 +66,21 @@ TEST(Transmittance, MajorantsChangeNoMean) {
         }
 }
 
+/// Many collisions in cells that are too shallow to be cut, but that carry a control.
+TEST(Transmittance, MajorantsChangeNoMeanWhereNothingIsEmpty) {
+    PlainGrid grid;
+    for (int i = 0; i < 27; ++i)
+        grid.setLeaf(Vec3i{i % 3, i / 3 % 3, i / 9} * 8,
+                     [](Vec3i v, int) { return v.y & 1 ? 2.0f : 1.0f; });
+    const PlainMedium plain({{.grid = grid, .scattering = Rgb(0.1f)}});
+    const TestRay ray{{-4, 10.2, 11.5}, {1, 0, 0}, 30};
+    const double expected = plain.transmittance(ray.origin, ray.direction, ray.tMax).x;
+    for (double scale : {1.0, 8.0, 64.0})
+        for (float roulette : {0.0f, 0.05f})
+            expectMean(track<1>(plain.medium(scale, 3), ray, Spectrum<1>(1), roulette, 20000, 1)[0],
+                       expected, 0.003, "nowhere empty");
+}
+
 TEST(Transmittance, RouletteChangesNoMean) {
     for (float threshold : {0.1f, 0.5f, 1.5f}) {
         expectExact<1>(greyMedium(), greyMedium().medium(), Spectrum<1>(0.6f), threshold, "grey");

@@ -80,13 +80,14 @@ public:
         }
         const bool alongX = tx == face, alongY = !alongX && ty == face, alongZ = !alongX && !alongY;
         const Vec3d p = ray_.at(exit);
-        const auto enter = [size](bool along, int forward, int from, double at) {
-            const int across = std::clamp(floorToInt(at), from, from + size - 1);
+        // Across, a position that rounding put below the support must not look like having left.
+        const auto enter = [size](bool along, int forward, int from, int low, double at) {
+            const int across = std::clamp(floorToInt(at), std::max(from, low), from + size - 1);
             return along ? from + (forward ? size : -1) : across;
         };
-        voxel_ = {enter(alongX, forward_.x, corner.x, p.x),
-                  enter(alongY, forward_.y, corner.y, p.y),
-                  enter(alongZ, forward_.z, corner.z, p.z)};
+        voxel_ = {enter(alongX, forward_.x, corner.x, low_.x, p.x),
+                  enter(alongY, forward_.y, corner.y, low_.y, p.y),
+                  enter(alongZ, forward_.z, corner.z, low_.z, p.z)};
         if (std::min({voxel_.x - low_.x, voxel_.y - low_.y, voxel_.z - low_.z, high_.x - voxel_.x,
                       high_.y - voxel_.y, high_.z - voxel_.z}) < 0)
             end_ = t_;

@@ -56,7 +56,9 @@ struct Lattice {
 bool RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
     if (tight_) return false;
     cell_ = segment;
-    segment = piece(part, ray, t);
+    const Segment ahead = piece(part, ray, t);
+    if (tight_)
+        segment = ahead;  // else it stays whole: what lies behind t is not yet accounted for
     return tight_;
 }
 
