@@ -23,12 +23,12 @@ Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, 
 Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, Picture picture,
               const std::function<double(const Film&)>& excess) {
     constexpr int side = 32, pilotSamples = 16;
-    constexpr double margin = 1.3, fewest = 8, most = 1 << 20;  // the pilot's variance is a guess
+    constexpr double margin = 1.5, most = 1 << 20;  // the pilot's variance is a guess
     picture.width = picture.height = side;
     picture.samples = pilotSamples, picture.seed = hashOf(lab.seed(name), 0);
     const double ratio = excess(renderScene(scene, picture).film);
-    picture.samples =
-        static_cast<int>(std::clamp(margin * pilotSamples * ratio * ratio, fewest, most));
+    picture.samples = static_cast<int>(
+        std::clamp(margin * pilotSamples * ratio * ratio, 1.0 * pilotSamples, most));
     picture.seed = hashOf(lab.seed(name), 1);
     return renderScene(scene, picture).film;
 }
