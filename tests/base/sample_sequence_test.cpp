@@ -6,7 +6,6 @@
 
 #include <set>
 
-#include "tests/support/statistics.h"
 
 namespace woodcock::test {
 namespace {
@@ -78,17 +77,6 @@ TEST(SampleSequence, PixelsSamplesAndSetsAreUncorrelated) {
     expectUncorrelated(draw(0, 0, 0, 0), draw(0, 1, 0, 0), "a pixel and the one below");
     expectUncorrelated(draw(0, 0, 5, 0), draw(0, 0, 5, 1), "two sets of a sample");
     expectUncorrelated(draw(0, 0, 1, 1), draw(0, 0, 1, 2), "two later sets");
-}
-
-TEST(SampleSequence, EachSampleIsUniformOverThePixels) {
-    for (std::uint32_t sample : {0u, 1u, 1000u}) {
-        std::vector<double> counts(256), expected(256, 40000 / 256.0);
-        for (int i = 0; i < 40000; ++i) {
-            const auto u = SampleSequence(11, i % 200, i / 200, sample).draw(1);
-            ++counts[intervalOf(u[0], 4) * 16 + intervalOf(u[3], 4)];
-        }
-        EXPECT_GT(chiSquareProbability(counts, expected), leastProbability) << sample;
-    }
 }
 
 TEST(SampleSequence, IntegratesASmoothFunctionFarBetterThanRandomNumbers) {

@@ -5,7 +5,6 @@
 
 #include <functional>
 
-#include "tests/support/statistics.h"
 #include "woodcock/base/random.h"
 #include "woodcock/base/statistics.h"
 #include "woodcock/light/light.h"
@@ -83,38 +82,6 @@ TEST(EnvironmentMap, RadianceIsBilinearAndWrapsAround) {
     EXPECT_NEAR(map.radiance(direction(0.375, 0.01))[0], 1, 1e-6);  // clamped at the pole
 }
 
-TEST(EnvironmentMap, DensityIntegratesToOneAndIsWhatSamplesFollow) {
-    for (const auto& [name, map, w, h] : images()) {
-        constexpr int n = 40000, sub = 2;  // cells: quarters of pixels
-        std::vector<double> expected, counts(static_cast<std::size_t>(w * h * sub * sub));
-        double total = 0;
-        for (int y = 0; y < h * sub; ++y)
-            for (int x = 0; x < w * sub; ++x) {
-                const double area =
-                    2 * pi / (w * sub) *
-                    (std::cos(pi * y / (h * sub)) - std::cos(pi * (y + 1) / (h * sub)));
-                const double share =
-                    area * map.pdf(direction((x + 0.5) / (w * sub), (y + 0.5) / (h * sub)));
-                expected.push_back(n * share), total += share;
-            }
-        EXPECT_NEAR(total, 1, 1e-12) << name;
-        RandomStream random(1);
-        for (int i = 0; i < n; ++i) {
-            const EnvironmentMap::Sample s = map.sample(random.uniform(), random.uniform());
-            ASSERT_NEAR(length(s.direction), 1, 1e-14);
-            const double u = std::atan2(s.direction.x, -s.direction.z) / (2 * pi) + 0.5;
-            const double v = std::acos(std::clamp(s.direction.y, -1.0, 1.0)) / pi;
-            const int x = std::clamp(static_cast<int>(u * w * sub), 0, w * sub - 1);
-            const int y = std::clamp(static_cast<int>(v * h * sub), 0, h * sub - 1);
-            ++counts[static_cast<std::size_t>(y * w * sub + x)];
-            const double fx = u * w - std::floor(u * w), fy = v * h - std::floor(v * h);
-            const bool between = std::min(fx, fy) < 1e-6 || std::max(fx, fy) > 1 - 1e-6;
-            ASSERT_TRUE(between || std::abs(map.pdf(s.direction) / s.pdf - 1) < 1e-9) << name;
-        }
-        EXPECT_GT(chiSquareProbability(counts, expected), leastProbability) << name;
-    }
-}
-
 TEST(EnvironmentMap, NoLightIsLeftUnsampled) {
     RandomStream random(2);
     for (const auto& [name, map, w, h] : images())
@@ -122,29 +89,6 @@ TEST(EnvironmentMap, NoLightIsLeftUnsampled) {
             const Vec3d d = direction(random.uniform(), random.uniform());
             ASSERT_TRUE(map.pdf(d) > 0 || map.radiance(d).maximum() < 1e-12f) << name;
         }
-}
-
-TEST(EnvironmentMap, SamplesIntegrateTheRadiance) {
-    for (const auto& [name, map, w, h] : images()) {
-        double expected = 0;  // midpoints, 32 x 32 to a pixel
-        const int fine = 32;
-        for (int y = 0; y < h * fine; ++y)
-            for (int x = 0; x < w * fine; ++x) {
-                const double area =
-                    2 * pi / (w * fine) *
-                    (std::cos(pi * y / (h * fine)) - std::cos(pi * (y + 1) / (h * fine)));
-                expected += area * map.radiance(direction((x + 0.5) / (w * fine),
-                                                          (y + 0.5) / (h * fine)))[0];
-            }
-        Moments samples;
-        RandomStream random(3);
-        for (int i = 0; i < 40000; ++i) {
-            const EnvironmentMap::Sample s = map.sample(random.uniform(), random.uniform());
-            samples.add(map.radiance(s.direction)[0] / s.pdf / expected);
-        }
-        EXPECT_LE(std::abs(samples.mean() - 1), 4 * samples.standardError() + 1e-3) << name;
-        EXPECT_LE(samples.standardError(), 0.02) << name;
-    }
 }
 
 TEST(EnvironmentMap, EndsOfTheUnitIntervalAreSafe) {

@@ -3,8 +3,6 @@
 
 #include "tests/medium/media.h"
 #include "tests/support/expect_mean.h"
-#include "tests/support/statistics.h"
-#include "woodcock/medium/optical_depth.h"
 #include "woodcock/medium/tracking.h"
 
 namespace woodcock::test {
@@ -126,32 +124,6 @@ TEST(Distance, RouletteIsFairToThroughputThatFallsAndRises) {
                 expectMean(m, 0.3f * share[c], 0.001, "slabs");
             }
         }
-    }
-}
-
-TEST(Distance, OpticalDepthToTheEventIsExponential) {
-    const PlainMedium plain = greyMedium();
-    const Medium medium = plain.medium();
-    for (const TestRay& ray : testRays(medium, 6, 6)) {
-        const double escape = plain.transmittance(ray.origin, ray.direction, ray.tMax).x;
-        if (escape > 0.9) continue;
-        constexpr int n = 20000, bins = 20;
-        std::vector<double> counts(bins + 1), expected(bins + 1, n * (1 - escape) / bins);
-        expected[bins] = n * escape;
-        for (const auto& q :
-             track<1>(medium, ray, Spectrum<1>(1), {.absorptionToo = true, .count = n}, 2)) {
-            EXPECT_EQ(q.throughput[0], 1);
-            if (q.part < 0) {
-                EXPECT_EQ(q.t, ray.tMax);
-                ++counts[bins];
-                continue;
-            }
-            const double u =  // even between the escape probability and 1
-                std::exp(-double{exactOpticalDepth(medium, ray.origin, ray.direction, 0, q.t)[0]});
-            ++counts[static_cast<std::size_t>(
-                std::clamp((1 - u) / (1 - escape) * bins, 0.0, bins - 1e-9))];
-        }
-        EXPECT_GT(chiSquareProbability(counts, expected), leastProbability);
     }
 }
 

@@ -35,6 +35,30 @@ std::vector<TestRay> spikeRays() {
             {{10, 7, 5}, normalize(Vec3d{-1, -0.61, -0.34}), infinity}};
 }
 
+/// Those who sum something up over segments count on it.
+TEST(RefinedWalk, ACellThatIsNotCutStaysAsItWas) {
+    const Medium medium =
+        PlainMedium({{.grid = mixedGrid(1), .scattering = Rgb(0.1f)}}).medium();  // none is deep
+    const MediumPart& part = medium.parts[0];
+    int segments = 0;
+    for (const TestRay& r : testRays(medium, 20, 1)) {
+        const IndexRay ray = part.indexRay(r.origin, r.direction);
+        RefinedWalk walk(part, ray, r.tMax);
+        Segment s{0, 0, {}};
+        while (walk.next(part, ray, s)) {
+            const Segment before = s;
+            for (int i = 1; i <= 20; ++i) {
+                const double t = before.t0 + (before.t1 - before.t0) * i / 21;
+                EXPECT_FALSE(walk.collided(part, ray, t, s));
+                EXPECT_EQ(s.t0, before.t0);
+                EXPECT_EQ(s.t1, before.t1);
+            }
+            ++segments;
+        }
+    }
+    EXPECT_GT(segments, 20);
+}
+
 /// Every piece joins the one before, lies in the cell, and bounds what is inside.
 TEST(RefinedWalk, PiecesAreContiguousAndBounding) {
     for (int channels : {1, 3}) {

@@ -20,22 +20,34 @@ Precision usualPrecision(const Lab& lab) {
 
 Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, lab.directory()); }
 
-RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
-                        const Precision& precision, std::vector<int> channels) {
+Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, Picture picture,
+              const std::function<double(const Film&)>& excess) {
     constexpr int side = 32;
     const int pilotSamples = lab.pick(4, 16);
-    constexpr double margin = 1.3, mostSamples = 1 << 20;  // the pilot's variance is a guess
-    Picture picture{side, side, pilotSamples, hashOf(lab.seed(name), 0)};
-    const RgbEstimate pilot = evenRadiance(renderScene(scene, picture).film);
-    double samples = 8;
-    for (const int c : channels) {
-        const Estimate& e = pilot[static_cast<std::size_t>(c)];
-        const double ratio = e.error / precision.of(e.mean);
-        samples = std::max(samples, margin * pilotSamples * ratio * ratio);
-    }
-    picture.samples = static_cast<int>(std::min(samples, mostSamples));
+    constexpr double margin = 1.5, most = 1 << 20;  // the pilot's variance is a guess
+    picture.width = picture.height = side;
+    picture.samples = pilotSamples, picture.seed = hashOf(lab.seed(name), 0);
+    const double ratio = excess(renderScene(scene, picture).film);
+    picture.samples = static_cast<int>(
+        std::clamp(margin * pilotSamples * ratio * ratio, 1.0 * pilotSamples, most));
     picture.seed = hashOf(lab.seed(name), 1);
-    return evenRadiance(renderScene(scene, picture).film);
+    return renderScene(scene, picture).film;
+}
+
+RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
+                        const Precision& precision, std::vector<int> channels,
+                        std::optional<int> maxScatterings) {
+    Picture picture;
+    picture.maxScatterings = maxScatterings;
+    return evenRadiance(evenFilm(lab, name, scene, picture, [&](const Film& film) {
+        const RgbEstimate pilot = evenRadiance(film);
+        double ratio = 0;
+        for (const int c : channels) {
+            const Estimate& e = pilot[static_cast<std::size_t>(c)];
+            ratio = std::max(ratio, e.error / precision.of(e.mean));
+        }
+        return ratio;
+    }));
 }
 
 Case caseOf(std::string name, double expected, Estimate measured, const Precision& precision) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,11 +23,16 @@ Precision usualPrecision(const Lab& lab);
 /// The scene of a text whose files lie in the lab.
 Scene sceneIn(const Lab& lab, const std::string& text);
 
-/// Radiance of a scene all of whose pixels expect the same (see pencilCamera), per channel, with as
-/// many samples as `precision` asks for of the channels in use: a pilot tells how many, and is
-/// thrown away, so that the answer stays unbiased.
+/// A picture of a scene all of whose pixels expect the same (see pencilCamera), with as many
+/// samples as it takes: `excess` says how many times larger than wanted a film's error is. A pilot
+/// tells, and is thrown away, so that the answer stays unbiased.
+Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, test::Picture picture,
+              const std::function<double(const Film&)>& excess);
+
+/// The radiance of such a picture, per channel, to the precision asked for of the channels in use.
 test::RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
-                              const Precision& precision, std::vector<int> channels = {0, 1, 2});
+                              const Precision& precision, std::vector<int> channels = {0, 1, 2},
+                              std::optional<int> maxScatterings = {});
 
 /// Fills measured and standardError.
 Case caseOf(std::string name, double expected, test::Estimate measured, const Precision& precision);

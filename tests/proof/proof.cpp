@@ -60,7 +60,8 @@ std::uint64_t Lab::seed(const std::string& name) const {
 const std::vector<Check>& checks() {
     static const std::vector<Check> all = [] {
         std::vector<Check> list;
-        for (const auto& subject : {closedForms(), slabs(), properties(), sampling(), extremes()})
+        for (const auto& subject : {closedForms(), singleScattering(), slabs(), properties(),
+                                    sampling(), lightSampling(), extremes()})
             list.insert(list.end(), subject.begin(), subject.end());
         return list;
     }();

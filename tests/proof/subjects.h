@@ -9,9 +9,11 @@ namespace woodcock::proof {
 
 // One file each.
 std::vector<Check> closedForms();
+std::vector<Check> singleScattering();
 std::vector<Check> slabs();
 std::vector<Check> properties();
 std::vector<Check> sampling();
+std::vector<Check> lightSampling();
 std::vector<Check> extremes();
 
 }  // namespace woodcock::proof

@@ -40,56 +40,10 @@ std::string sphere(Vec3d p, double radius, double power) {
         p.x, p.y, p.z, radius, power);
 }
 
-/// How much of the straight line between two points lies in the box.
-double inFog(Vec3d a, Vec3d b) {
-    double t0 = 0, t1 = 1;
-    for (int i = 0; i < 3; ++i) {
-        const double d = b[i] - a[i];
-        if (d == 0) continue;
-        const double s = (-half - a[i]) / d, t = (half - a[i]) / d;
-        t0 = std::max(t0, std::min(s, t)), t1 = std::min(t1, std::max(s, t));
-    }
-    return std::max(0.0, t1 - t0) * length(b - a);
-}
-
-/// What a camera at (x, y, 10) that looks along -z sees of a point light, scattered once: a sum
-/// over the line ("airlight").
-double airlight(double x, double y, Vec3d lamp, double intensity, double g) {
-    const Vec3d view{0, 0, -1};
-    return integrate(
-        [&](double z) {
-            const Vec3d p{x, y, z};
-            const Vec3d toLamp = lamp - p;
-            const double distance = length(toLamp);
-            return sigmaS * henyeyGreensteinByTheBook(dot(view, toLamp) / distance, g) * intensity /
-                   (distance * distance) * std::exp(-sigmaT * ((half - z) + inFog(p, lamp)));
-        },
-        -half, half);
-}
-
 RgbEstimate once(const std::string& scene, double x, double y, int samples) {
     return evenRadiance(renderScene(sceneFrom(scene + pencilCamera({x, y, 10}, {0, 0, -1})),
                                     {32, 32, samples, 0, 1})
                             .film);
-}
-
-TEST(PointLight, AirlightInAndOutsideTheFog) {
-    for (const Vec3d lamp : {Vec3d{0.3, 0.2, 0.5}, Vec3d{0.05, 0, -1}, Vec3d{3, 0.5, 1}})
-        for (const double g : {0.0, 0.8, -0.5}) {
-            const double exact = airlight(0, 0, lamp, 1, g);
-            expectAgrees(once(fog(g) + point(lamp, 4 * pi), 0, 0, 256), {exact, exact, exact},
-                         5e-3);
-        }
-}
-
-TEST(SphereLight, IsAPointLightFromAfar) {
-    for (const double g : {0.0, 0.9}) {
-        // Its light starts at its surface, so the fog takes a little less: below 1e-4 of it here.
-        const Vec3d lamp{1, 0.4, 0.2};
-        const double exact = airlight(0, 0, lamp, 1, g);
-        expectAgrees(once(fog(g) + sphere(lamp, 1e-4, 4 * pi), 0, 0, 64), {exact, exact, exact},
-                     5e-3);
-    }
 }
 
 /// A wide sphere is a cloud of points: single scattering by quadrature over the directions that hit

@@ -47,6 +47,7 @@ RenderResult renderScene(const Scene& scene, const Picture& picture) {
     settings.endSample = picture.samples;
     settings.seed = picture.seed;
     settings.maxScatterings = picture.maxScatterings;
+    settings.depthLayers = picture.depthLayers;
     RenderResult result = render(scene, settings);
     if (const auto count = result.film.nonFiniteCount())
         throw std::runtime_error(fmt::format("{} samples are not finite", count));
@@ -68,6 +69,16 @@ Estimate evenAlpha(const Film& film) {
         const Film::Pixel& p = film.at(x, y);
         return p.alpha / static_cast<double>(p.samples);
     });
+}
+
+RgbEstimate evenTransmittance(const Film& film) {
+    RgbEstimate e;
+    for (int c = 0; c < 3; ++c)
+        e[static_cast<std::size_t>(c)] = even(film, [&](int x, int y) {
+            const Film::Pixel& p = film.at(x, y);
+            return p.transmittance[c] / static_cast<double>(p.depthSamples);
+        });
+    return e;
 }
 
 double meanRadiance(const Film& film, int channel) {

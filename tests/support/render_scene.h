@@ -21,6 +21,7 @@ struct Picture {
     int width = 8, height = 8, samples = 16;
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings{};
+    bool depthLayers = false;
 };
 
 /// Renders; throws where a sample was NaN or infinite.
@@ -30,6 +31,7 @@ RenderResult renderScene(const Scene& scene, const Picture& picture);
 /// scatter tells. The samples of one pixel are not independent, pixels are.
 RgbEstimate evenRadiance(const Film& film);
 Estimate evenAlpha(const Film& film);
+RgbEstimate evenTransmittance(const Film& film);  ///< of the layer
 
 /// Mean of the whole picture (or of any function of the film) over renders with different seeds,
 /// picture.seed and following, with the error that their scatter tells.

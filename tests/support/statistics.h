@@ -10,6 +10,10 @@ namespace woodcock::test {
 /// expected to hold few are pooled. Anything in a cell expected to hold none: 0.
 double chiSquareProbability(const std::vector<double>& counts, const std::vector<double>& expected);
 
+/// The same as a normal deviate (Wilson and Hilferty 1931): above 0 where counts differ more than
+/// chance makes them, below where they are too even, infinite where the probability is 0.
+double chiSquareDeviate(const std::vector<double>& counts, const std::vector<double>& expected);
+
 /// Below this chance, a test with a fixed seed fails: about that of four standard errors.
 inline constexpr double leastProbability = 1e-4;
 

@@ -56,9 +56,8 @@ struct Lattice {
 bool RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
     if (tight_) return false;
     cell_ = segment;
-    const Segment ahead = piece(part, ray, t);
-    if (tight_)
-        segment = ahead;  // else it stays whole: what lies behind t is not yet accounted for
+    const Segment first = piece(part, ray, t);
+    if (tight_) segment = first;  // else it goes on as it was, from where it began
     return tight_;
 }
 
