@@ -124,8 +124,8 @@ void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report)
 
 void runVerify(const VerifyOptions& o) {
     const std::vector<Check> list = chosenChecks(o.only);
-    validate(o);
     catchInterrupts();
+    validate(o);
     VerifyReport report;
     report.options = {.full = o.full, .seed = o.seed, .volumes = o.volumes};
     report.only = o.only;
