@@ -56,7 +56,8 @@ struct Lattice {
 bool RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
     if (tight_) return false;
     cell_ = segment;
-    segment = piece(part, ray, t);
+    const Segment first = piece(part, ray, t);
+    if (tight_) segment = first;
     return tight_;
 }
 
