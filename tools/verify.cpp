@@ -118,6 +118,7 @@ void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report)
         if (print) fmt::print("{}", casesText(check.name, cases));
         std::fflush(stdout);
     }
+    progress.clear();
     report.options.stop = {};
     report.complete = !interrupted();
 }
