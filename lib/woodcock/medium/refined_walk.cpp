@@ -57,7 +57,7 @@ bool RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Seg
     if (tight_) return false;
     cell_ = segment;
     const Segment first = piece(part, ray, t);
-    if (tight_) segment = first;
+    if (tight_) segment = first;  // else it goes on as it was, from where it began
     return tight_;
 }
 
