@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "commands.h"
@@ -10,6 +12,9 @@
 #include "tests/proof/proof.h"
 #include "verify_report.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/base/parse.h"
+#include "woodcock/grid/vdb_file.h"
 #include "woodcock/image/whole_file.h"
 
 namespace woodcock::tool {
@@ -21,47 +26,120 @@ using namespace proof;
 constexpr int exitFailed = 1, exitInterrupted = 130;
 
 struct VerifyOptions {
-    bool quick = false, full = false;
+    bool quick = false, full = false, json = false;
     std::uint64_t seed = 1;
+    std::string only;
     std::filesystem::path report;
     std::vector<std::filesystem::path> volumes;
+
+    std::filesystem::path jsonFile() const { return report / "verify.json"; }
+    std::filesystem::path htmlFile() const { return report / "verify.html"; }
 };
 
 void write(const std::filesystem::path& file, const std::string& text) {
     writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
 }
 
-void runVerify(const VerifyOptions& o) {
+/// What would waste the time that checks take.
+void validate(const VerifyOptions& o) {
     if (o.quick && o.full)
         throw usageError("--quick and --full contradict each other: give one of them");
-    for (const auto& file : o.volumes)
-        if (!exists(file)) throw inputError("{}: there is no such file", file.string());
-    if (!o.report.empty()) std::filesystem::create_directories(o.report);
-    catchInterrupts();
-    const Options options{.full = o.full, .seed = o.seed, .volumes = o.volumes};
-    std::vector<Case> all;
-    std::size_t done = 0;
+    for (const auto& file : o.volumes) listGrids(file);
+    if (o.report.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directories(o.report, error);
+    if (error)
+        throw usageError("--report: cannot make the directory '{}': {}", o.report.string(),
+                         error.message());
+    checkWritable(o.jsonFile());
+    checkWritable(o.htmlFile());
+}
+
+/// The checks whose kind or name contains `only`.
+std::vector<Check> chosenChecks(const std::string& only) {
+    std::vector<Check> chosen;
+    std::vector<std::string> names;
     for (const Check& check : checks()) {
-        if (interrupted()) break;
-        if (isatty(STDERR_FILENO))
-            fmt::print(stderr, "\r[{}/{}] {}\x1b[K", done, checks().size(), check.name);
-        const std::vector<Case> cases = run(check, options);
-        if (isatty(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
-        fmt::print("{}", casesText(check.name, cases));
+        names.push_back(fmt::format("{} ({})", check.name, nameOf(check.kind)));
+        if (names.back().find(only) != std::string::npos) chosen.push_back(check);
+    }
+    if (chosen.empty())
+        throw usageError("--only: no check's name or kind contains '{}'; there are: {}", only,
+                         joinNames(names));
+    return chosen;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A line on stderr where that is a terminal. Checks differ too much for a good guess of the time
+/// that is left; the mean of those done is better than none.
+class VerifyProgress {
+public:
+    explicit VerifyProgress(std::size_t checks) : checks_(checks) {}
+    void show(std::size_t done, const std::string& check) const {
+        if (!terminal_) return;
+        const double seconds = secondsSince(start_);
+        std::string left;
+        if (done > 0)
+            left = ", " +
+                   formatDuration(seconds * static_cast<double>(checks_ - done) /
+                                  static_cast<double>(done)) +
+                   " left";
+        fmt::print(stderr, "\r{} of {} checks, {}{}: {}\x1b[K", done, checks_,
+                   formatDuration(seconds), left, check);
+        std::fflush(stderr);
+    }
+    void clear() const {
+        if (terminal_) fmt::print(stderr, "\r\x1b[K");
+    }
+
+private:
+    std::size_t checks_;
+    bool terminal_ = isatty(STDERR_FILENO);
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report) {
+    const VerifyProgress progress(list.size());
+    for (const Check& check : list) {
+        const std::size_t done = report.times.size();
+        report.options.stop = [&] {
+            progress.show(done, check.name);
+            return interrupted();
+        };
+        if (report.options.stop()) break;
+        const auto start = std::chrono::steady_clock::now();
+        const std::vector<Case> cases = run(check, report.options);
+        report.times.push_back({check.kind, check.name, secondsSince(start)});
+        report.cases.insert(report.cases.end(), cases.begin(), cases.end());
+        progress.clear();
+        if (print) fmt::print("{}", casesText(check.name, cases));
         std::fflush(stdout);
-        all.insert(all.end(), cases.begin(), cases.end());
-        ++done;
     }
-    fmt::print("{}", summaryText(all));
+    progress.clear();
+    report.options.stop = {};
+    report.complete = !interrupted();
+}
+
+void runVerify(const VerifyOptions& o) {
+    const std::vector<Check> list = chosenChecks(o.only);
+    catchInterrupts();
+    validate(o);
+    VerifyReport report;
+    report.options = {.full = o.full, .seed = o.seed, .volumes = o.volumes};
+    report.only = o.only;
+    report.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    runChecks(list, !o.json, report);
+    fmt::print("{}", o.json ? reportJson(report) : summaryText(report));
     if (!o.report.empty()) {
-        const VerifyReport report{all, options, done == checks().size()};
-        write(o.report / "verify.json", reportJson(report));
-        write(o.report / "verify.html", reportHtml(report));
-        fmt::print("wrote {} and {}\n", (o.report / "verify.json").string(),
-                   (o.report / "verify.html").string());
+        write(o.jsonFile(), reportJson(report));
+        write(o.htmlFile(), reportHtml(report));
+        if (!o.json) fmt::print("wrote {} and {}\n", o.jsonFile().string(), o.htmlFile().string());
     }
-    if (done < checks().size()) throw CLI::RuntimeError(exitInterrupted);
-    if (std::any_of(all.begin(), all.end(),
+    if (!report.complete) throw CLI::RuntimeError(exitInterrupted);
+    if (std::any_of(report.cases.begin(), report.cases.end(),
                     [](const Case& c) { return c.verdict() != Verdict::Pass; }))
         throw CLI::RuntimeError(exitFailed);
 }
@@ -77,9 +155,14 @@ CLI::App& addVerifyCommand(CLI::App& app) {
     command->add_flag("--quick", options->quick, "two digits, in about a minute (the default)");
     command->add_flag("--full", options->full, "three digits and more, in about half an hour");
     command
+        ->add_option("--only", options->only,
+                     "checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")
+        ->type_name("TEXT");
+    command
         ->add_option("--report", options->report,
                      "writes DIR/verify.json and DIR/verify.html, a page that needs nothing else")
         ->type_name("DIR");
+    command->add_flag("--json", options->json, "one JSON document on stdout instead of the table");
     command
         ->add_option("--seed", options->seed,
                      "draws other random numbers; of 1000 cases, chance fails one in 16 runs")

@@ -102,6 +102,26 @@ TEST(RefinedWalk, PiecesAreContiguousAndBounding) {
     }
 }
 
+/// Where a cell is not deep enough to be cut, collisions leave the segment as it was: callers have
+/// yet to account for it from its start.
+TEST(RefinedWalk, ShallowCellsStayWhole) {
+    const Medium medium = PlainMedium({{.grid = spikes(), .scattering = Rgb(0.5f)}}).medium(1, 3);
+    const MediumPart& part = medium.parts[0];
+    const IndexRay ray = part.indexRay({-5, 3.4, 2.7}, {1, 0, 0});
+    RefinedWalk walk(part, ray, 100);
+    int segments = 0;
+    for (Segment s{0, 0, {}}; walk.next(part, ray, s); ++segments) {
+        const Segment before = s;
+        for (int i = 1; i <= 40; ++i) {
+            EXPECT_FALSE(walk.collided(part, ray, s.t0 + (s.t1 - s.t0) * i / 50, s));
+            EXPECT_EQ(s.t0, before.t0);
+            EXPECT_EQ(s.t1, before.t1);
+            EXPECT_EQ(s.range, before.range);
+        }
+    }
+    EXPECT_GE(segments, 1);
+}
+
 /// Depth D across one voxel: the walk reaches the foot of a linear ramp with density D x, so it
 /// ends where D x^2 / 2 is an exponential variate. The bounds of the voxels alone would take the
 /// root of D null collisions for that.

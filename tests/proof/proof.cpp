@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "tests/proof/subjects.h"
 #include "woodcock/base/random.h"
@@ -51,7 +52,17 @@ Verdict Case::verdict() const {
     return standardError <= largestError ? Verdict::Pass : Verdict::Imprecise;
 }
 
+void Lab::stopIfAsked() const {
+    if (options_.stop && options_.stop()) throw Stopped{};
+}
+
+void Lab::add(Case c) {
+    cases_.push_back(std::move(c));
+    stopIfAsked();
+}
+
 std::uint64_t Lab::seed(const std::string& name) const {
+    stopIfAsked();
     std::uint64_t h = options_.seed;
     for (const char c : name) h = hashOf(h, static_cast<unsigned char>(c));
     return h;
@@ -70,15 +81,19 @@ const std::vector<Check>& checks() {
 
 std::vector<Case> run(const Check& check, const Options& options) {
     Lab lab(options);
+    std::optional<Case> failure;
     try {
         check.run(lab);
+    } catch (const Stopped&) {
+        // The cases so far are as good as any.
     } catch (const std::exception& error) {
-        lab.add({.name = std::string(check.name) + ", to its end",
-                 .expected = 1,
-                 .measured = 0,
-                 .note = error.what()});
+        failure = {.name = std::string(check.name) + ", to its end",
+                   .expected = 1,
+                   .measured = 0,
+                   .note = error.what()};
     }
     std::vector<Case> cases = lab.takeCases();
+    if (failure) cases.push_back(*failure);
     for (Case& c : cases) c.kind = check.kind;
     return cases;
 }

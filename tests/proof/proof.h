@@ -51,7 +51,12 @@ struct Options {
     bool full = false;  ///< three digits and more; else in less than a minute
     std::uint64_t seed = 1;
     std::vector<std::filesystem::path> volumes;  ///< to hold properties of any VDB against
+    /// Asked now and then while a check runs; where it says true, the check ends early.
+    std::function<bool()> stop{};
 };
+
+/// Ends a check that was asked to stop.
+struct Stopped {};
 
 /// Where checks work: what was asked, a directory for files, and the cases so far.
 class Lab {
@@ -63,15 +68,18 @@ public:
     /// Samples, paths or sizes for the asked effort.
     int pick(int quick, int full) const { return options_.full ? full : quick; }
     double pick(double quick, double full) const { return options_.full ? full : quick; }
-    /// Of its own for each name, so that no two cases share random numbers.
+    /// Of its own for each name, so that no two cases share random numbers. May throw Stopped.
     std::uint64_t seed(const std::string& name) const;
     std::filesystem::path file(const std::string& name) const { return directory_ / name; }
     const std::filesystem::path& directory() const { return directory_.path(); }
 
-    void add(Case c) { cases_.push_back(std::move(c)); }
+    /// May throw Stopped.
+    void add(Case c);
     std::vector<Case> takeCases() { return std::move(cases_); }
 
 private:
+    void stopIfAsked() const;
+
     Options options_;
     test::TempDir directory_;
     std::vector<Case> cases_;
@@ -87,7 +95,7 @@ struct Check {
 /// All, in the order of kinds. A check that throws becomes a failing case with the message as note.
 const std::vector<Check>& checks();
 
-/// Runs one check.
+/// Runs one check; one that was stopped has the cases that it came to.
 std::vector<Case> run(const Check& check, const Options& options);
 
 }  // namespace woodcock::proof

@@ -45,6 +45,29 @@ std::string nameOfCheck(const testing::TestParamInfo<std::size_t>& info) {
 
 INSTANTIATE_TEST_SUITE_P(All, Proof, testing::Range(std::size_t{0}, checks().size()), nameOfCheck);
 
+TEST(Check, KeepsWhatItHasWhenItIsStoppedOrThrows) {
+    const Check endless{Kind::Property, "endless", [](Lab& lab) {
+                            while (true) lab.add({.name = "one more"});
+                        }};
+    Options options;
+    int asked = 0;
+    options.stop = [&] { return ++asked == 3; };
+    const std::vector<Case> cases = run(endless, options);
+    ASSERT_EQ(cases.size(), 3u);
+    EXPECT_EQ(cases[2].kind, Kind::Property);
+
+    const Check faulty{Kind::Extreme, "faulty", [](Lab& lab) {
+                           lab.add({.name = "before"});
+                           throw std::runtime_error("no such grid");
+                       }};
+    const std::vector<Case> both = run(faulty, {});
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0].verdict(), Verdict::Pass);
+    EXPECT_EQ(both[1].verdict(), Verdict::Fail);
+    EXPECT_EQ(both[1].note, "no such grid");
+    EXPECT_EQ(both[1].kind, Kind::Extreme);
+}
+
 TEST(Case, FailsWhenItIsOffAndIsImpreciseWhenItCannotTell) {
     Case c{
         .name = "c", .expected = 1, .measured = 1.05, .standardError = 0.01, .largestError = 0.02};

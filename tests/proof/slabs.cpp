@@ -89,7 +89,7 @@ void addSlab(Lab& lab, const Parameters& p, double reflected, double transmitted
         Case c = caseOf(fmt::format("{}, {}", what, p.name()), expected, measured, precision);
         c.allowance += rounding + horizonAllowance;
         c.note = source;
-        c.curve = fmt::format("{} at g {}, albedo {}", what, p.g, p.albedo);
+        c.curve = fmt::format("{} at g {}, albedo {}, mu {}", what, p.g, p.albedo, p.mu);
         c.xName = "optical depth", c.x = p.depth;
         lab.add(std::move(c));
     };

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+# Deliberate defects, read by run.sh; see there for the arguments of `defect`. Most are biased by so
+# little that a picture would not show them.
+tracer=lib/woodcock/render/path_tracer.cpp
+tracking=lib/woodcock/medium/tracking.cpp
+
+# ---- grid
+
+defect "majorants 2 % too low" 'Majorants.*:CellWalks.*' "" \
+    lib/woodcock/grid/majorants.cpp \
+    'static_cast<float>(r.max * options.scale)' 'static_cast<float>(r.max * options.scale * 0.98)'
+
+defect "block ranges without the neighbours' layer" 'Field.*:BlockRanges.*:Majorants.*' "" \
+    lib/woodcock/grid/block_ranges.cpp \
+    'r.add(field.storedRange(ref, layer(sideOf(i))));' ''
+
+defect "2^3 cells without their far corner" 'Majorants.*' "" \
+    lib/woodcock/grid/majorants.cpp \
+    'for (int j = 0; j < 27; ++j)' 'for (int j = 0; j < 26; ++j)'
+
+defect "tiles hold the background" 'Field.*:VdbLoad.*' "" \
+    lib/woodcock/grid/field.cpp \
+    'addConstant(t.value)' 'addConstant(source_.background)'
+
+defect "support ends at the outermost voxels" 'Field.*' "table of slabs" \
+    lib/woodcock/grid/field.cpp \
+    'field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}}' \
+    'field_.support_ = {box.lower, box.upper}'
+
+# ---- medium
+
+defect "transform transposed" 'BuildScene.*:MediumPart.*:Invariance.Orientation' "" \
+    lib/woodcock/medium/medium.cpp \
+    'indexFromWorld_ = d_.worldFromIndex.inverse();' \
+    'const Affine3d m = d_.worldFromIndex.inverse();
+    for (int i = 0; i < 3; ++i)
+        indexFromWorld_.column[static_cast<std::size_t>(i)] = {m.column[0][i], m.column[1][i],
+                                                               m.column[2][i]};
+    indexFromWorld_.translation = m.translation;'
+
+defect "taps off by half a voxel" 'Distance.*:Transmittance.*' "table of slabs" \
+    $tracking \
+    'field.stochasticVoxel(index, bits)' 'field.stochasticVoxel(index + Vec3d{0, 0.5, 0}, bits)'
+
+defect "absorption's weight lost" 'Distance.*' "half-spaces" \
+    $tracking \
+    'throughput[0] *= 1 - absorption[0] / mu;' ''
+
+defect "albedo grid forgotten in blue" 'Distance.*:Invariance.AlbedoGrids*' "" \
+    $tracking \
+    'channels<N>(part.scattering()) * s.f * s.albedo;' \
+    'channels<N>(part.scattering()) * s.f *
+        Spectrum<N>::map([&](int c) { return c == 2 ? 1.0f : s.albedo[c]; });'
+
+defect "null collisions weighted as if grey" 'Distance.*' "chromatic slabs" \
+    $tracking \
+    'null * static_cast<float>(1 / (mu * (1 - p)))' 'Spectrum<N>(1.0f)'
+
+defect "residual control dropped" 'Transmittance.*' "" \
+    $tracking \
+    'control += (s.t1 - s.t0) * s.range.min;' ''
+
+defect "start moved where nothing is cut" 'Transmittance.*:RefinedWalk.*' "" \
+    lib/woodcock/medium/refined_walk.cpp \
+    'if (tight_) segment = first;' 'segment = first;'
+
+defect "control of cut cells dropped" 'Transmittance.*:RefinedWalk.*' "" \
+    $tracking \
+    'if (cut) control += controlled;' 'if (cut) control += 0 * controlled;'
+
+defect "roulette without division" 'Distance.*:Transmittance.*' "deep slabs" \
+    $tracking \
+    'weight *= threshold_ / lowest_' 'weight *= 1.0f'
+
+defect "every scattering is the first volume's" 'Distance.*' "" \
+    $tracking \
+    'q.t = process.t(), q.part = process.index();' 'q.t = process.t(), q.part = 0;'
+
+defect "phase function samples the wrong side" 'Phase.*' "table of slabs" \
+    lib/woodcock/medium/phase.h \
+    'const double s = 2 * u0 - 1;' 'const double s = 1 - 2 * u0;'
+
+# ---- light
+
+defect "sun's irradiance without the cosine" 'Sun.*' "" \
+    lib/woodcock/light/light.cpp \
+    'irradiance_ * static_cast<float>(1 / (pi * sinHalf_ * sinHalf_))' \
+    'irradiance_ * static_cast<float>(1 / (2 * pi * oneMinusCos_))'
+
+defect "sphere's solid angle as if it were flat" 'SphereLight.*' "" \
+    lib/woodcock/light/light.cpp \
+    's.weight = radiance * static_cast<float>(1 / s.pdf);' \
+    's.weight = radiance * static_cast<float>(pi * sin2);'
+
+defect "image sampled evenly in angle" 'EnvironmentMap.*' "" \
+    lib/woodcock/light/environment_map.cpp \
+    'const double cosine = top + (bottom - top) * fy;' \
+    'const double cosine = std::cos(pi * (static_cast<double>(y) + fy) / height_);'
+
+# ---- render
+
+defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of slabs" \
+    $tracer \
+    'henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g)' \
+    'henyeyGreenstein(dot(p.from.forward, s.direction), -p.from.g)'
+
+defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
+    $tracer \
+    'p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;' \
+    'p.origin = position, p.direction = s.direction, p.phasePdf = 1 / (4 * pi);'
+
+defect "MIS forgets how a light was picked" 'Furnace.*:LocalLights.*:SphereLight.*:Sun.*' "" \
+    $tracer \
+    'powerHeuristic(s.pdf * pick_[k], phase)' 'powerHeuristic(s.pdf, phase)'
+
+defect "lamps counted by both samplings" 'PointLight.*:SphereLight.*' "" \
+    $tracer \
+    '(pdf + flightDensity(e, t))' 'pdf'
+
+defect "shadow rays go on behind the lamp" 'PointLight.*:SphereLight.*' "" \
+    $tracer \
+    'ray.tMax = s.distance;' 'ray.tMax = infinity;'
+
+defect "numbers used twice" 'Slab.*:Furnace.*' "table of slabs" \
+    $tracer \
+    'p.sequence.draw(set + 1)' 'p.sequence.draw(set)'
+
+defect "roulette of high orders without factor" 'Furnace.*:Slab.*' "beyond the tables" \
+    $tracer \
+    'p.throughput *= 1.41421356f;' ''
+
+defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
+    $tracer \
+    'p.scatterings >= *options_.maxScatterings) {' 'p.scatterings + 1 >= *options_.maxScatterings) {'
+
+# ---- camera, film
+
+defect "picture off by half a pixel" 'Camera.*:Session.*:Transmittance.OfThinRays*' "" \
+    lib/woodcock/camera/camera.cpp \
+    'const double sx = (2 * x - pixelWidth) / h' 'const double sx = (2 * x + 1 - pixelWidth) / h'
+
+defect "a pixel's first sample is not summed" 'Film.*' "" \
+    lib/woodcock/image/film.cpp \
+    'p.radiance[i] += v;' 'p.radiance[i] += p.samples > 0 ? v : 0;'
