@@ -39,9 +39,9 @@ struct Slack {
 void addTransmittance(Lab& lab, const std::string& name, const std::string& volume,
                       const Rays& rays, const double (&depth)[3], const Slack& slack = {},
                       bool homogeneous = false) {
-    const Precision precision{lab.pick(1e-2, 1e-3), lab.pick(3e-4, 1e-6)};
+    const Precision precision{lab.pick(1e-2, 2e-3), lab.pick(3e-4, 1e-5)};
     // The layers come from chance, hit or miss, while radiance comes from weights.
-    const Precision rough{lab.pick(1e-2, 1e-3), lab.pick(4e-3, 3e-4)};
+    const Precision rough{lab.pick(1e-2, 3e-3), lab.pick(4e-3, 1e-3)};
     const Scene scene =
         sceneIn(lab, volume + evenLight + test::pencilCamera(rays.eye, rays.direction));
     double t[3], alpha = 1;
@@ -274,7 +274,8 @@ void sphereDisc(Lab& lab) {
                                      "eye = [{}, {}, {}]\nlook_at = [0, 0, 0]\n",
                                      sigma, 2 * half, 0.3 * radius, 0.2 * radius, 3 * radius));
         const RgbEstimate square = test::meanOverSeeds(
-            scene, {16, 16, lab.pick(depth < 5 ? 16 : 128, 1024), lab.seed(name)}, lab.pick(32, 64));
+            scene, {16, 16, lab.pick(depth < 5 ? 16 : 128, depth < 5 ? 256 : 1024), lab.seed(name)},
+            lab.pick(32, 64));
         const double discs = 4 * half * half / (pi * r2);
         const Precision precision{lab.pick(1e-2, 1e-3), lab.pick(0.0, 5e-5)};
         Case c = caseOf(name, oracle::sphereDiscTransmittance(depth) - darker,
