@@ -141,5 +141,74 @@ TEST(RefinedWalk, TransmittanceAcrossTheFootOfADeepSpike) {
     }
 }
 
+/// Cells that are not worth cutting keep their lower bound's part of the way so far.
+TEST(RefinedWalk, ManyCollisionsInAShallowCellLoseNothing) {
+    PlainGrid grid(1, {0.1f});
+    grid.setLeaf({0, 0, 0}, [](Vec3i v, int) { return (v.x + v.y + v.z) % 2 ? 1.0f : 0.1f; });
+    const PlainMedium plain({{.grid = grid, .absorption = Rgb(1), .scattering = Rgb(0.0f)}});
+    const Medium medium = plain.medium(1, 3);
+    const TestRay ray{{0.2, 3.3, 4.1}, {1, 0, 0}, 6.5};
+    constexpr int n = 200000;
+    std::vector<TransmittanceQuery<1>> queries;
+    for (int i = 0; i < n; ++i)
+        queries.push_back({ray.origin, ray.direction, ray.tMax, RandomStream(hashOf(21, i)), 1e-9f,
+                           Spectrum<1>(1)});
+    TrackingCounters counters;
+    trackTransmittance<1>(medium, queries, counters);
+    EXPECT_GT(counters.collisions, 10 * n);  // effort: it gets to the eighth
+    Moments m;
+    for (const auto& q : queries) m.add(q.contribution[0]);
+    const double exact = plain.transmittance(ray.origin, ray.direction, ray.tMax).x;
+    expectMean(m, exact, 5e-3 * exact, "transmittance");
+}
+
+/// Two channels whose product of value and coefficient is 1, one that is deep: it dies at once and
+/// then sets no pace; and values alone, 1e12 in one channel, set none.
+TEST(RefinedWalk, DeadChannelsAndLargeValuesSetNoPace) {
+    const auto pattern = [](Vec3i v) {
+        return static_cast<float>(1 + (v.x * 5 + v.y * 3 + v.z * 7) % 11) / 11;
+    };
+    struct Setting {
+        const char* name;
+        std::array<float, 3> values;
+        Rgb extinction;
+    };
+    for (const Setting& s : {Setting{"dead", {1e12f, 1, 0.5f}, Rgb(0.3f)},
+                             Setting{"values", {1e12f, 1, 0.5f}, {3e-13f, 0.3f, 0.6f}},
+                             Setting{"mixed", {1e12f, 1, 1e6f}, {3e-13f, 0, 0.3f}}}) {
+        SCOPED_TRACE(s.name);
+        PlainGrid grid(3);
+        grid.setLeaf({0, 0, 0}, [&](Vec3i v, int c) {
+            return pattern(v) * s.values[static_cast<std::size_t>(c)];
+        });
+        const PlainMedium plain(
+            {{.grid = grid, .absorption = s.extinction, .scattering = Rgb(0.0f)}});
+        const Medium medium = plain.medium(1, 3);
+        const Vec3d origin{-3, 3.3, 4.1}, direction = normalize(Vec3d{1, 0.1, -0.2});
+        constexpr int n = 8000;
+        std::vector<TransmittanceQuery<3>> across;
+        std::vector<DistanceQuery<3>> weighted;
+        for (int i = 0; i < n; ++i) {
+            RandomStream random(hashOf(22, i));
+            across.push_back({origin, direction, 1e3, random, 0, Spectrum<3>(1)});
+            const double u = random.uniformOpenLow();
+            weighted.push_back({origin, direction, 1e3, u, random, 0, false, Spectrum<3>(1)});
+        }
+        TrackingCounters counters;
+        trackTransmittance<3>(medium, across, counters);
+        trackDistance<3>(medium, weighted, counters);
+        EXPECT_LT(static_cast<double>(counters.collisions) / n, 200);
+        EXPECT_LT(static_cast<double>(counters.segments) / n, 200);
+        const Vec3d exact = plain.transmittance(origin, direction, 1e3);
+        for (int c = 0; c < 3; ++c) {
+            Moments ratio, weight;
+            for (const auto& q : across) ratio.add(q.contribution[c]);
+            for (const auto& q : weighted) weight.add(q.throughput[c]);
+            expectMean(ratio, exact[c], 0.02, fmt::format("transmittance {}", c));
+            expectMean(weight, exact[c], 0.02, fmt::format("weight {}", c));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace woodcock::test
