@@ -24,7 +24,7 @@ RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const P
     // Of few pixels the pilot's variance is a rough guess.
     const double margin = how.side < 32 ? 4 : 2;
     constexpr double mostSamples = 1 << 20;
-    const int pilotSamples = std::max(4, 1024 / (how.side * how.side));
+    const int pilotSamples = std::max(4, 512 / (how.side * how.side));
     Picture picture{how.side, how.side, pilotSamples, hashOf(lab.seed(name), 0),
                     how.maxScatterings};
     const RgbEstimate pilot = evenRadiance(renderScene(scene, picture).film);

@@ -229,9 +229,10 @@ void decades(Lab& lab) {
                              volumeOf("decades.vdb", sigma), grid, from, {1, 0, 0});
         }
     for (const double sigma : {1e-6, 1e6})
-        addFurnace(lab, fmt::format("12 decades in a leaf, sigma to {:g}", 1e6 * sigma),
-                   furnaceOf("decades.vdb", sigma),
-                   test::pencilCamera({-3, 2.3, 4.6}, {1, 0.1, -0.1}));
+        if (sigma < 1 || lab.full())
+            addFurnace(lab, fmt::format("12 decades in a leaf, sigma to {:g}", 1e6 * sigma),
+                       furnaceOf("decades.vdb", sigma),
+                       test::pencilCamera({-3, 2.3, 4.6}, {1, 0.1, -0.1}));
 }
 
 }  // namespace
