@@ -15,7 +15,7 @@ std::vector<Check> extremeGrids();
 std::vector<Check> extremeRays();
 std::vector<Check> extremeContrasts();
 
-/// Two digits quickly, three in full: extremes are many.
+/// Two digits quickly, more in full: extremes are many.
 Precision extremePrecision(const Lab& lab);
 
 /// How a picture is taken whose pixels all expect the same, and what it may cost.

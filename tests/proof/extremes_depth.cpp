@@ -72,7 +72,7 @@ void furnace(Lab& lab) {
             if (g != 0 && depth < 1e4) continue;
             Precision precision = extremePrecision(lab);
             if (g != 0 && !lab.full()) continue;
-            if (depth > 1e3) precision.relative = lab.pick(3e-2, 3e-3);
+            if (depth > 1e3) precision.relative = lab.pick(3e-2, 1e-2);
             if (g > 0) precision.relative = 3e-2;  // ten thousand scatterings, weights to match
             const std::string name = fmt::format("furnace of depth {:g}, g {}", depth, g);
             Case c = caseOf(

@@ -62,8 +62,8 @@ void rays(Lab& lab) {
                          std::string(evenLight) + cameraAbove(1))
             .medium;
     Precision precision = extremePrecision(lab);
-    if (lab.full()) precision.relative *= 2;
-    const int count = lab.pick(80000, 2000000);
+    if (lab.full()) precision.relative = 4e-3;
+    const int count = lab.pick(80000, 600000);
     for (const Line& l : lines) {
         const Vec3d along = normalize(l.along);
         const double depth = 0.3f * test::lineIntegral(noise, spec.box, l.from, along, 0, l.end);
