@@ -16,6 +16,7 @@
 #include "woodcock/base/memory.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/image/whole_file.h"
+#include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
@@ -279,6 +280,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     const Scene scene = buildScene(description, std::move(loaded));
     const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart;
     if (interrupted()) throw CLI::RuntimeError(interruptedCode);
+    for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);
 
     const RenderResult result = renderWithProgress(scene, settings, style);
     const std::string digest = sceneDigest(description);

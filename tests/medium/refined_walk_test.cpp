@@ -35,25 +35,25 @@ std::vector<TestRay> spikeRays() {
             {{10, 7, 5}, normalize(Vec3d{-1, -0.61, -0.34}), infinity}};
 }
 
-/// Those who sum something up over segments count on it.
-TEST(RefinedWalk, ACellThatIsNotCutStaysAsItWas) {
-    const Medium medium =
-        PlainMedium({{.grid = mixedGrid(1), .scattering = Rgb(0.1f)}}).medium();  // none is deep
+/// A cell that is not worth cutting goes on with its bounds, from the collision only where that was
+/// told: the control of what lies behind would be lost.
+TEST(RefinedWalk, ShallowCellsKeepTheirBounds) {
+    const Medium medium = PlainMedium({{.grid = mixedGrid(1), .scattering = Rgb(0.1f)}}).medium();
     const MediumPart& part = medium.parts[0];
     int segments = 0;
     for (const TestRay& r : testRays(medium, 20, 1)) {
         const IndexRay ray = part.indexRay(r.origin, r.direction);
         RefinedWalk walk(part, ray, r.tMax);
-        Segment s{0, 0, {}};
-        while (walk.next(part, ray, s)) {
-            const Segment before = s;
+        for (Segment s{0, 0, {}}; walk.next(part, ray, s); ++segments) {
+            const Segment whole = s;
             for (int i = 1; i <= 20; ++i) {
-                const double t = before.t0 + (before.t1 - before.t0) * i / 21;
-                EXPECT_FALSE(walk.collided(part, ray, t, s));
-                EXPECT_EQ(s.t0, before.t0);
-                EXPECT_EQ(s.t1, before.t1);
+                const double t = whole.t0 + (whole.t1 - whole.t0) * i / 21, start = s.t0;
+                const bool begunAnew = walk.collided(part, ray, t, s);
+                EXPECT_EQ(s.t0, begunAnew ? t : start);
+                EXPECT_EQ(s.t1, whole.t1);
+                EXPECT_EQ(s.range, whole.range);
+                EXPECT_FALSE(walk.tight());
             }
-            ++segments;
         }
     }
     EXPECT_GT(segments, 20);
@@ -100,26 +100,6 @@ TEST(RefinedWalk, PiecesAreContiguousAndBounding) {
         }
         EXPECT_GE(cuts, 5);
     }
-}
-
-/// Where a cell is not deep enough to be cut, collisions leave the segment as it was: callers have
-/// yet to account for it from its start.
-TEST(RefinedWalk, ShallowCellsStayWhole) {
-    const Medium medium = PlainMedium({{.grid = spikes(), .scattering = Rgb(0.5f)}}).medium(1, 3);
-    const MediumPart& part = medium.parts[0];
-    const IndexRay ray = part.indexRay({-5, 3.4, 2.7}, {1, 0, 0});
-    RefinedWalk walk(part, ray, 100);
-    int segments = 0;
-    for (Segment s{0, 0, {}}; walk.next(part, ray, s); ++segments) {
-        const Segment before = s;
-        for (int i = 1; i <= 40; ++i) {
-            EXPECT_FALSE(walk.collided(part, ray, s.t0 + (s.t1 - s.t0) * i / 50, s));
-            EXPECT_EQ(s.t0, before.t0);
-            EXPECT_EQ(s.t1, before.t1);
-            EXPECT_EQ(s.range, before.range);
-        }
-    }
-    EXPECT_GE(segments, 1);
 }
 
 /// Depth D across one voxel: the walk reaches the foot of a linear ramp with density D x, so it
@@ -182,6 +162,75 @@ TEST(RefinedWalk, TransmittanceAcrossTheFootOfADeepSpike) {
         Moments m;
         for (const auto& q : queries) m.add(q.contribution[0]);
         expectMean(m, std::exp(-0.5), 0.01, fmt::format("depth {}", depth));
+    }
+}
+
+/// Cells that are not worth cutting keep their lower bound's part of the way so far.
+TEST(RefinedWalk, ManyCollisionsInAShallowCellLoseNothing) {
+    PlainGrid grid(1, {0.1f});
+    grid.setLeaf({0, 0, 0}, [](Vec3i v, int) { return (v.x + v.y + v.z) % 2 ? 1.0f : 0.1f; });
+    const PlainMedium plain({{.grid = grid, .absorption = Rgb(1), .scattering = Rgb(0.0f)}});
+    const Medium medium = plain.medium(1, 3);
+    const TestRay ray{{0.2, 3.3, 4.1}, {1, 0, 0}, 6.5};
+    constexpr int n = 200000;
+    std::vector<TransmittanceQuery<1>> queries;
+    for (int i = 0; i < n; ++i)
+        queries.push_back({ray.origin, ray.direction, ray.tMax, RandomStream(hashOf(21, i)), 1e-9f,
+                           Spectrum<1>(1)});
+    TrackingCounters counters;
+    trackTransmittance<1>(medium, queries, counters);
+    EXPECT_GT(counters.collisions, 10 * n);  // effort: it gets to the eighth
+    Moments m;
+    for (const auto& q : queries) m.add(q.contribution[0]);
+    const double exact = plain.transmittance(ray.origin, ray.direction, ray.tMax).x;
+    expectMean(m, exact, 5e-3 * exact, "transmittance");
+}
+
+/// Two channels whose product of value and coefficient is 1, one that is deep: it dies at once and
+/// then sets no pace; and values alone, 1e12 in one channel, set none.
+TEST(RefinedWalk, DeadChannelsAndLargeValuesSetNoPace) {
+    const auto pattern = [](Vec3i v) {
+        return static_cast<float>(1 + (v.x * 5 + v.y * 3 + v.z * 7) % 11) / 11;
+    };
+    struct Setting {
+        const char* name;
+        std::array<float, 3> values;
+        Rgb extinction;
+    };
+    for (const Setting& s : {Setting{"dead", {1e12f, 1, 0.5f}, Rgb(0.3f)},
+                             Setting{"values", {1e12f, 1, 0.5f}, {3e-13f, 0.3f, 0.6f}},
+                             Setting{"mixed", {1e12f, 1, 1e6f}, {3e-13f, 0, 0.3f}}}) {
+        SCOPED_TRACE(s.name);
+        PlainGrid grid(3);
+        grid.setLeaf({0, 0, 0}, [&](Vec3i v, int c) {
+            return pattern(v) * s.values[static_cast<std::size_t>(c)];
+        });
+        const PlainMedium plain(
+            {{.grid = grid, .absorption = s.extinction, .scattering = Rgb(0.0f)}});
+        const Medium medium = plain.medium(1, 3);
+        const Vec3d origin{-3, 3.3, 4.1}, direction = normalize(Vec3d{1, 0.1, -0.2});
+        constexpr int n = 8000;
+        std::vector<TransmittanceQuery<3>> across;
+        std::vector<DistanceQuery<3>> weighted;
+        for (int i = 0; i < n; ++i) {
+            RandomStream random(hashOf(22, i));
+            across.push_back({origin, direction, 1e3, random, 0, Spectrum<3>(1)});
+            const double u = random.uniformOpenLow();
+            weighted.push_back({origin, direction, 1e3, u, random, 0, false, Spectrum<3>(1)});
+        }
+        TrackingCounters counters;
+        trackTransmittance<3>(medium, across, counters);
+        trackDistance<3>(medium, weighted, counters);
+        EXPECT_LT(static_cast<double>(counters.collisions) / n, 200);
+        EXPECT_LT(static_cast<double>(counters.segments) / n, 200);
+        const Vec3d exact = plain.transmittance(origin, direction, 1e3);
+        for (int c = 0; c < 3; ++c) {
+            Moments ratio, weight;
+            for (const auto& q : across) ratio.add(q.contribution[c]);
+            for (const auto& q : weighted) weight.add(q.throughput[c]);
+            expectMean(ratio, exact[c], 0.02, fmt::format("transmittance {}", c));
+            expectMean(weight, exact[c], 0.02, fmt::format("weight {}", c));
+        }
     }
 }
 

@@ -21,6 +21,13 @@ double trilinear(const VoxelFunction& voxel, Vec3d at) {
 
 double lineIntegral(const VoxelFunction& voxel, const Box3i& box, Vec3d origin, Vec3d direction,
                     double t0, double t1) {
+    for (int axis = 0; axis < 3; ++axis) {  // outside the box all is zero
+        if (direction[axis] == 0) continue;
+        const double a = (box.lower[axis] - 1 - origin[axis]) / direction[axis];
+        const double b = (box.upper[axis] + 1 - origin[axis]) / direction[axis];
+        t0 = std::max(t0, std::min(a, b)), t1 = std::min(t1, std::max(a, b));
+    }
+    if (!(t0 < t1)) return 0;
     std::vector<double> planes{t0};
     if (std::isfinite(t1)) planes.push_back(t1);
     for (int axis = 0; axis < 3; ++axis) {

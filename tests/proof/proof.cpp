@@ -40,8 +40,8 @@ const char* nameOf(Verdict verdict) {
 
 double Case::z() const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (!std::isfinite(measured) || !std::isfinite(standardError)) return infinity;
     const double difference = measured - expected;
+    if (!std::isfinite(difference) || !std::isfinite(standardError)) return infinity;
     const double excess = std::max(0.0, std::abs(difference) - allowance);
     if (excess == 0) return 0;
     return std::copysign(standardError > 0 ? excess / standardError : infinity, difference);

@@ -2,7 +2,9 @@
 #include "woodcock/medium/refined_walk.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace woodcock {
 
@@ -51,20 +53,28 @@ struct Lattice {
     }
 };
 
+/// base + more, not rounded below it.
+float above(float base, double more) { return static_cast<float>((base + more) * (1 + slack)); }
+
 }  // namespace
 
-bool RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
-    if (tight_) return false;
-    cell_ = segment;
-    const Segment first = piece(part, ray, t);
-    if (tight_) segment = first;  // else it goes on as it was, from where it began
-    return tight_;
+float RefinedWalk::liveExtinction(const MediumPart& part) const {
+    float largest = 0;
+    for (int c = 0; c < 3; ++c)
+        if (live_ >> c & 1) largest = std::max(largest, part.extinction()[c]);
+    return largest;
+}
+
+void RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
+    if (!tight_) cell_ = segment;
+    segment = piece(part, ray, t);
 }
 
 /// From `t` to at most the end of the cell being cut and of the voxel cell that holds it.
 Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t) {
-    const double largest = part.largestExtinction();
+    const double largest = extinction_;
     collisions_ = 0;
+    stale_ = false;
     tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) > shallowCell;
     if (!tight_) return {t, cell_.t1, cell_.range};
     const Vec3d from = ray.at(t);
@@ -78,14 +88,27 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
         end = std::min(end, faceAhead());
     }
     const Field& field = *part.field();
+    const bool grey = field.channels() == 1;
     Range range;
     while (true) {
+        range = {std::numeric_limits<float>::infinity(), 0};
+        std::array<Range, 3> channel;
         float largestMin = 0;
         for (int c = 0; c < field.channels(); ++c) {
-            const Range r = Lattice(field, v, c).between(from, ray.at(end));
-            if (c == 0) range = r;
-            range.add(r);
-            largestMin = std::max(largestMin, r.min);
+            if (!grey && !(live_ >> c & 1)) continue;
+            Range& r = channel[static_cast<std::size_t>(c)];
+            r = Lattice(field, v, c).between(from, ray.at(end));
+            const double share = grey ? 1 : part.extinction()[c] / largest;
+            largestMin = std::max(largestMin, static_cast<float>(r.min * share));
+            range.min = std::min(range.min, r.min);
+        }
+        range.max = range.min;
+        for (int c = 0; c < field.channels(); ++c) {
+            // A channel of little extinction may have large values: what counts is the product,
+            // above the lower bound that all share.
+            const Range& r = channel[static_cast<std::size_t>(c)];
+            const double share = grey ? 1 : part.extinction()[c] / largest;
+            range.max = std::max(range.max, above(range.min, (double{r.max} - range.min) * share));
         }
         if (range.max <= closeRatio * largestMin) break;
         if (double{range.max} * largest * (end - t) <= shallow) break;

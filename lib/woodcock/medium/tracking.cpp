@@ -113,15 +113,13 @@ private:
     float threshold_, lowest_, killBelow_;
 };
 
-/// The largest sigma_t, per unit of the field, among channels that still carry anything: the others
-/// need no collisions. (Else a channel of optical depth 1e12 would set the pace of all.)
+/// The bits of channels that still carry something: see RefinedWalk::setLive().
 template <int N>
-float liveExtinction(const MediumPart& part, Spectrum<N> weight) {
-    if constexpr (N == 1) return part.largestExtinction();
-    float largest = 0;
-    for (int c = 0; c < N; ++c)
-        if (weight[c] > 0) largest = std::max(largest, part.extinction()[c]);
-    return largest;
+unsigned liveChannels(Spectrum<N> weight) {
+    if constexpr (N == 1) return 7;
+    unsigned live = 0;
+    for (int c = 0; c < N; ++c) live |= unsigned{weight[c] > 0} << c;
+    return live;
 }
 
 /// The tentative collisions of one part along a ray: a Poisson process at the rate of the majorant.
@@ -134,8 +132,9 @@ public:
           index_(index),
           ray_(part.indexRay(q.origin, q.direction)),
           walk_(part, ray_, q.tMax),
-          extinction_(liveExtinction<N>(part, q.throughput)),
-          depth_(-std::log(u)) {}
+          depth_(-std::log(u)) {
+        walk_.setLive(part, liveChannels<N>(q.throughput));
+    }
 
     const MediumPart& part() const { return *part_; }
     int index() const { return index_; }
@@ -149,9 +148,9 @@ public:
     template <int N>
     void redraw(double u, Spectrum<N> throughput) {
         depth_ = -std::log(u);
-        extinction_ = liveExtinction<N>(*part_, throughput);
+        walk_.setLive(*part_, liveChannels<N>(throughput));
         walk_.collided(*part_, ray_, t_, segment_);
-        mu_ = segment_.range.max * extinction_;
+        mu_ = segment_.range.max * walk_.extinction();
     }
 
     /// Goes on to the next collision before `limit`: true when there is one, at t(). Otherwise the
@@ -174,7 +173,7 @@ public:
             }
             ++counters.segments;
             t_ = segment_.t0;
-            mu_ = segment_.range.max * extinction_;
+            mu_ = segment_.range.max * walk_.extinction();
         }
     }
 
@@ -184,7 +183,7 @@ private:
     IndexRay ray_;
     RefinedWalk walk_;
     Segment segment_{0, 0, {}};
-    float extinction_, mu_ = 0;
+    float mu_ = 0;
     double t_ = 0, depth_;
     bool ended_ = false;
 };
@@ -250,6 +249,9 @@ double effort(float weight, float roulette) {
     return roulette > 0 ? std::clamp(0.5f * weight / roulette, 1.0f, 4.0f) : 1.0f;
 }
 
+/// exp() of minus this is zero as a float.
+constexpr double vanished = 104;
+
 /// Multiplies q.contribution by an estimate of one part's transmittance; false once it is killed.
 template <int N>
 bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
@@ -272,13 +274,19 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         const float weight = arrived().maximum();
         return roulette.kills(weight) || !(weight > 0);
     };
-    while (walk.next(part, ray, s)) {
+    const auto next = [&] {
+        if constexpr (N > 1)
+            walk.setLive(part, liveChannels<N>(Spectrum<N>::map([&](int c) {
+                             return control * extinction[c] < vanished ? ratio[c] : 0.0f;
+                         })));
+        return walk.next(part, ray, s);
+    };
+    while (next()) {
         ++counters.segments;
         const auto rateNow = [&] {
             const double width = s.range.max - s.range.min;
             if (!(width > 0)) return 0.0;
-            const Spectrum<N> weight = arrived();
-            return width * liveExtinction<N>(part, weight) * effort(weight.maximum(), q.roulette);
+            return width * walk.extinction() * effort(arrived().maximum(), q.roulette);
         };
         double rate = rateNow();
         double t = s.t0;
@@ -292,6 +300,7 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
             if (spent()) return false;
             depth = -std::log(q.random.uniformOpenLow());
             const double controlled = (t - s.t0) * s.range.min;
+            if constexpr (N > 1) walk.setLive(part, liveChannels<N>(arrived()));
             const bool cut = walk.collided(part, ray, t, s);
             if (cut) control += controlled;
             if (N > 1 || cut) rate = rateNow();
