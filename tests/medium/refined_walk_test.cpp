@@ -234,5 +234,28 @@ TEST(RefinedWalk, DeadChannelsAndLargeValuesSetNoPace) {
     }
 }
 
+/// A ray beside a spike in a haze: where the cell is cut, its lower bound, the haze, still
+/// counts for the way before the cut.
+TEST(RefinedWalk, HazeBesideASpikeCountsBeforeTheCut) {
+    constexpr float haze = 0.02f, extinction = 5;
+    PlainGrid grid;
+    for (int i = 0; i < 8; ++i)
+        grid.setLeaf({8 * (i & 1), 8 * (i >> 1 & 1), 8 * (i >> 2)}, [&](Vec3i v, int) {
+            return i == 0 && v == Vec3i{5, 3, 3} ? 1.0f : haze;
+        });
+    const Medium medium =
+        PlainMedium({{.grid = grid, .absorption = Rgb(extinction), .scattering = Rgb(0.0f)}})
+            .medium(1, 3);
+    Moments m;
+    for (int i = 0; i < 20000; ++i) {
+        TransmittanceQuery<1> q{{0, 1.5, 1.5}, {1, 0, 0}, 8, RandomStream(hashOf(11, i)), 0,
+                                Spectrum<1>(1)};
+        TrackingCounters counters;
+        trackTransmittance<1>(medium, {&q, 1}, counters);
+        m.add(q.contribution[0]);
+    }
+    expectMean(m, std::exp(-8.0 * haze * extinction), 0.005, "haze");
+}
+
 }  // namespace
 }  // namespace woodcock::test

@@ -60,10 +60,6 @@ defect "residual control dropped" 'Transmittance.*' "" \
     $tracking \
     'control += (s.t1 - s.t0) * s.range.min;' ''
 
-defect "start moved where nothing is cut" 'Transmittance.*:RefinedWalk.*' "" \
-    lib/woodcock/medium/refined_walk.cpp \
-    'if (tight_) segment = first;' 'segment = first;'
-
 defect "control of cut cells dropped" 'Transmittance.*:RefinedWalk.*' "" \
     $tracking \
     'if (cut) control += controlled;' 'if (cut) control += 0 * controlled;'
@@ -78,7 +74,8 @@ defect "every scattering is the first volume's" 'Distance.*' "" \
 
 defect "phase function samples the wrong side" 'Phase.*' "table of slabs" \
     lib/woodcock/medium/phase.h \
-    'const double s = 2 * u0 - 1;' 'const double s = 1 - 2 * u0;'
+    'const double cosine = below < above ? 1 - below : above - 1;' \
+    'const double cosine = below < above ? below - 1 : 1 - above;'
 
 # ---- light
 
