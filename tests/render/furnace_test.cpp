@@ -55,6 +55,33 @@ TEST_F(Furnace, NextEventEstimationAndScatteringShareTheLight) {
     expectAgrees(meanOverSeeds(scene, {48, 48, 4}, 32), {0.5, 0.5, 0.5}, 5e-4);
 }
 
+/// So do several, each of which is picked with a probability of its own.
+TEST(FurnaceOfABox, UnequalImagesShareTheLight) {
+    const TempDir dir;
+    std::string lights;
+    for (const float radiance : {0.3f, 0.1f}) {
+        const std::string name = fmt::format("sky{}.exr", radiance);
+        writeFloats(dir / name, 8, 4, 3, std::vector<float>(8 * 4 * 3, radiance));
+        lights += fmt::format("[[light]]\ntype = \"environment\"\nimage = \"{}\"\n", name);
+    }
+    const std::string box =
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_a = 0\nsigma_s = 2\n"
+        "g = 0.5\n";
+    const std::string camera = "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nfov = 30\n";
+    const Scene scene = sceneFrom(box + lights + camera, dir.path());
+    expectAgrees(meanOverSeeds(scene, {32, 32, 16}, 16), {0.4, 0.4, 0.4}, 1e-3);
+}
+
+/// From the middle of a conservative box many paths scatter often enough to meet the roulette that
+/// bounds their number.
+TEST(FurnaceOfABox, ThousandsOfScatteringsLoseNothing) {
+    const Scene scene = sceneFrom(
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_a = 0\nsigma_s = 100\n"
+        "[[light]]\ntype = \"environment\"\nradiance = 1\n"
+        "[camera]\neye = [0, 0, 0]\nlook_at = [0, 0, -1]\nfov = 30\n");
+    expectAgrees(meanOverSeeds(scene, {8, 8, 2}, 16), {1, 1, 1}, 0.02);
+}
+
 TEST_F(Furnace, OverlappingChromaticRotatedPair) {
     const std::string pair = volume("sigma_s = [0.8, 0.5, 0.3]\ng = 0.85") +
                              volume(
