@@ -24,7 +24,7 @@ Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, Pictu
               const std::function<double(const Film&)>& excess) {
     constexpr int side = 32;
     const int pilotSamples = lab.pick(4, 16);
-    constexpr double margin = 1.5, most = 1 << 20;  // the pilot's variance is a guess
+    const double margin = lab.pick(2.0, 1.5), most = 1 << 20;  // the pilot's variance is a guess
     picture.width = picture.height = side;
     picture.samples = pilotSamples, picture.seed = hashOf(lab.seed(name), 0);
     const double ratio = excess(renderScene(scene, picture).film);
