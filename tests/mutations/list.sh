@@ -6,7 +6,7 @@ tracking=lib/woodcock/medium/tracking.cpp
 
 # ---- grid
 
-defect "majorants 2 % too low" 'Majorants.*:CellWalks.*' "" \
+defect "majorants 2 % too low" 'Majorants.*:CellWalks.*' "intervals of the walk" \
     lib/woodcock/grid/majorants.cpp \
     'static_cast<float>(r.max * options.scale)' 'static_cast<float>(r.max * options.scale * 0.98)'
 
@@ -14,11 +14,11 @@ defect "block ranges without the neighbours' layer" 'Field.*:BlockRanges.*:Major
     lib/woodcock/grid/block_ranges.cpp \
     'r.add(field.storedRange(ref, layer(sideOf(i))));' ''
 
-defect "2^3 cells without their far corner" 'Majorants.*' "" \
+defect "2^3 cells without their far corner" 'Majorants.*' "intervals of the walk" \
     lib/woodcock/grid/majorants.cpp \
     'for (int j = 0; j < 27; ++j)' 'for (int j = 0; j < 26; ++j)'
 
-defect "tiles hold the background" 'Field.*:VdbLoad.*' "" \
+defect "tiles hold the background" 'Field.*:VdbLoad.*' "only tiles" \
     lib/woodcock/grid/field.cpp \
     'addConstant(t.value)' 'addConstant(source_.background)'
 
@@ -56,7 +56,7 @@ defect "null collisions weighted as if grey" 'Distance.*' "chromatic slabs" \
     $tracking \
     'null * static_cast<float>(1 / (mu * (1 - p)))' 'Spectrum<N>(1.0f)'
 
-defect "residual control dropped" 'Transmittance.*' "" \
+defect "residual control dropped" 'Transmittance.*' "linear ramp" \
     $tracking \
     'control += (s.t1 - s.t0) * s.range.min;' ''
 
@@ -72,24 +72,24 @@ defect "every scattering is the first volume's" 'Distance.*' "" \
     $tracking \
     'q.t = process.t(), q.part = process.index();' 'q.t = process.t(), q.part = 0;'
 
-defect "phase function samples the wrong side" 'Phase.*' "table of slabs" \
+defect "phase function samples the wrong side" 'Phase.*' "phase function" \
     lib/woodcock/medium/phase.h \
     'const double cosine = below < above ? 1 - below : above - 1;' \
     'const double cosine = below < above ? below - 1 : 1 - above;'
 
 # ---- light
 
-defect "sun's irradiance without the cosine" 'Sun.*' "" \
+defect "sun's irradiance without the cosine" 'Sun.*' "sun" \
     lib/woodcock/light/light.cpp \
     'irradiance_ * static_cast<float>(1 / (pi * sinHalf_ * sinHalf_))' \
     'irradiance_ * static_cast<float>(1 / (2 * pi * oneMinusCos_))'
 
-defect "sphere's solid angle as if it were flat" 'SphereLight.*' "" \
+defect "sphere's solid angle as if it were flat" 'SphereLight.*' "lamps" \
     lib/woodcock/light/light.cpp \
     's.weight = radiance * static_cast<float>(1 / s.pdf);' \
     's.weight = radiance * static_cast<float>(pi * sin2);'
 
-defect "image sampled evenly in angle" 'EnvironmentMap.*' "" \
+defect "image sampled evenly in angle" 'EnvironmentMap.*' "environment images" \
     lib/woodcock/light/environment_map.cpp \
     'const double cosine = top + (bottom - top) * fy;' \
     'const double cosine = std::cos(pi * (static_cast<double>(y) + fy) / height_);'
@@ -110,7 +110,7 @@ defect "MIS forgets how a light was picked" 'Furnace*:LocalLights.*' "" \
     $tracer \
     'powerHeuristic(s.pdf * pick_[k], phase)' 'powerHeuristic(s.pdf, phase)'
 
-defect "lamps counted by both samplings" 'PointLight.*:SphereLight.*' "" \
+defect "lamps counted by both samplings" 'PointLight.*:SphereLight.*' "airlight" \
     $tracer \
     '(pdf + flightDensity(e, t))' 'pdf'
 
@@ -122,7 +122,7 @@ defect "numbers used twice" 'Slab.*:Furnace.*' "table of slabs" \
     $tracer \
     'p.sequence.draw(set + 1)' 'p.sequence.draw(set)'
 
-defect "roulette of high orders without factor" 'Furnace*' "" \
+defect "roulette of high orders without factor" 'Furnace*' "furnace at any depth" \
     $tracer \
     'p.throughput *= 1.41421356f;' ''
 
