@@ -24,8 +24,8 @@ Precision usualPrecision(const Lab& lab);
 Scene sceneIn(const Lab& lab, const std::string& text);
 
 /// A picture of a scene all of whose pixels expect the same (see pencilCamera), with as many
-/// samples as it takes: `excess` says how many times larger than wanted a film's error is. A pilot
-/// tells, and is thrown away, so that the answer stays unbiased.
+/// samples as it takes: `excess` says how many times larger than wanted a film's error is. Films
+/// that are too noisy tell how many, and are thrown away: no answer is part of its own plan.
 Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, test::Picture picture,
               const std::function<double(const Film&)>& excess);
 

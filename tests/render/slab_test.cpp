@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slab of voxels, as wide as infinite, against numbers of radiative transfer.
+// Slabs of voxels through the whole program; tests/proof/slabs.cpp goes through tables of them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -85,18 +85,9 @@ class Slab : public testing::TestWithParam<Row> {};
 /// unscattered part; g = 0.75, depth 2, albedo 0.9 is also in van de Hulst 1980. Optical depth is
 /// the only coordinate of a slab: any layers of the same sum answer alike.
 INSTANTIATE_TEST_SUITE_P(AddingDoubling, Slab,
-                         testing::Values(Row{0, 0.1, 1, .047689, .952311, even, 512},
-                                         Row{0, 1, 0.5, .099119, .446058, layered, 256},
-                                         Row{0, 1, 0.99, .332922, .650978, even, 128},
-                                         Row{0, 4, 0.9, .408142, .128524, layered, 256},
-                                         Row{0, 4, 1, .690926, .309074, even, 128},
+                         testing::Values(Row{0, 4, 1, .690926, .309074, even, 128},
                                          Row{0.5, 1, 0.9, .129793, .739091, layered, 256},
-                                         Row{0.5, 4, 0.99, .469796, .452650, layered, 64},
-                                         Row{0.5, 16, 1, .820976, .179024, even, 256},
-                                         Row{0.75, 1, 0.5, .015109, .564612, even, 512},
-                                         Row{0.75, 2, 0.9, .097395, .660958, even, 256},
-                                         Row{0.75, 2, 0.9, .097395, .660958, layered, 256},
-                                         Row{0.75, 8, 1, .506415, .493585, layered, 64}));
+                                         Row{0.75, 2, 0.9, .097395, .660958, layered, 256}));
 
 TEST_P(Slab, ReflectsAndTransmitsAsTheTablesSay) {
     const Row& row = GetParam();
