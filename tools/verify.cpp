@@ -153,7 +153,7 @@ CLI::App& addVerifyCommand(CLI::App& app) {
         "that any volume has");
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick, "two digits, in about a minute (the default)");
-    command->add_flag("--full", options->full, "three digits and more, in about half an hour");
+    command->add_flag("--full", options->full, "three digits for tables of slabs; takes many times as long");
     command
         ->add_option("--only", options->only,
                      "checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")
