@@ -3,67 +3,35 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/proof/measure.h"
 #include "tests/support/expect_estimate.h"
-#include "tests/support/paths.h"
 #include "tests/support/read_back.h"
-#include "tests/support/render_scene.h"
 #include "tests/support/run_program.h"
-#include "tests/support/write_vdb.h"
 
 namespace woodcock::test {
 namespace {
 
-/// Layers of voxels in y, each of optical thickness proportional to `weights`, `depth` in all. The
-/// linear ramps beyond the first and last layer belong to it: the sum over voxels is the integral.
-/// One voxel is 1 high and `width` wide.
-void writeSlab(const std::filesystem::path& file, double depth, const std::vector<double>& weights,
-               double width) {
-    double sum = 0;
-    for (const double w : weights) sum += w;
-    GridSpec grid;
-    grid.box = {{0, 0, 0}, {15, static_cast<int>(weights.size()) - 1, 15}};
-    grid.value = [=](Vec3i p) { return depth * weights[static_cast<std::size_t>(p.y)] / sum; };
-    grid.worldFromIndex =
-        Affine3d::translate({-7.5 * width, 0, -7.5 * width}) * Affine3d::scale({width, 1, width});
-    writeVdb(file, {grid});
-}
 const std::vector<double> even{1, 1, 1, 1};
 const std::vector<double> layered{5, 0, 1, 0.125, 0, 0, 8, 3, 0.5, 2, 0, 4};
-constexpr double wide = 1e6;
 
-/// A sky that is red above the horizon and blue below. Bilinear interpolation smears the horizon
-/// over a row, an angle a = pi / rows. What leaves (or enters) a slab within a / 2 of its plane is
-/// below sin^2(a / 2) of the flux: 4e-5 of the answer with 256 rows.
-void writeSky(const std::filesystem::path& file) {
-    constexpr int rows = 256, columns = 4;
-    std::vector<float> rgb;
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x)
-            for (const float v : {y < rows / 2 ? 1.0f : 0.0f, 0.0f, y < rows / 2 ? 0.0f : 1.0f})
-                rgb.push_back(v);
-    writeFloats(file, columns, rows, 3, rgb);
-}
-
-std::string slabScene(double albedo, double g, const std::string& light, int samples) {
+std::string slabScene(double depth, double albedo, double g, int samples) {
     return fmt::format(
-               "[[volume]]\nfile = \"slab.vdb\"\nscale = 1\nalbedo = {}\ng = {}\n"
-               "{}[render]\nresolution = [32, 32]\nspp = {}\n",
-               albedo, g, light, samples) +
-           pencilCamera({0, 50, 0}, {0, -1, 0});
+        "[[volume]]\nfile = \"slab.vdb\"\nscale = {}\nalbedo = {}\ng = {}\n"
+        "{}[render]\nresolution = [32, 32]\nspp = {}\n{}",
+        depth, albedo, g, proof::twoColouredSky, samples, proof::cameraAbove(1));
 }
-const std::string sky = "[[light]]\ntype = \"environment\"\nimage = \"sky.exr\"\n";
 
 /// Reflectance and transmittance as the program renders them, from pixels that all look straight
 /// down: by reciprocity the radiance seen is the slab's answer to a beam.
 struct Answer {
     Estimate reflected, transmitted;
 };
-Answer throughTheProgram(const TempDir& dir, const std::string& scene) {
-    writeText(dir / "slab.toml", scene);
+Answer throughTheProgram(const proof::Lab& lab, const std::string& scene) {
+    writeText(lab.file("slab.toml"), scene);
     const ProgramResult run = runProgram(
-        {"render", (dir / "slab.toml").string(), "-o", (dir / "slab.exr").string(), "--quiet"});
+        {"render", lab.file("slab.toml").string(), "-o", lab.file("slab.exr").string(), "--quiet"});
     EXPECT_EQ(run.exitCode, 0) << run.err;
-    const ReadBack image = readBack(dir / "slab.exr");
+    const ReadBack image = readBack(lab.file("slab.exr"));
     Moments red, blue;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
@@ -91,20 +59,21 @@ INSTANTIATE_TEST_SUITE_P(AddingDoubling, Slab,
 
 TEST_P(Slab, ReflectsAndTransmitsAsTheTablesSay) {
     const Row& row = GetParam();
-    const TempDir dir;
-    writeSky(dir / "sky.exr");
-    writeSlab(dir / "slab.vdb", row.depth, row.layers, wide);
-    const Answer a = throughTheProgram(dir, slabScene(row.albedo, row.g, sky, row.samples));
+    const proof::Lab lab({});
+    proof::writeTwoColouredSky(lab);
+    proof::writeSlab(lab, "slab.vdb", row.layers);
+    const Answer a = throughTheProgram(lab, slabScene(row.depth, row.albedo, row.g, row.samples));
     expectAgrees(a.reflected, row.reflected, 5e-3);
     expectAgrees(a.transmitted, row.transmitted, 5e-3);
 }
 
 TEST(Slab, IsWideEnough) {
-    const TempDir dir;
-    writeSky(dir / "sky.exr");
+    constexpr double wide = 1e6;
+    const proof::Lab lab({});
+    proof::writeTwoColouredSky(lab);
     const auto reflected = [&](double width) {
-        writeSlab(dir / "slab.vdb", 4, even, width);
-        return throughTheProgram(dir, slabScene(1, 0, sky, 64)).reflected;
+        proof::writeSlab(lab, "slab.vdb", even, width);
+        return throughTheProgram(lab, slabScene(4, 1, 0, 64)).reflected;
     };
     const Estimate infinite = reflected(wide);
     expectAgree(reflected(10 * wide), infinite, 5e-3);
