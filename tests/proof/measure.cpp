@@ -15,7 +15,11 @@ using namespace test;
 double Precision::of(double value) const { return std::max(floor, relative * std::abs(value)); }
 
 Precision usualPrecision(const Lab& lab) {
-    return lab.full() ? Precision{5e-4, 5e-7} : Precision{1e-2, 1e-4};
+    return lab.full() ? Precision{5e-4, 5e-6} : Precision{1e-2, 1e-4};
+}
+
+Precision dearPrecision(const Lab& lab) {
+    return lab.full() ? Precision{2e-3, 2e-5} : usualPrecision(lab);
 }
 
 Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, lab.directory()); }

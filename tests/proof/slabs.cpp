@@ -81,8 +81,7 @@ Measured measure(const Lab& lab, const Parameters& p, const Precision& precision
 }
 
 void addSlab(Lab& lab, const Parameters& p, double reflected, double transmitted, double rounding,
-             const std::string& source, Divide divide) {
-    const Precision precision = usualPrecision(lab);
+             const std::string& source, const Precision& precision, Divide divide) {
     const Measured m = measure(lab, p, precision, divide);
     const auto add = [&](const char* what, double expected, const test::Estimate& measured) {
         if (expected < 4 * precision.floor) return;  // too few paths to know their scatter
@@ -100,12 +99,13 @@ void addSlab(Lab& lab, const Parameters& p, double reflected, double transmitted
 /// The table of reflectance and transmittance along the normal, layers of either kind in turn.
 void table(Lab& lab) {
     writeProfiles(lab);
+    const Precision precision = usualPrecision(lab);
     int row = 0;
     for (const oracle::ComputedSlab& s : oracle::computedSlabs) {
         if (!lab.full() && s.albedo != 0.9 && s.albedo != 1) continue;
         addSlab(lab, {s.g, s.opticalDepth, s.albedo, 1, row++ % 2 ? layered : even}, s.reflectance,
-                s.transmittance, 5e-7, "table of six decimals",
-                row % 4 < 2 ? Divide::Sky : Divide::Boxes);
+                s.transmittance, 5e-7, "table of six decimals", precision,
+                !lab.full() && row % 4 < 2 ? Divide::Sky : Divide::Boxes);  // a third of the cost
     }
 }
 
@@ -121,17 +121,18 @@ void beyondTheTables(Lab& lab) {
     };
     for (const Parameters& p : list) {
         if (!lab.full() && p.depth > 10) continue;  // thousands of scatterings
+        const Precision precision = p.depth > 50 ? Precision{5e-3, 2e-5} : dearPrecision(lab);
         const oracle::SlabAnswer answer =
             oracle::solveSlab({.layers = {{p.depth, p.albedo, p.g}}}, {p.mu});
         addSlab(lab, p, answer.above.reflectance[0], answer.above.transmittance[0], 3e-6,
-                "adding-doubling", Divide::Boxes);
+                "adding-doubling", precision, Divide::Boxes);
     }
 }
 
 /// Each channel has a depth, an albedo and an asymmetry of its own grid's making.
 void chromatic(Lab& lab) {
     writeProfiles(lab);
-    const Precision precision = usualPrecision(lab);
+    const Precision precision = dearPrecision(lab);
     struct Set {
         double sigmaA[3], sigmaS[3], g, mu;
     };
@@ -177,7 +178,7 @@ void chromatic(Lab& lab) {
 /// sharp.
 void stacks(Lab& lab) {
     writeTwoColouredSky(lab);
-    const Precision precision = usualPrecision(lab);
+    const Precision precision = dearPrecision(lab);
     const std::vector<std::vector<oracle::Layer>> all{{{1, 0.99, 0.8}, {2, 0.6, 0}},
                                                       {{0.5, 1, -0.4}, {4, 1, 0.9}},
                                                       {{1, 0.2, 0}, {0.5, 1, 0.5}, {3, 0.95, 0}}};
@@ -244,7 +245,7 @@ test::Estimate whiteSky(const Lab& lab, Parameters p, const Precision& precision
 /// Published numbers that are not of beams along the normal.
 void diffuseLight(Lab& lab) {
     writeProfiles(lab);
-    const Precision precision = usualPrecision(lab), rough{2 * precision.relative, precision.floor};
+    const Precision precision = dearPrecision(lab);
     for (const oracle::PublishedRadiance& r : oracle::disortRadiances) {
         Case c = caseOf(fmt::format("radiance at mu {} of depth 32, albedo 0.99", r.mu), r.radiance,
                         measure(lab, {0, 32, 0.99, r.mu}, precision, Part::Reflected), precision);
@@ -253,15 +254,16 @@ void diffuseLight(Lab& lab) {
     }
     Case flux =
         caseOf("flux back from depth 32, albedo 0.99, over pi", oracle::disortReflectedFlux / pi,
-               whiteSky(lab, {0, 32, 0.99, 0}, rough, Part::Reflected), precision);
+               whiteSky(lab, {0, 32, 0.99, 0}, precision, Part::Reflected), precision);
     flux.allowance += 2e-6 + horizonAllowance, flux.note = "DISORT 1f";
     lab.add(flux);
     for (const oracle::PublishedTransmittance& t : oracle::conservativeSlabs) {
         if (!lab.full() && t.opticalDepth != 1) continue;  // eight pictures each
-        Case c = caseOf(fmt::format("diffuse light through depth {}, albedo 1", t.opticalDepth),
-                        t.whiteSkyTransmittance,
-                        whiteSky(lab, {0, t.opticalDepth, 1, 0, layered}, rough, Part::Transmitted),
-                        precision);
+        Case c =
+            caseOf(fmt::format("diffuse light through depth {}, albedo 1", t.opticalDepth),
+                   t.whiteSkyTransmittance,
+                   whiteSky(lab, {0, t.opticalDepth, 1, 0, layered}, precision, Part::Transmitted),
+                   precision);
         // Eight angles miss 1e-4 at most of what grazing light does to thin slabs.
         c.allowance += 5e-7 + horizonAllowance + (t.opticalDepth < 1 ? 1e-4 : 1e-5);
         c.note = "Heaslet and Warming 1965";
