@@ -15,7 +15,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/image/outputs.h"
-#include "woodcock/image/whole_file.h"
+#include "woodcock/base/whole_file.h"
 #include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"

@@ -15,7 +15,7 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/grid/vdb_file.h"
-#include "woodcock/image/whole_file.h"
+#include "woodcock/base/whole_file.h"
 
 namespace woodcock::tool {
 

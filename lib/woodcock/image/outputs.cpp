@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/whole_file.h"
 #include "woodcock/image/image_format.h"
-#include "woodcock/image/whole_file.h"
 #include "woodcock/image/write_display.h"
 
 namespace woodcock {

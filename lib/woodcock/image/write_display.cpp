@@ -5,9 +5,9 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
+#include "woodcock/base/whole_file.h"
 #include "woodcock/image/encode_image.h"
 #include "woodcock/image/image_format.h"
-#include "woodcock/image/whole_file.h"
 
 namespace woodcock {
 

@@ -7,8 +7,8 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/version.h"
+#include "woodcock/base/whole_file.h"
 #include "woodcock/image/encode_image.h"
-#include "woodcock/image/whole_file.h"
 
 namespace woodcock {
 

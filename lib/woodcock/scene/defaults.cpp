@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/base/path_variables.h"
+#include "woodcock/base/toml_text.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/outline.h"
-#include "woodcock/scene/path_variables.h"
-#include "woodcock/scene/toml_text.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock {

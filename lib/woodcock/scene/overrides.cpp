@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "woodcock/base/error.h"
-#include "woodcock/scene/toml_reader.h"
-#include "woodcock/scene/toml_text.h"
+#include "woodcock/base/toml_reader.h"
+#include "woodcock/base/toml_text.h"
 
 namespace woodcock {
 namespace {

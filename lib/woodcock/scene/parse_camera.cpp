@@ -6,7 +6,7 @@
 namespace woodcock {
 namespace {
 
-PartialPose parsePartialPose(const SceneTable& table) {
+PartialPose parsePartialPose(const TomlTable& table) {
     PartialPose given;
     if (const auto v = table.find("eye")) given.eye = v->vector();
     if (const auto v = table.find("look_at")) given.target = v->vector();
@@ -19,10 +19,10 @@ PartialPose parsePartialPose(const SceneTable& table) {
     return given;
 }
 
-LookAt parseLookAt(const SceneTable& table) {
+LookAt parseLookAt(const TomlTable& table) {
     LookAt pose;
     pose.eye = table.find("eye")->vector();
-    const SceneValue target = *table.find("look_at");
+    const TomlValue target = *table.find("look_at");
     pose.target = target.vector();
     const Vec3d view = pose.target - pose.eye;
     if (!(length(view) > 0) || !std::isfinite(length(view)))
@@ -41,7 +41,7 @@ LookAt parseLookAt(const SceneTable& table) {
 }
 
 /// A camera to world matrix, freed of its scale.
-Affine3d parsePose(const SceneValue& value) {
+Affine3d parsePose(const TomlValue& value) {
     Affine3d pose = value.affine();
     const double size = std::cbrt(std::abs(pose.determinant()));
     constexpr double tolerance = 1e-4;  // of matrices that were written in single precision
@@ -63,7 +63,7 @@ double fovOf(double sensorHeight, double focalLength) {
     return 2 * std::atan(sensorHeight / (2 * focalLength)) * 180 / pi;
 }
 
-double parseFov(const SceneTable& table, double aspect, double otherwise) {
+double parseFov(const TomlTable& table, double aspect, double otherwise) {
     const std::string why = "the angle follows from the focal length and the sensor";
     for (const char* key : {"focal_length", "sensor_height", "sensor_width"})
         table.exclude(key, "fov", why);
@@ -89,7 +89,7 @@ double parseFov(const SceneTable& table, double aspect, double otherwise) {
 
 }  // namespace
 
-CameraDescription parseCamera(const SceneTable& table, double aspect) {
+CameraDescription parseCamera(const TomlTable& table, double aspect) {
     CameraDescription camera;
     if (const auto type = table.find("type"))
         camera.kind = type->choice("camera type",

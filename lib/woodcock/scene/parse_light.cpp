@@ -6,7 +6,7 @@
 namespace woodcock {
 namespace {
 
-UpAxis parseUp(const SceneTable& table) {
+UpAxis parseUp(const TomlTable& table) {
     const auto up = table.find("up");
     return up && up->choice("up axis", std::array<std::string, 2>{"y", "z"}) == 1 ? UpAxis::Z
                                                                                   : UpAxis::Y;
@@ -21,7 +21,7 @@ Vec3d sunDirection(double elevation, double azimuth, UpAxis up) {
                            : Vec3d{-right, -ahead, -std::sin(e)};
 }
 
-Vec3d parseDirection(const SceneTable& table) {
+Vec3d parseDirection(const TomlTable& table) {
     const std::string why = "both say where the sun stands";
     table.exclude("elevation", "direction", why);
     table.exclude("azimuth", "direction", why);
@@ -43,7 +43,7 @@ Vec3d parseDirection(const SceneTable& table) {
                         parseUp(table));
 }
 
-SunDescription parseSun(const SceneTable& table) {
+SunDescription parseSun(const TomlTable& table) {
     table.allowOnly({"type", "direction", "elevation", "azimuth", "up", "irradiance",
                      "angular_diameter", "visible"},
                     "a [[light]] of type sun");
@@ -61,8 +61,7 @@ SunDescription parseSun(const SceneTable& table) {
     return sun;
 }
 
-EnvironmentDescription parseEnvironment(const SceneTable& table,
-                                        const std::filesystem::path& base) {
+EnvironmentDescription parseEnvironment(const TomlTable& table, const std::filesystem::path& base) {
     table.allowOnly({"type", "radiance", "image", "rotation", "up", "visible"},
                     "a [[light]] of type environment");
     EnvironmentDescription environment;
@@ -74,7 +73,7 @@ EnvironmentDescription parseEnvironment(const SceneTable& table,
     return environment;
 }
 
-PointDescription parsePoint(const SceneTable& table) {
+PointDescription parsePoint(const TomlTable& table) {
     table.allowOnly({"type", "position", "intensity", "power"}, "a [[light]] of type point");
     table.exclude("power", "intensity", "power = 4 pi x intensity");
     PointDescription point;
@@ -85,7 +84,7 @@ PointDescription parsePoint(const SceneTable& table) {
     return point;
 }
 
-SphereDescription parseSphere(const SceneTable& table) {
+SphereDescription parseSphere(const TomlTable& table) {
     table.allowOnly({"type", "position", "radius", "radiance", "power", "visible"},
                     "a [[light]] of type sphere");
     table.exclude("power", "radiance", "power = 4 pi^2 radius^2 x radiance");
@@ -106,7 +105,7 @@ SphereDescription parseSphere(const SceneTable& table) {
 
 }  // namespace
 
-LightDescription parseLight(const SceneTable& table, const std::filesystem::path& base) {
+LightDescription parseLight(const TomlTable& table, const std::filesystem::path& base) {
     const std::array<std::string, 4> types{"sun", "point", "sphere", "environment"};
     LightDescription light;
     switch (table.need("type", "type = \"sun\"").choice("light type", types)) {

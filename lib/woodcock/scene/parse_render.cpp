@@ -12,7 +12,7 @@ constexpr int largestCount = std::numeric_limits<int>::max();
 
 /// What `read` makes of a value's text; its complaints gain the value's place.
 template <class Read>
-auto readText(const SceneValue& value, Read read) {
+auto readText(const TomlValue& value, Read read) {
     const std::string text = value.text();
     try {
         return read(text);
@@ -21,10 +21,10 @@ auto readText(const SceneValue& value, Read read) {
     }
 }
 
-std::vector<std::string> parseLayers(const SceneValue& value) {
+std::vector<std::string> parseLayers(const TomlValue& value) {
     const std::array<std::string, 4> known{"depth", "transmittance", "samples", "error"};
     std::vector<std::string> layers;
-    for (const SceneValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
+    for (const TomlValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
         const std::string& layer = known[element.choice("layer", known)];
         if (std::find(layers.begin(), layers.end(), layer) != layers.end())
             throw element.error("repeats the layer '{}'", layer);
@@ -33,14 +33,14 @@ std::vector<std::string> parseLayers(const SceneValue& value) {
     return layers;
 }
 
-std::filesystem::path parseOutputFile(const SceneValue& value, const std::filesystem::path& base) {
+std::filesystem::path parseOutputFile(const TomlValue& value, const std::filesystem::path& base) {
     readText(value, [](const std::string& text) { return imageFormat(text); });
     return value.path(base);
 }
 
 }  // namespace
 
-RenderDescription parseRender(const SceneTable& table) {
+RenderDescription parseRender(const TomlTable& table) {
     table.allowOnly(
         {"resolution", "spp", "seed", "max_scatterings", "time_limit", "noise", "majorant_scale"},
         "[render]");
@@ -62,11 +62,11 @@ RenderDescription parseRender(const SceneTable& table) {
     return render;
 }
 
-OutputDescription parseOutput(const SceneTable& table, const std::filesystem::path& base) {
+OutputDescription parseOutput(const TomlTable& table, const std::filesystem::path& base) {
     table.allowOnly({"files", "layers", "half", "display", "view", "look", "exposure"}, "[output]");
     OutputDescription output;
     if (const auto v = table.find("files"))
-        for (const SceneValue& file : v->elements("a list of files, such as [\"smoke.exr\"]"))
+        for (const TomlValue& file : v->elements("a list of files, such as [\"smoke.exr\"]"))
             output.files.push_back(parseOutputFile(file, base));
     if (const auto v = table.find("layers")) output.layers = parseLayers(*v);
     if (const auto v = table.find("half")) output.half = v->flag();

@@ -3,18 +3,18 @@
 
 #include <filesystem>
 
+#include "woodcock/base/toml_reader.h"
 #include "woodcock/scene/description.h"
-#include "woodcock/scene/toml_reader.h"
 
 namespace woodcock {
 
 // The sections of a scene file, one function each. Of scene/ only; all throw Error{Input}.
 
-VolumeDescription parseVolume(const SceneTable& table, const std::filesystem::path& base);
-LightDescription parseLight(const SceneTable& table, const std::filesystem::path& base);
+VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::path& base);
+LightDescription parseLight(const TomlTable& table, const std::filesystem::path& base);
 /// `aspect` is the image's width over its height: a sensor's width needs it.
-CameraDescription parseCamera(const SceneTable& table, double aspect);
-RenderDescription parseRender(const SceneTable& table);
-OutputDescription parseOutput(const SceneTable& table, const std::filesystem::path& base);
+CameraDescription parseCamera(const TomlTable& table, double aspect);
+RenderDescription parseRender(const TomlTable& table);
+OutputDescription parseOutput(const TomlTable& table, const std::filesystem::path& base);
 
 }  // namespace woodcock

@@ -14,16 +14,16 @@ const std::string mixedUp =
     "sigma_a and sigma_s say what scale and albedo say (sigma_t = scale x density, "
     "sigma_s = albedo x sigma_t)";
 
-double parseG(const SceneValue& value) {
+double parseG(const TomlValue& value) {
     const double g = value.number({-1, 1, true});
     if (std::abs(g) > largestG)
         throw value.error("is {}; it must lie between {} and {}", g, -largestG, largestG);
     return g;
 }
 
-GridCoefficient parseGridCoefficient(const SceneValue& value, const std::string& density) {
+GridCoefficient parseGridCoefficient(const TomlValue& value, const std::string& density) {
     if (!value.isTable()) return {density, value.colour(notNegative)};
-    const SceneTable table = value.table();
+    const TomlTable table = value.table();
     table.allowOnly({"grid", "scale"}, value.name());
     GridCoefficient coefficient;
     coefficient.grid = table.need("grid", "grid = \"absorption\"").text();
@@ -31,7 +31,7 @@ GridCoefficient parseGridCoefficient(const SceneValue& value, const std::string&
     return coefficient;
 }
 
-DensityCoefficients parseDensity(const SceneTable& table, const std::string& density) {
+DensityCoefficients parseDensity(const TomlTable& table, const std::string& density) {
     DensityCoefficients c;
     c.density = density;
     if (const auto v = table.find("scale")) c.scale = v->colour(notNegative);
@@ -40,19 +40,19 @@ DensityCoefficients parseDensity(const SceneTable& table, const std::string& den
     return c;
 }
 
-SeparateCoefficients parseSeparate(const SceneTable& table, const std::string& density) {
+SeparateCoefficients parseSeparate(const TomlTable& table, const std::string& density) {
     SeparateCoefficients c;
     if (const auto v = table.find("sigma_a")) c.sigmaA = parseGridCoefficient(*v, density);
     if (const auto v = table.find("sigma_s")) c.sigmaS = parseGridCoefficient(*v, density);
     return c;
 }
 
-Box3d parseBounds(const SceneValue& value) {
-    const SceneTable table = value.table();
+Box3d parseBounds(const TomlValue& value) {
+    const TomlTable table = value.table();
     table.allowOnly({"min", "max"}, value.name());
     Box3d box;
     box.lower = table.need("min", "min = [0, 0, 0]").vector();
-    const SceneValue upper = table.need("max", "max = [1, 1, 1]");
+    const TomlValue upper = table.need("max", "max = [1, 1, 1]");
     box.upper = upper.vector();
     for (int i = 0; i < 3; ++i)
         if (!(box.lower[i] < box.upper[i]))
@@ -61,7 +61,7 @@ Box3d parseBounds(const SceneValue& value) {
     return box;
 }
 
-HomogeneousBox parseBox(const SceneTable& table, const SceneValue& box) {
+HomogeneousBox parseBox(const TomlTable& table, const TomlValue& box) {
     for (const char* key : {"density", "albedo_grid", "storage", "repair"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
@@ -81,8 +81,8 @@ HomogeneousBox parseBox(const SceneTable& table, const SceneValue& box) {
     return c;
 }
 
-Affine3d parseTransform(const SceneValue& value) {
-    const SceneTable table = value.table();
+Affine3d parseTransform(const TomlValue& value) {
+    const TomlTable table = value.table();
     table.allowOnly({"translate", "rotate", "scale"}, value.name());
     Vec3d translate, rotate, scale{1, 1, 1};
     if (const auto v = table.find("translate")) translate = v->vector();
@@ -98,7 +98,7 @@ Affine3d parseTransform(const SceneValue& value) {
 
 }  // namespace
 
-VolumeDescription parseVolume(const SceneTable& table, const std::filesystem::path& base) {
+VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::path& base) {
     table.allowOnly({"file", "box", "density", "scale", "albedo", "albedo_grid", "sigma_a",
                      "sigma_s", "g", "transform", "matrix", "storage", "repair"},
                     "[[volume]]");

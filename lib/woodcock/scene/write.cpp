@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "woodcock/base/error.h"
-#include "woodcock/scene/path_variables.h"
-#include "woodcock/scene/toml_text.h"
+#include "woodcock/base/path_variables.h"
+#include "woodcock/base/toml_text.h"
 
 namespace woodcock {
 namespace {

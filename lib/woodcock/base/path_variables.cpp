@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/path_variables.h"
+#include "woodcock/base/path_variables.h"
 
 #include <cctype>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/toml_text.h"
+#include "woodcock/base/toml_text.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/image/whole_file.h"
+#include "woodcock/base/whole_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

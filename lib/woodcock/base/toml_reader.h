@@ -16,8 +16,8 @@
 
 namespace woodcock {
 
-// How the scene parser reads TOML: every value knows its place in the file and the name that
-// messages call it by, and throws Error{Input} when it is not what was expected. Of scene/ only.
+// How scenes and recipes are read from TOML: every value knows its place in the file and the name
+// that messages call it by, and throws Error{Input} when it is not what was expected.
 
 /// The source path of values that come from an override starts with this.
 inline constexpr std::string_view overrideMark = "--set ";
@@ -34,12 +34,19 @@ struct NumberRange {
 inline constexpr NumberRange notNegative{0};
 inline constexpr NumberRange positive{.lower = 0, .strict = true};
 
-class SceneTable;
+class TomlTable;
 
-/// A value of the scene file, named by its path of keys, such as "volume[0].scale".
-class SceneValue {
+/// Parses a text; `name` stands for the file in messages. Errors: Input, with the place.
+toml::table parseToml(std::string_view text, const std::string& name);
+
+/// The text of a small file; `what` names its kind ("scene file") in messages. Errors: Input when
+/// it is missing, unreadable, or larger than anybody writes.
+std::string readTomlFile(const std::filesystem::path& file, std::string_view what);
+
+/// A value of the file, named by its path of keys, such as "volume[0].scale".
+class TomlValue {
 public:
-    SceneValue(const toml::node& node, std::string name) : node_(&node), name_(std::move(name)) {}
+    TomlValue(const toml::node& node, std::string name) : node_(&node), name_(std::move(name)) {}
 
     const std::string& name() const { return name_; }
     std::string place() const { return placeOf(node_->source()); }
@@ -60,11 +67,11 @@ public:
     std::filesystem::path path(const std::filesystem::path& base) const;
     /// The index in `known` of this text; `what` names the kind of thing ("light type").
     size_t choice(std::string_view what, std::span<const std::string> known) const;
-    SceneValue element(size_t i) const;
+    TomlValue element(size_t i) const;
     /// The elements of an array, `size` of them if given; `expected` says what is, where it is not.
-    std::vector<SceneValue> elements(std::string_view expected,
-                                     std::optional<size_t> size = {}) const;
-    SceneTable table() const;
+    std::vector<TomlValue> elements(std::string_view expected,
+                                    std::optional<size_t> size = {}) const;
+    TomlTable table() const;
 
     /// "place: name message".
     template <class... A>
@@ -80,19 +87,19 @@ private:
     std::string name_;
 };
 
-/// A table of the scene file.
-class SceneTable {
+/// A table of the file.
+class TomlTable {
 public:
     /// `name` is empty for the file itself.
-    SceneTable(const toml::table& table, std::string name)
+    TomlTable(const toml::table& table, std::string name)
         : table_(&table), name_(std::move(name)) {}
 
     const std::string& name() const { return name_; }
     std::string place() const { return placeOf(table_->source()); }
     bool has(std::string_view key) const { return table_->contains(key); }
-    std::optional<SceneValue> find(std::string_view key) const;
+    std::optional<TomlValue> find(std::string_view key) const;
     /// Throws when there is no such key; `example` shows how to give it.
-    SceneValue need(std::string_view key, std::string_view example) const;
+    TomlValue need(std::string_view key, std::string_view example) const;
     /// Throws on the first key of the file that is not `known`; `where` names the table to the
     /// user.
     void allowOnly(const std::vector<std::string>& known, std::string_view where) const;

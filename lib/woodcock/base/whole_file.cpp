@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/image/whole_file.h"
+#include "woodcock/base/whole_file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -36,14 +36,27 @@ int writeBytes(const fs::path& file, std::span<const unsigned char> bytes) {
 
 }  // namespace
 
-void writeWholeFile(const fs::path& file, std::span<const unsigned char> bytes) {
-    const fs::path temporary = temporaryBeside(file);
-    std::error_code error(writeBytes(temporary, bytes), std::generic_category());
-    if (!error) fs::rename(temporary, file, error);
-    if (!error) return;
+FileInTheMaking::FileInTheMaking(const fs::path& target)
+    : target_(target), temporary_(temporaryBeside(target)) {}
+
+FileInTheMaking::~FileInTheMaking() {
     std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw failure("cannot write '{}': {}", file.string(), error.message());
+    if (!temporary_.empty()) fs::remove(temporary_, ignored);
+}
+
+void FileInTheMaking::commit() {
+    std::error_code error;
+    fs::rename(temporary_, target_, error);
+    if (error) throw failure("cannot write '{}': {}", target_.string(), error.message());
+    temporary_.clear();
+}
+
+void writeWholeFile(const fs::path& file, std::span<const unsigned char> bytes) {
+    FileInTheMaking making(file);
+    if (const int error = writeBytes(making.temporary(), bytes))
+        throw failure("cannot write '{}': {}", file.string(),
+                      std::generic_category().message(error));
+    making.commit();
 }
 
 void checkWritable(const fs::path& file) {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/toml_reader.h"
+#include "woodcock/base/toml_reader.h"
 
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "woodcock/base/nearest_name.h"
-#include "woodcock/scene/path_variables.h"
+#include "woodcock/base/path_variables.h"
 
 namespace woodcock {
 namespace {
+
+constexpr std::uintmax_t largestFile = 4 << 20;
 
 std::string_view typeName(const toml::node& node) {
     switch (node.type()) {
@@ -52,11 +56,37 @@ std::string placeOf(const toml::source_region& source) {
     return fmt::format("{}:{}:{}", path, source.begin.line, source.begin.column);
 }
 
-Error SceneValue::wrongType(std::string_view expected) const {
+toml::table parseToml(std::string_view text, const std::string& name) {
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& e) {
+        throw inputError("{}: {}", placeOf(e.source()), e.description());
+    }
+}
+
+std::string readTomlFile(const std::filesystem::path& file, std::string_view what) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status))
+        throw inputError("{} '{}' does not exist", what, file.string());
+    if (std::filesystem::is_directory(status))
+        throw inputError("{} '{}' is a directory", what, file.string());
+    if (std::filesystem::is_regular_file(status) &&
+        std::filesystem::file_size(file, error) > largestFile)
+        throw inputError("{} '{}' is larger than {} MB: is it a {}?", what, file.string(),
+                         largestFile >> 20, what);
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream) throw inputError("{} '{}' cannot be read", what, file.string());
+    return text.str();
+}
+
+Error TomlValue::wrongType(std::string_view expected) const {
     return error("is {}; expected {}", typeName(*node_), expected);
 }
 
-double SceneValue::number(NumberRange range) const {
+double TomlValue::number(NumberRange range) const {
     double v = 0;
     if (const auto* integer = node_->as_integer())
         v = static_cast<double>(integer->get());
@@ -69,7 +99,7 @@ double SceneValue::number(NumberRange range) const {
     return v;
 }
 
-int SceneValue::integer(int lower, int upper) const {
+int TomlValue::integer(int lower, int upper) const {
     const auto* value = node_->as_integer();
     if (!value) throw wrongType("an integer");
     if (value->get() < lower || value->get() > upper)
@@ -77,60 +107,60 @@ int SceneValue::integer(int lower, int upper) const {
     return static_cast<int>(value->get());
 }
 
-std::uint64_t SceneValue::count() const {
+std::uint64_t TomlValue::count() const {
     const auto* value = node_->as_integer();
     if (!value) throw wrongType("an integer");
     if (value->get() < 0) throw error("is {}; it must not be negative", value->get());
     return static_cast<std::uint64_t>(value->get());
 }
 
-bool SceneValue::flag() const {
+bool TomlValue::flag() const {
     const auto* value = node_->as_boolean();
     if (!value) throw wrongType("true or false");
     return value->get();
 }
 
-std::string SceneValue::text() const {
+std::string TomlValue::text() const {
     const auto* value = node_->as_string();
     if (!value) throw wrongType("a string");
     if (value->get().empty()) throw error("is empty; give a name or leave the key out");
     return value->get();
 }
 
-SceneValue SceneValue::element(size_t i) const {
+TomlValue TomlValue::element(size_t i) const {
     return {*node_->as_array()->get(i), fmt::format("{}[{}]", name_, i)};
 }
 
-std::vector<SceneValue> SceneValue::elements(std::string_view expected,
-                                             std::optional<size_t> size) const {
+std::vector<TomlValue> TomlValue::elements(std::string_view expected,
+                                           std::optional<size_t> size) const {
     const auto* array = node_->as_array();
     if (!array) throw wrongType(expected);
     if (size && array->size() != *size)
         throw error("has {} element{}; expected {}", array->size(), array->size() == 1 ? "" : "s",
                     expected);
-    std::vector<SceneValue> values;
+    std::vector<TomlValue> values;
     for (size_t i = 0; i < array->size(); ++i) values.push_back(element(i));
     return values;
 }
 
-Vec3d SceneValue::vector() const {
+Vec3d TomlValue::vector() const {
     const auto v = elements("[x, y, z]", 3);
     return {v[0].number(), v[1].number(), v[2].number()};
 }
 
-Vec3d SceneValue::exactColour(NumberRange range) const {
+Vec3d TomlValue::exactColour(NumberRange range) const {
     range.upper = std::min<double>(range.upper, std::numeric_limits<float>::max());
     if (node_->is_number()) return Vec3d{1, 1, 1} * number(range);
     const auto v = elements("a number or [r, g, b]", 3);
     return {v[0].number(range), v[1].number(range), v[2].number(range)};
 }
 
-Rgb SceneValue::colour(NumberRange range) const {
+Rgb TomlValue::colour(NumberRange range) const {
     const Vec3d v = exactColour(range);
     return Rgb::map([&](int i) { return static_cast<float>(v[i]); });
 }
 
-Affine3d SceneValue::affine() const {
+Affine3d TomlValue::affine() const {
     const auto rows = elements("four rows of four numbers", 4);
     double m[4][4];
     for (size_t i = 0; i < 4; ++i) {
@@ -153,7 +183,7 @@ Affine3d SceneValue::affine() const {
     return map;
 }
 
-std::filesystem::path SceneValue::path(const std::filesystem::path& base) const {
+std::filesystem::path TomlValue::path(const std::filesystem::path& base) const {
     const std::string written = text();
     std::filesystem::path expanded;
     try {
@@ -165,31 +195,31 @@ std::filesystem::path SceneValue::path(const std::filesystem::path& base) const 
     return (overridden ? expanded : base / expanded).lexically_normal();
 }
 
-size_t SceneValue::choice(std::string_view what, std::span<const std::string> known) const {
+size_t TomlValue::choice(std::string_view what, std::span<const std::string> known) const {
     const std::string word = text();
     for (size_t i = 0; i < known.size(); ++i)
         if (known[i] == word) return i;
     throw inputError("{}: unknown {} '{}'; known: {}", place(), what, word, joinNames(known));
 }
 
-SceneTable SceneValue::table() const {
+TomlTable TomlValue::table() const {
     const auto* table = node_->as_table();
     if (!table) throw wrongType("a table");
     return {*table, name_};
 }
 
-std::optional<SceneValue> SceneTable::find(std::string_view key) const {
+std::optional<TomlValue> TomlTable::find(std::string_view key) const {
     const toml::node* node = table_->get(key);
     if (!node) return std::nullopt;
-    return SceneValue(*node, fmt::format("{}{}{}", name_, name_.empty() ? "" : ".", key));
+    return TomlValue(*node, fmt::format("{}{}{}", name_, name_.empty() ? "" : ".", key));
 }
 
-SceneValue SceneTable::need(std::string_view key, std::string_view example) const {
+TomlValue TomlTable::need(std::string_view key, std::string_view example) const {
     if (const auto value = find(key)) return *value;
     throw error("has no {}; give one, such as {}", key, example);
 }
 
-void SceneTable::allowOnly(const std::vector<std::string>& known, std::string_view where) const {
+void TomlTable::allowOnly(const std::vector<std::string>& known, std::string_view where) const {
     // The table is sorted by name: the user wants the first in the file.
     const toml::key* first = nullptr;
     const auto position = [](const toml::key& k) {
@@ -204,7 +234,7 @@ void SceneTable::allowOnly(const std::vector<std::string>& known, std::string_vi
                          where, suggestName(first->str(), "known keys", known));
 }
 
-void SceneTable::exclude(std::string_view key, std::string_view other, std::string_view why) const {
+void TomlTable::exclude(std::string_view key, std::string_view other, std::string_view why) const {
     if (has(key) && has(other))
         throw find(key)->error("stands beside {}; give one of them: {}", other, why);
 }
