@@ -8,7 +8,7 @@ packages=(
     libopenvdb-dev libboost-iostreams-dev zlib1g-dev
     libopenimageio-dev libopencolorio-dev
     libtbb-dev libfmt-dev libspdlog-dev
-    libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
+    libtomlplusplus-dev libmuparser-dev nlohmann-json3-dev libcli11-dev
     libgtest-dev
     clang libclang-rt-14-dev
 )

@@ -20,6 +20,12 @@ void printLine(const Json& json) {
     std::fflush(stderr);
 }
 
+std::string bar(double fraction) {
+    constexpr int width = 30;
+    const int full = static_cast<int>(fraction * width);
+    return fmt::format("[{:#<{}}{:.<{}}]", "", full, "", width - full);
+}
+
 }  // namespace
 
 ProgressStyle progressStyle(const std::string& name) {
@@ -48,14 +54,12 @@ void Progress::update(const RenderProgress& progress) {
                    {"samples", progress.samples},
                    {"noise", progress.noise}});
     } else if (style_ == ProgressStyle::Bar) {
-        constexpr int width = 30;
-        const int full = static_cast<int>(progress.fraction * width);
         const std::string noise =
             std::isfinite(progress.noise) ? ", " + noiseText(progress.noise) : "";
         // Carriage return, and erase to the end of the line.
-        fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %, {} left, {} samples{}\x1b[K", "", full,
-                   "", width - full, 100 * progress.fraction, formatDuration(progress.secondsLeft),
-                   progress.samples, noise);
+        fmt::print(stderr, "\r{} {:3.0f} %, {} left, {} samples{}\x1b[K", bar(progress.fraction),
+                   100 * progress.fraction, formatDuration(progress.secondsLeft), progress.samples,
+                   noise);
         std::fflush(stderr);
     }
 }
@@ -70,6 +74,29 @@ void Progress::finish(const RenderResult& result) {
                    {"non_finite", result.film.nonFiniteCount()}});
     else if (style_ == ProgressStyle::Bar)
         fmt::print(stderr, "\r\x1b[K");
+}
+
+WorkProgress::~WorkProgress() {
+    if (style_ == ProgressStyle::Bar) fmt::print(stderr, "\r\x1b[K");
+}
+
+void WorkProgress::update(double fraction) {
+    const auto now = std::chrono::steady_clock::now();
+    constexpr std::chrono::milliseconds pause(200);
+    if (style_ == ProgressStyle::None || now - shown_ < pause) return;
+    shown_ = now;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double left = fraction > 0 ? seconds * (1 - fraction) / fraction : 0;
+    if (style_ == ProgressStyle::Json) {
+        printLine({{"event", name_},
+                   {"fraction", fraction},
+                   {"seconds", seconds},
+                   {"seconds_left", left}});
+        return;
+    }
+    fmt::print(stderr, "\r{} {} {:3.0f} %, {} left\x1b[K", name_, bar(fraction), 100 * fraction,
+               formatDuration(left));
+    std::fflush(stderr);
 }
 
 std::string noiseText(double noise) {

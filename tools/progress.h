@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "woodcock/render/session.h"
@@ -23,6 +24,21 @@ public:
 
 private:
     ProgressStyle style_;
+};
+
+/// Shows how other work goes on, on stderr, no more often than can be read.
+class WorkProgress {
+public:
+    /// `name` is the event's in JSON: {"event": "bake", "fraction": 0.5, ...}.
+    WorkProgress(ProgressStyle style, std::string name) : style_(style), name_(std::move(name)) {}
+    ~WorkProgress();  ///< wipes the bar
+
+    void update(double fraction);
+
+private:
+    ProgressStyle style_;
+    std::string name_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_{};
 };
 
 /// "noise 1.25 %", or "noise unknown" where it is infinite.

@@ -4,57 +4,11 @@
 #include <algorithm>
 #include <climits>
 
-#include "woodcock/base/error.h"
-#include "woodcock/base/nearest_name.h"
+#include "option_kinds.h"
 
 namespace woodcock::tool {
 
 namespace {
-
-/// An option whose word `parse` turns into `value`; mistakes name the option.
-template <class T, class Parse>
-CLI::Option* addParsed(CLI::App& command, const std::string& name, T& value, Parse parse,
-                       const std::string& help) {
-    return command.add_option_function<std::string>(
-        name,
-        [name, &value, parse](const std::string& text) {
-            try {
-                value = parse(text);
-            } catch (const Error& error) {
-                throw usageError("{}: {}", name, error.what());
-            }
-        },
-        help);
-}
-
-/// An option with a whole number from `lowest` to `highest`.
-template <class T>
-CLI::Option* addCount(CLI::App& command, const std::string& name, std::optional<T>& value,
-                      std::uint64_t lowest, std::uint64_t highest, const std::string& help) {
-    const auto parse = [=](const std::string& text) {
-        return static_cast<T>(parseCount(text, lowest, highest));
-    };
-    return addParsed(command, name, value, parse, help)->type_name("COUNT");
-}
-
-/// An option with one of the words `known`.
-template <class T>
-CLI::Option* addChoice(CLI::App& command, const std::string& name, T& value,
-                       const std::vector<std::string>& known, const std::string& help) {
-    const auto parse = [known](const std::string& word) {
-        if (std::find(known.begin(), known.end(), word) == known.end())
-            throw usageError("unknown word '{}'{}", word, suggestName(word, "known", known));
-        return word;
-    };
-    return addParsed(command, name, value, parse, fmt::format("{} {}", help, joinNames(known)));
-}
-
-/// An option that may be given again, for one more value each time.
-template <class T>
-CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<T>& values,
-                     const std::string& help) {
-    return command.add_option(name, values, help + "; may be repeated")->allow_extra_args(false);
-}
 
 void addOutput(CLI::App& command, RenderOptions& o) {
     std::vector<CLI::Option*> options{

@@ -14,8 +14,8 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/parse.h"
-#include "woodcock/grid/vdb_file.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/grid/vdb_file.h"
 
 namespace woodcock::tool {
 
@@ -153,7 +153,8 @@ CLI::App& addVerifyCommand(CLI::App& app) {
         "that any volume has");
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick, "two digits, in about a minute (the default)");
-    command->add_flag("--full", options->full, "three digits for tables of slabs; takes many times as long");
+    command->add_flag("--full", options->full,
+                      "three digits for tables of slabs; takes many times as long");
     command
         ->add_option("--only", options->only,
                      "checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")

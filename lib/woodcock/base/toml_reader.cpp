@@ -32,23 +32,18 @@ std::string_view typeName(const toml::node& node) {
     }
 }
 
-bool contains(NumberRange range, double v) {
-    return range.strict ? v > range.lower && v < range.upper : v >= range.lower && v <= range.upper;
-}
-
-/// What a number outside the range must do, such as "must not be negative".
-std::string demand(NumberRange range, double v) {
-    const NumberRange all;
-    if (range.lower != all.lower && range.upper < std::numeric_limits<float>::max())
-        return fmt::format("must lie {} {} and {}", range.strict ? "strictly between" : "between",
-                           range.lower, range.upper);
-    if (v > range.lower)
-        return fmt::format("must be {} {}", range.strict ? "less than" : "at most", range.upper);
-    if (range.lower == 0) return range.strict ? "must be positive" : "must not be negative";
-    return fmt::format("must be {} {}", range.strict ? "more than" : "at least", range.lower);
-}
-
 }  // namespace
+
+std::string NumberRange::demand(double v) const {
+    const NumberRange all;
+    if (lower != all.lower && upper < std::numeric_limits<float>::max())
+        return fmt::format("must lie {} {} and {}", strict ? "strictly between" : "between",
+                           lower, upper);
+    if (v > lower)
+        return fmt::format("must be {} {}", strict ? "less than" : "at most", upper);
+    if (lower == 0) return strict ? "must be positive" : "must not be negative";
+    return fmt::format("must be {} {}", strict ? "more than" : "at least", lower);
+}
 
 std::string placeOf(const toml::source_region& source) {
     const std::string path = source.path ? *source.path : std::string();
@@ -95,7 +90,7 @@ double TomlValue::number(NumberRange range) const {
     else
         throw wrongType("a number");
     if (!std::isfinite(v)) throw error("is {}; it must be finite", v);
-    if (!contains(range, v)) throw error("is {}; it {}", v, demand(range, v));
+    if (!range.contains(v)) throw error("is {}; it {}", v, range.demand(v));
     return v;
 }
 
@@ -206,6 +201,12 @@ TomlTable TomlValue::table() const {
     const auto* table = node_->as_table();
     if (!table) throw wrongType("a table");
     return {*table, name_};
+}
+
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::string> keys;
+    for (const auto& entry : *table_) keys.emplace_back(entry.first.str());
+    return keys;
 }
 
 std::optional<TomlValue> TomlTable::find(std::string_view key) const {

@@ -30,6 +30,12 @@ struct NumberRange {
     double lower = std::numeric_limits<double>::lowest();
     double upper = std::numeric_limits<double>::max();
     bool strict = false;  ///< the bounds themselves are left out
+
+    bool contains(double v) const {
+        return strict ? v > lower && v < upper : v >= lower && v <= upper;
+    }
+    /// What a number outside must do, such as "must not be negative".
+    std::string demand(double v) const;
 };
 inline constexpr NumberRange notNegative{0};
 inline constexpr NumberRange positive{.lower = 0, .strict = true};
@@ -97,6 +103,7 @@ public:
     const std::string& name() const { return name_; }
     std::string place() const { return placeOf(table_->source()); }
     bool has(std::string_view key) const { return table_->contains(key); }
+    std::vector<std::string> keys() const;
     std::optional<TomlValue> find(std::string_view key) const;
     /// Throws when there is no such key; `example` shows how to give it.
     TomlValue need(std::string_view key, std::string_view example) const;

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/bake/bake_file.h"
+
+#include <fmt/ranges.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/MultiResGrid.h>
+
+#include <cmath>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/toml_text.h"
+#include "woodcock/grid/grid_info.h"
+#include "woodcock/grid/grid_roles.h"
+#include "woodcock/grid/openvdb_grids.h"
+
+namespace woodcock {
+
+namespace {
+
+template <class Grid>
+openvdb::GridBase::Ptr coarsened(const Grid& grid, int level) {
+    openvdb::tools::MultiResGrid<typename Grid::TreeType> pyramid(
+        static_cast<std::size_t>(level) + 1, grid);
+    const typename Grid::Ptr coarse = pyramid.grid(static_cast<std::size_t>(level));
+    coarse->setName(grid.getName());
+    coarse->setGridClass(grid.getGridClass());
+    return coarse;
+}
+
+openvdb::GridBase::Ptr coarsened(const openvdb::GridBase& grid, int level) {
+    if (const auto* scalars = dynamic_cast<const openvdb::FloatGrid*>(&grid))
+        return coarsened(*scalars, level);
+    return coarsened(dynamic_cast<const openvdb::Vec3SGrid&>(grid), level);
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> writeBake(const std::filesystem::path& file, const Bake& bake,
+                                             const VdbWriteOptions& options, int levels) {
+    std::vector<std::filesystem::path> files{file};
+    writeVdb(file, *bake.grids, options);
+    for (int level = 1; level <= levels; ++level) {
+        VdbGrids coarse;
+        for (const auto& grid : bake.grids->grids) coarse.grids.push_back(coarsened(*grid, level));
+        files.push_back(file.parent_path() /
+                        fmt::format("{}.lod{}.vdb", file.stem().string(), level));
+        writeVdb(files.back(), coarse, options);
+    }
+    return files;
+}
+
+VdbCompression compressionNamed(std::string_view name) {
+    if (name == "none") return VdbCompression::None;
+    return name == "zip" ? VdbCompression::Zip : VdbCompression::Blosc;
+}
+
+Affine3d transformOf(const std::filesystem::path& file, const std::string& grid) {
+    const VdbFile listed = listGrids(file);
+    const auto of = [&](const GridListing& listing) {
+        if (!listing.worldFromIndex)
+            throw inputError("{}: grid '{}' has a transform that is not affine", file.string(),
+                             listing.uniqueName);
+        return *listing.worldFromIndex;
+    };
+    if (!grid.empty()) return of(findGrid(listed, grid).grid);
+    for (const GridListing& listing : listed.grids)
+        if (listing.usable()) return of(listing);
+    throw inputError("{} has no grid to be like; it has: {}", file.string(), describeGrids(listed));
+}
+
+RecipeText recipeOfGrids(const std::filesystem::path& file) {
+    const VdbFile listed = listGrids(file);
+    Box3d bounds;
+    std::string outputs;
+    for (const GridListing& listing : listed.grids) {
+        if (!listing.usable()) continue;
+        const GridInfo info = inspectGrid(listed, listing);
+        if (!info.contents) throw inputError("{}", info.error);
+        if (info.contents->worldBounds) bounds.add(*info.contents->worldBounds);
+        outputs += fmt::format(
+            "[[output]]\nname = {}\nnode = {{ type = \"grid\", file = {}, grid = {} }}\n",
+            tomlText(listing.uniqueName), tomlText(std::filesystem::absolute(file).string()),
+            tomlText(listing.uniqueName));
+    }
+    if (bounds.empty())
+        throw inputError("{} has no voxels to be sampled; it has: {}", file.string(),
+                         describeGrids(listed));
+    return {fmt::format("about = {}\n[bounds]\nmin = {}\nmax = {}\n{}",
+                        tomlText("the grids of " + file.string()), tomlVector(bounds.lower),
+                        tomlVector(bounds.upper), outputs),
+            file.string(), ""};
+}
+
+}  // namespace woodcock

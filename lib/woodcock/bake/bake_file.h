@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "woodcock/bake/baker.h"
+#include "woodcock/bake/recipe.h"
+#include "woodcock/grid/vdb_write.h"
+
+namespace woodcock {
+
+/// Writes what was baked, and `levels` coarser versions beside it: smoke.vdb, smoke.lod1.vdb with
+/// voxels twice as large, and so on (full weighting of 27 voxels, as in multigrid methods, so that
+/// a coarse voxel sits on every second fine one and mass is kept). Returns the files. Errors:
+/// Failure, as of writeVdb().
+std::vector<std::filesystem::path> writeBake(const std::filesystem::path& file, const Bake& bake,
+                                             const VdbWriteOptions& options, int levels);
+
+VdbCompression compressionNamed(std::string_view name);  ///< "none", "zip" or "blosc"
+
+/// The transform of a file's grid, the first one that has voxels if `grid` is empty. Errors: Input.
+Affine3d transformOf(const std::filesystem::path& file, const std::string& grid);
+
+/// A recipe that makes the grids of a file again: each is a `grid` node and an output.
+/// Errors: Input.
+RecipeText recipeOfGrids(const std::filesystem::path& file);
+
+}  // namespace woodcock

@@ -1,0 +1,578 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/bake/baker.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <variant>
+
+#include "woodcock/bake/program.h"
+#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/voxel_scan.h"
+
+namespace woodcock {
+
+namespace {
+
+using openvdb::Coord;
+
+/// What is known of an output in a region.
+enum class Status { Empty, Constant, Varying };
+
+struct Region {
+    Vec3i origin;  ///< a multiple of size
+    int size;
+    Vec3i last() const { return origin + Vec3i{1, 1, 1} * (size - 1); }
+};
+
+template <class Tree>
+typename Tree::ValueType treeValue(const std::array<float, 3>& v);
+template <>
+float treeValue<openvdb::FloatTree>(const std::array<float, 3>& v) {
+    return v[0];
+}
+template <>
+openvdb::Vec3s treeValue<openvdb::Vec3STree>(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+/// What one thread has made of one output.
+template <class Tree>
+struct Parts {
+    using Leaf = typename Tree::LeafNodeType;
+    struct Tile {
+        Coord origin;
+        int size;
+        typename Tree::ValueType value;
+    };
+    std::vector<std::unique_ptr<Leaf>> leaves;
+    std::vector<Tile> tiles;
+
+    void add(const Region& region, const std::array<float, 3>& value) {
+        const int size = region.size >= 4096 ? 4096 : region.size >= 128 ? 128 : 8;
+        for (int x = 0; x < region.size; x += size)
+            for (int y = 0; y < region.size; y += size)
+                for (int z = 0; z < region.size; z += size)
+                    tiles.push_back(
+                        {Coord(region.origin.x + x, region.origin.y + y, region.origin.z + z), size,
+                         treeValue<Tree>(value)});
+    }
+    void add(Vec3i origin, const std::array<std::array<float, 512>, 3>& values,
+             const std::array<std::uint64_t, 8>& active) {
+        auto leaf =
+            std::make_unique<Leaf>(Coord(origin.x, origin.y, origin.z), treeValue<Tree>({0, 0, 0}));
+        typename Tree::ValueType* const data = leaf->buffer().data();
+        for (std::size_t i = 0; i < 512; ++i)
+            if (active[i / 64] >> (i % 64) & 1)
+                data[i] = treeValue<Tree>({values[0][i], values[1][i], values[2][i]});
+        typename Leaf::NodeMaskType mask;
+        for (openvdb::Index w = 0; w < 8; ++w) mask.template getWord<std::uint64_t>(w) = active[w];
+        leaf->setValueMask(mask);
+        leaves.push_back(std::move(leaf));
+    }
+};
+
+struct OutputParts {
+    std::variant<Parts<openvdb::FloatTree>, Parts<openvdb::Vec3STree>> parts;
+    BakedGridStatistics statistics;
+    VoxelCount faulty;
+    double greatestAnywhere = 0;  ///< of the absolute values, left out ones included
+
+    explicit OutputParts(int channels) {
+        if (channels == 3) parts.emplace<1>();
+        statistics.least = std::numeric_limits<double>::infinity();
+        statistics.greatest = -statistics.least;
+    }
+    void addRange(double v) {
+        statistics.least = std::min(statistics.least, v);
+        statistics.greatest = std::max(statistics.greatest, v);
+    }
+    void add(const OutputParts& other) {
+        statistics.least = std::min(statistics.least, other.statistics.least);
+        statistics.greatest = std::max(statistics.greatest, other.statistics.greatest);
+        greatestAnywhere = std::max(greatestAnywhere, other.greatestAnywhere);
+        faulty.add(other.faulty);
+        for (std::size_t i = 0; i < 6; ++i) statistics.atBounds[i] += other.statistics.atBounds[i];
+    }
+};
+
+struct Worker {
+    Program::Workspace work;
+    std::vector<OutputParts> outputs;
+    std::array<std::array<double, 512>, 3> positions{};
+    std::uint64_t evaluatedLeaves = 0;
+};
+
+class Baker {
+public:
+    Baker(const Recipe& recipe, const BakeSettings& settings, const BakeProgress& progress)
+        : recipe_(recipe), settings_(settings), progress_(progress), program_(makeProgram(recipe)) {
+        findIndexBox();
+    }
+
+    std::optional<Bake> run();
+
+private:
+    static Program makeProgram(const Recipe& recipe) {
+        std::vector<int> roots;
+        for (const RecipeOutput& output : recipe.outputs) roots.push_back(output.entry);
+        return {recipe.graph, roots};
+    }
+
+    void findIndexBox();
+    std::vector<Region> rootRegions() const;
+    std::vector<Status> inspect(const Region& region, Worker& worker,
+                                std::vector<Bounds>& bounds) const;
+    template <class Visit>
+    void descend(const Region& region, int smallest, const Visit& visit);
+    std::uint64_t countRegions(int size, std::uint64_t most);
+    void planWork();
+    void bakeRegion(const Region& region, Worker& worker);
+    void bakeLeaf(const Region& region, const std::vector<Status>& status,
+                  const std::vector<Bounds>& bounds, Worker& worker);
+    void countAtBounds(const Region& region, const std::array<std::uint64_t, 8>* active,
+                       OutputParts& output) const;
+    void finishPiece();
+    Bake assemble();
+    void refuseFaulty(const std::vector<OutputParts>& outputs) const;
+    void refuseEmpty(const std::vector<OutputParts>& outputs, std::uint64_t evaluated) const;
+    Worker& worker() {
+        Worker& mine = workers_.local();
+        if (mine.outputs.empty())
+            for (const RecipeOutput& output : recipe_.outputs)
+                mine.outputs.emplace_back(output.channels);
+        return mine;
+    }
+
+    static constexpr int pieceSize = 64;  ///< of regions that progress counts
+
+    const Recipe& recipe_;
+    const BakeSettings& settings_;
+    const BakeProgress& progress_;
+    Program program_;
+    Vec3i first_, last_;  ///< voxels inside the recipe's bounds, or around them where turned
+    bool aligned_ = true;
+    tbb::enumerable_thread_specific<Worker> workers_;
+    std::atomic<bool> stopped_{false};
+    std::atomic<std::uint64_t> donePieces_{0};
+    std::uint64_t pieces_ = 1;
+    std::mutex progressMutex_;
+};
+
+void Baker::findIndexBox() {
+    const Affine3d& world = settings_.worldFromIndex;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (i != j && world.column[static_cast<std::size_t>(i)][j] != 0) aligned_ = false;
+    const Box3d box = world.inverse().box(recipe_.bounds);
+    constexpr double most = 1 << 30;
+    for (int i = 0; i < 3; ++i) {
+        if (!(box.lower[i] > -most && box.upper[i] < most))
+            throw inputError(
+                "{}: the recipe's bounds reach to voxel {:.3g} along {}; at most {:.0f} can be "
+                "numbered. Choose larger voxels",
+                recipe_.boundsPlace, std::max(std::abs(box.lower[i]), std::abs(box.upper[i])),
+                "xyz"[i], most);
+        // Rounding shall not leave out a voxel that sits on the bounds.
+        first_[i] = static_cast<int>(std::ceil(box.lower[i] - 1e-6));
+        last_[i] = static_cast<int>(std::floor(box.upper[i] + 1e-6));
+    }
+}
+
+/// Regions of one size, a power of two, that cover the box: at most eight.
+std::vector<Region> Baker::rootRegions() const {
+    int size = pieceSize;
+    const auto fits = [&](int axis) { return std::int64_t{last_[axis]} - first_[axis] < size; };
+    while (!(fits(0) && fits(1) && fits(2)) && size < 1 << 30) size *= 2;
+    const auto down = [size](int v) { return v & ~(size - 1); };
+    std::vector<Region> regions;
+    for (int x = down(first_.x); x <= last_.x; x += size)
+        for (int y = down(first_.y); y <= last_.y; y += size)
+            for (int z = down(first_.z); z <= last_.z; z += size)
+                regions.push_back({{x, y, z}, size});
+    return regions;
+}
+
+std::vector<Status> Baker::inspect(const Region& region, Worker& worker,
+                                   std::vector<Bounds>& bounds) const {
+    const std::vector<RecipeOutput>& outputs = recipe_.outputs;
+    std::vector<Status> status(outputs.size(), Status::Empty);
+    const Vec3i last = region.last();
+    bool outside = false, inside = aligned_;
+    for (int i = 0; i < 3; ++i) {
+        outside |= last[i] < first_[i] || region.origin[i] > last_[i];
+        inside &= region.origin[i] >= first_[i] && last[i] <= last_[i];
+    }
+    if (outside) return status;
+    const Vec3i from = max(region.origin, first_), to = min(last, last_);
+    Box3d box = settings_.worldFromIndex.box({from.as<double>(), to.as<double>()});
+    if (!aligned_)  // sums of products round
+        for (int i = 0; i < 3; ++i) {
+            const double slack =
+                1e-12 * (std::abs(box.lower[i]) + std::abs(box.upper[i]) + box.size()[i]);
+            box.lower[i] -= slack, box.upper[i] += slack;
+        }
+    bounds = program_.bound(box, worker.work);
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+        bool empty = true, constant = inside;
+        for (std::size_t c = 0; c < static_cast<std::size_t>(outputs[o].channels); ++c) {
+            const Interval& v = bounds[o][c];
+            empty &= v.lower >= -outputs[o].tolerance && v.upper <= outputs[o].tolerance;
+            constant &= v.isConstant();
+        }
+        if (outputs[o].mask) empty = false;  // zero is a value there
+        status[o] = empty ? Status::Empty : constant ? Status::Constant : Status::Varying;
+    }
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+        if (outputs[o].mask &&
+            status[static_cast<std::size_t>(*outputs[o].mask)] != Status::Constant)
+            status[o] = status[static_cast<std::size_t>(*outputs[o].mask)];
+    return status;
+}
+
+bool any(const std::vector<Status>& status, Status wanted) {
+    return std::find(status.begin(), status.end(), wanted) != status.end();
+}
+
+/// Goes down from a region to those of the smallest size that vary, `visit`ing them.
+template <class Visit>
+void Baker::descend(const Region& region, int smallest, const Visit& visit) {
+    if (stopped_) return;
+    Worker& mine = worker();
+    std::vector<Bounds> bounds;
+    const std::vector<Status> status = inspect(region, mine, bounds);
+    if (!any(status, Status::Varying) || region.size == smallest) {
+        visit(region, status, bounds, mine);
+        return;
+    }
+    const int half = region.size / 2;
+    const auto child = [&](int i) {
+        descend({region.origin + Vec3i{i & 1, i >> 1 & 1, i >> 2} * half, half}, smallest, visit);
+    };
+    if (region.size > pieceSize)
+        tbb::parallel_for(0, 8, child);
+    else
+        for (int i = 0; i < 8; ++i) child(i);
+}
+
+/// How many regions of a size vary; stops counting beyond `most`.
+std::uint64_t Baker::countRegions(int size, std::uint64_t most) {
+    std::atomic<std::uint64_t> count{0};
+    const std::vector<Region> roots = rootRegions();
+    const auto visit = [&](const Region&, const std::vector<Status>& status, const auto&, Worker&) {
+        if (any(status, Status::Varying) && ++count > most) stopped_ = true;
+    };
+    tbb::parallel_for(std::size_t{0}, roots.size(),
+                      [&](std::size_t i) { descend(roots[i], size, visit); });
+    stopped_ = false;
+    return count;
+}
+
+void Baker::planWork() {
+    const auto most = [&](int size) {
+        return static_cast<std::uint64_t>(
+            std::min(settings_.mostVoxels / std::pow(double(size), 3), 1e18));
+    };
+    // Coarse regions are counted first: their number tells, most of the time, that it is little.
+    constexpr std::uint64_t affordable = 2'000'000;
+    pieces_ = countRegions(pieceSize, affordable);
+    double voxels = static_cast<double>(pieces_) * std::pow(pieceSize, 3);
+    for (int size = pieceSize; size >= 8 && voxels > settings_.mostVoxels; size /= 2) {
+        const std::uint64_t count = countRegions(size, std::max(most(size), affordable));
+        voxels = static_cast<double>(count) * std::pow(double(size), 3);
+        if (size > 8 && count <= affordable) continue;
+        if (count <= most(size)) return;
+        break;
+    }
+    if (voxels <= settings_.mostVoxels) return;
+    const double factor = std::cbrt(voxels / settings_.mostVoxels);
+    throw inputError(
+        "the recipe would be evaluated at {:.3g} voxels or more; at most {:.3g} are allowed. "
+        "Voxels "
+        "{:.2g} times as large would do, or raise the limit with --max-voxels",
+        voxels, settings_.mostVoxels, std::max(factor, 1.01));
+}
+
+void Baker::finishPiece() {
+    const std::uint64_t done = ++donePieces_;
+    if (!progress_) return;
+    const std::unique_lock lock(progressMutex_, std::try_to_lock);
+    if (!lock) return;
+    const double share = std::min(
+        1.0, static_cast<double>(done) / static_cast<double>(std::max(pieces_, std::uint64_t{1})));
+    if (!progress_(share)) stopped_ = true;
+}
+
+/// Active voxels of the region, or of its leaf's mask, that lie next to the recipe's bounds.
+void Baker::countAtBounds(const Region& region, const std::array<std::uint64_t, 8>* active,
+                          OutputParts& output) const {
+    if (!aligned_) return;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side) {
+            const int face = side ? last_[axis] : first_[axis];
+            if (face < region.origin[axis] || face > region.last()[axis]) continue;
+            std::uint64_t& count =
+                output.statistics.atBounds[static_cast<std::size_t>(2 * axis + side)];
+            if (!active) {
+                count += static_cast<std::uint64_t>(region.size) *
+                         static_cast<std::uint64_t>(region.size);
+                continue;
+            }
+            for (int i = 0; i < 512; ++i) {
+                const Vec3i at{i >> 6, i >> 3 & 7, i & 7};
+                if (at[axis] == face - region.origin[axis])
+                    count += (*active)[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1;
+            }
+        }
+}
+
+void Baker::bakeLeaf(const Region& region, const std::vector<Status>& status,
+                     const std::vector<Bounds>& bounds, Worker& worker) {
+    const std::vector<RecipeOutput>& outputs = recipe_.outputs;
+    ++worker.evaluatedLeaves;
+    std::array<std::uint64_t, 8> inside{};
+    Points points{.count = 512};
+    for (std::size_t i = 0; i < 512; ++i) {
+        const auto n = static_cast<int>(i);
+        const Vec3i at = region.origin + Vec3i{n >> 6, n >> 3 & 7, n & 7};
+        const Vec3d p = settings_.worldFromIndex.point(at.as<double>());
+        for (int c = 0; c < 3; ++c) worker.positions[static_cast<std::size_t>(c)][i] = p[c];
+        bool within = aligned_ || recipe_.bounds.contains(p);
+        for (int c = 0; c < 3; ++c) within &= at[c] >= first_[c] && at[c] <= last_[c];
+        inside[i / 64] |= std::uint64_t{within} << (i % 64);
+        points.box.add(p);
+    }
+    for (std::size_t c = 0; c < 3; ++c) points.at[c] = worker.positions[c].data();
+    std::vector<char> wanted(outputs.size());
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+        if (status[o] == Status::Varying) wanted[o] = 1;
+        if (wanted[o] && outputs[o].mask &&
+            status[static_cast<std::size_t>(*outputs[o].mask)] == Status::Varying)
+            wanted[static_cast<std::size_t>(*outputs[o].mask)] = 1;
+    }
+    const std::vector<Values> values = program_.evaluate(points, worker.work, wanted);
+
+    std::vector<std::array<std::uint64_t, 8>> active(outputs.size(), inside);
+    const auto make = [&](std::size_t o) {
+        OutputParts& mine = worker.outputs[o];
+        const auto channels = static_cast<std::size_t>(outputs[o].channels);
+        if (status[o] == Status::Empty) {
+            active[o] = {};
+            return;
+        }
+        std::array<std::array<float, 512>, 3> leaf{};
+        if (outputs[o].mask) active[o] = active[static_cast<std::size_t>(*outputs[o].mask)];
+        for (std::size_t i = 0; i < 512; ++i) {
+            std::uint64_t& word = active[o][i / 64];
+            const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+            if (!(word & bit)) continue;
+            double largest = 0;
+            bool finite = true;
+            for (std::size_t c = 0; c < channels; ++c) {
+                const double v = wanted[o] ? values[o].channel[c][i] : bounds[o][c].lower;
+                leaf[c][i] = static_cast<float>(v);
+                finite &= std::isfinite(leaf[c][i]);
+                largest = std::max(largest, std::abs(double(leaf[c][i])));
+            }
+            if (!finite) {
+                const auto n = static_cast<int>(i);
+                mine.faulty.add(region.origin + Vec3i{n >> 6, n >> 3 & 7, n & 7});
+                word &= ~bit;
+                continue;
+            }
+            mine.greatestAnywhere = std::max(mine.greatestAnywhere, largest);
+            if (!outputs[o].mask && largest <= outputs[o].tolerance) {
+                word &= ~bit;
+                continue;
+            }
+            for (std::size_t c = 0; c < channels; ++c) mine.addRange(leaf[c][i]);
+        }
+        std::uint64_t some = 0;
+        for (const std::uint64_t word : active[o]) some |= word;
+        if (!some) return;
+        countAtBounds(region, &active[o], mine);
+        std::visit([&](auto& parts) { parts.add(region.origin, leaf, active[o]); }, mine.parts);
+    };
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+        if (!outputs[o].mask) make(o);
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+        if (outputs[o].mask) make(o);
+}
+
+void Baker::bakeRegion(const Region& region, Worker&) {
+    const auto visit = [&](const Region& part, const std::vector<Status>& status,
+                           const std::vector<Bounds>& bounds, Worker& mine) {
+        if (any(status, Status::Varying)) return bakeLeaf(part, status, bounds, mine);
+        for (std::size_t o = 0; o < status.size(); ++o) {
+            if (status[o] != Status::Constant) continue;
+            std::array<float, 3> value{};
+            for (std::size_t c = 0; c < static_cast<std::size_t>(recipe_.outputs[o].channels);
+                 ++c) {
+                value[c] = static_cast<float>(bounds[o][c].lower);
+                mine.outputs[o].addRange(value[c]);
+            }
+            countAtBounds(part, nullptr, mine.outputs[o]);
+            std::visit([&](auto& parts) { parts.add(part, value); }, mine.outputs[o].parts);
+        }
+    };
+    descend(region, 8, visit);
+    if (region.size == pieceSize) finishPiece();
+}
+
+void Baker::refuseFaulty(const std::vector<OutputParts>& outputs) const {
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+        const VoxelCount& faulty = outputs[o].faulty;
+        if (faulty.count == 0) continue;
+        const Vec3d at = settings_.worldFromIndex.point(faulty.first.as<double>());
+        throw inputError(
+            "{}: output '{}' is not finite at {} voxels, first at [{}, {}, {}], world position "
+            "[{:g}, {:g}, {:g}]",
+            recipe_.outputs[o].place, recipe_.outputs[o].name, faulty.count, faulty.first.x,
+            faulty.first.y, faulty.first.z, at.x, at.y, at.z);
+    }
+}
+
+void Baker::refuseEmpty(const std::vector<OutputParts>& outputs, std::uint64_t evaluated) const {
+    const RecipeOutput& output = recipe_.outputs.front();
+    for (int i = 0; i < 3; ++i)
+        if (first_[i] > last_[i])
+            throw inputError(
+                "{}: no voxel lies within the recipe's bounds, which are [{:g}, {:g}] along {}; "
+                "choose smaller voxels",
+                recipe_.boundsPlace, recipe_.bounds.lower[i], recipe_.bounds.upper[i], "xyz"[i]);
+    if (evaluated == 0)
+        throw inputError(
+            "{}: nothing is left: output '{}' is at most {:g} everywhere within the recipe's "
+            "bounds, "
+            "[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}]",
+            output.place, output.name, output.tolerance, recipe_.bounds.lower.x,
+            recipe_.bounds.lower.y, recipe_.bounds.lower.z, recipe_.bounds.upper.x,
+            recipe_.bounds.upper.y, recipe_.bounds.upper.z);
+    throw inputError(
+        "{}: nothing is left: the largest of {} values of output '{}' is {:g}, and what is at most "
+        "{:g} is left out. Are its features smaller than the voxels?",
+        output.place, evaluated, output.name, outputs.front().greatestAnywhere, output.tolerance);
+}
+
+template <class Grid, class P>
+openvdb::GridBase::Ptr makeGrid(const std::vector<P*>& parts, double tolerance) {
+    auto grid = Grid::create();
+    auto& tree = grid->tree();
+    for (P* part : parts) {
+        for (const auto& tile : part->tiles)
+            tree.addTile(tile.size == 4096  ? 3
+                         : tile.size == 128 ? 2
+                                            : 1,
+                         tile.origin, tile.value, true);
+        for (auto& leaf : part->leaves) tree.addLeaf(leaf.release());
+        *part = {};
+    }
+    openvdb::tools::prune(tree, typename Grid::ValueType(static_cast<float>(tolerance)));
+    return grid;
+}
+
+Bake Baker::assemble() {
+    std::vector<OutputParts> totals;
+    for (const RecipeOutput& output : recipe_.outputs) totals.emplace_back(output.channels);
+    std::uint64_t evaluated = 0;
+    for (const Worker& worker : workers_) {
+        evaluated += worker.evaluatedLeaves * 512;
+        for (std::size_t o = 0; o < worker.outputs.size(); ++o) totals[o].add(worker.outputs[o]);
+    }
+    refuseFaulty(totals);
+
+    Bake bake{.grids = std::make_shared<VdbGrids>(), .evaluatedVoxels = evaluated};
+    const Affine3d& world = settings_.worldFromIndex;
+    openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) matrix(i, j) = world.column[static_cast<std::size_t>(i)][j];
+        matrix(3, i) = world.translation[i];
+    }
+    bool something = false;
+    for (std::size_t o = 0; o < recipe_.outputs.size(); ++o) {
+        const RecipeOutput& output = recipe_.outputs[o];
+        const auto gather = [&]<class Tree>() {
+            std::vector<Parts<Tree>*> parts;
+            for (Worker& worker : workers_)
+                if (!worker.outputs.empty())
+                    parts.push_back(&std::get<Parts<Tree>>(worker.outputs[o].parts));
+            return makeGrid<openvdb::Grid<Tree>>(parts, output.tolerance);
+        };
+        const openvdb::GridBase::Ptr grid = output.channels == 3
+                                                ? gather.operator()<openvdb::Vec3STree>()
+                                                : gather.operator()<openvdb::FloatTree>();
+        grid->setName(output.name);
+        grid->setGridClass(output.channels == 1 ? openvdb::GRID_FOG_VOLUME : openvdb::GRID_UNKNOWN);
+        grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+        BakedGridStatistics& statistics = totals[o].statistics;
+        statistics.name = output.name;
+        statistics.activeVoxels = grid->activeVoxelCount();
+        const openvdb::TreeBase& tree = grid->constBaseTree();
+        statistics.leaves = tree.leafCount();
+        statistics.tiles = tree.activeTileCount();
+        statistics.bytes = tree.memUsage();
+        something |= statistics.activeVoxels > 0;
+        bake.statistics.push_back(statistics);
+        bake.grids->grids.push_back(grid);
+    }
+    if (!something) refuseEmpty(totals, evaluated);
+    bake.boxVoxels = 1;
+    for (int i = 0; i < 3; ++i) bake.boxVoxels *= double(last_[i]) - first_[i] + 1;
+    return bake;
+}
+
+std::optional<Bake> Baker::run() {
+    const auto start = std::chrono::steady_clock::now();
+    planWork();
+    const std::vector<Region> roots = rootRegions();
+    // Pieces are handed out singly; what is constant or empty above them is done on the way.
+    const auto visit = [&](const Region& region, const std::vector<Status>& status,
+                           const std::vector<Bounds>&, Worker& mine) {
+        if (any(status, Status::Varying) || any(status, Status::Constant)) bakeRegion(region, mine);
+    };
+    tbb::parallel_for(std::size_t{0}, roots.size(),
+                      [&](std::size_t i) { descend(roots[i], pieceSize, visit); });
+    if (stopped_) return std::nullopt;
+    Bake bake = assemble();
+    bake.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return bake;
+}
+
+}  // namespace
+
+BakeSettings cubicVoxels(double size) {
+    return {.worldFromIndex = Affine3d::scale({size, size, size})};
+}
+
+std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& settings,
+                               const BakeProgress& progress) {
+    openvdb::initialize();
+    tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+    std::optional<Bake> bake;
+    arena.execute([&] { bake = Baker(recipe, settings, progress).run(); });
+    return bake;
+}
+
+std::vector<Vec3d> evaluateRecipe(const Recipe& recipe, std::size_t output,
+                                  const std::vector<Vec3d>& positions) {
+    const int roots[]{recipe.outputs[output].entry};
+    const Program program(recipe.graph, roots);
+    Program::Workspace work;
+    std::vector<Vec3d> results;
+    for (const Vec3d& p : positions) {
+        Points points{.count = 1, .at = {&p.x, &p.y, &p.z}};
+        points.box.add(p);
+        const Values v = program.evaluate(points, work)[0];
+        results.push_back({v.channel[0][0], v.channel[1][0], v.channel[2][0]});
+    }
+    return results;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "woodcock/bake/recipe.h"
+#include "woodcock/base/affine.h"
+
+namespace woodcock {
+
+struct VdbGrids;
+
+struct BakeSettings {
+    Affine3d worldFromIndex;  ///< of the grids that are made: voxels sit at integer positions
+    /// Refuses to evaluate more voxels than this.
+    double mostVoxels = 4e9;
+    int threads = 0;  ///< 0: all; the result does not depend on it
+};
+
+/// Voxels of `size` world units, one of them at the origin.
+BakeSettings cubicVoxels(double size);
+
+struct BakedGridStatistics {
+    std::string name;
+    std::uint64_t activeVoxels = 0, leaves = 0, tiles = 0;
+    std::uint64_t bytes = 0;  ///< of the tree in memory
+    /// Active voxels next to the recipe's bounds, on its six sides: -x +x -y +y -z +z.
+    std::array<std::uint64_t, 6> atBounds{};
+    double least = 0, greatest = 0;  ///< of the active values, over all channels
+};
+
+struct Bake {
+    std::shared_ptr<VdbGrids> grids;
+    std::vector<BakedGridStatistics> statistics{};  ///< of each grid
+    double boxVoxels = 0;                           ///< within the recipe's bounds
+    std::uint64_t evaluatedVoxels = 0;
+    double seconds = 0;
+};
+
+/// Progress, from 0 to 1; called now and then, and not from several threads at once. Returning
+/// false ends the bake.
+using BakeProgress = std::function<bool(double done)>;
+
+/// Evaluates a recipe, leaf by leaf and only where its bounds say that there may be something.
+/// Returns nothing when it was ended by `progress`. Errors: Input, when there are too many voxels,
+/// when all grids come out empty, and for values that are not finite (with their number and the
+/// first one's place).
+std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& settings,
+                               const BakeProgress& progress = {});
+
+/// The values of an output at world positions, without any sparseness: what bakeRecipe() is held
+/// to.
+std::vector<Vec3d> evaluateRecipe(const Recipe& recipe, std::size_t output,
+                                  const std::vector<Vec3d>& positions);
+
+}  // namespace woodcock

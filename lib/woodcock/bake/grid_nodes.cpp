@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grids of VDB files as inputs.
+#include <cmath>
+#include <map>
+
+#include "woodcock/bake/node_reader.h"
+#include "woodcock/grid/block_ranges.h"
+#include "woodcock/grid/vdb_load.h"
+
+namespace woodcock {
+
+namespace {
+
+/// A grid's trilinear interpolation. At its own voxels' positions it gives their very values.
+class GridNode : public Node {
+public:
+    explicit GridNode(LoadedGrid grid)
+        : field_(std::move(grid.field)),
+          indexFromWorld_(grid.worldFromIndex.inverse()),
+          ranges_(blockRanges(field_)) {}
+
+    int channels() const override { return field_.channels(); }
+
+    void evaluate(const Points& points, std::span<const Values>,
+                  std::span<double* const> out) const override {
+        for (std::size_t i = 0; i < points.count; ++i) {
+            Vec3d p = field_.nearSupport(indexFromWorld_.point(points[i]));
+            for (int a = 0; a < 3; ++a)  // the inverse transform's rounding is no interpolation
+                if (const double whole = std::round(p[a]); std::abs(p[a] - whole) < 1e-7)
+                    p[a] = whole;
+            for (std::size_t c = 0; c < out.size(); ++c)
+                out[c][i] = field_.trilinear(p, static_cast<int>(c));
+        }
+    }
+
+    Bounds bound(const Box3d& box, std::span<const Bounds>) const override {
+        Box3d at = indexFromWorld_.box(box);
+        at = {at.lower - Vec3d{1, 1, 1} * 1e-6, at.upper + Vec3d{1, 1, 1} * 1e-6};
+        const Box3d& support = field_.support();
+        Bounds bounds;
+        const bool apart = support.empty() || at.upper.x < support.lower.x ||
+                           at.upper.y < support.lower.y || at.upper.z < support.lower.z ||
+                           at.lower.x > support.upper.x || at.lower.y > support.upper.y ||
+                           at.lower.z > support.upper.z;
+        if (apart) {
+            for (int c = 0; c < 3; ++c)
+                bounds[static_cast<std::size_t>(c)] =
+                    Interval::of(field_.background(channels() == 3 ? c : 0));
+            return bounds;
+        }
+        const Range range = rangeIn(at);
+        bounds.fill({range.min, range.max});
+        return bounds;
+    }
+
+private:
+    Range rangeIn(const Box3d& at) const {
+        const Vec3i from = floorToInt(field_.nearSupport(at.lower) * 0.125),
+                    to = floorToInt(field_.nearSupport(at.upper) * 0.125);
+        constexpr int widest = 4;
+        Range range = field_.range();
+        for (int c = 0; c < channels(); ++c)
+            range.add({field_.background(c), field_.background(c)});
+        for (int a = 0; a < 3; ++a)
+            if (to[a] - from[a] >= widest) return range;
+        range = *ranges_.find(from).value;
+        for (int x = from.x; x <= to.x; ++x)
+            for (int y = from.y; y <= to.y; ++y)
+                for (int z = from.z; z <= to.z; ++z) range.add(*ranges_.find({x, y, z}).value);
+        return range;
+    }
+
+    Field field_;
+    Affine3d indexFromWorld_;
+    BlockTable<Range> ranges_;
+};
+
+Graph::Entry grid(NodeReader& r) {
+    const std::filesystem::path file = r.file();
+    const std::string name = r.text("grid", "grid = \"density\"");
+    LoadOptions options{.storage = Storage::Float, .nonNegative = false};
+    const VdbFile listed = listGrids(file);
+    for (const GridListing& listing : listed.grids)
+        if ((listing.uniqueName == name || listing.name == name) && listing.channels == 3)
+            options.use = GridUse::Colour;
+    return {.node = std::make_unique<GridNode>(loadGrid(file, name, options))};
+}
+
+constexpr NodeType types[]{{"grid", grid}};
+
+}  // namespace
+
+std::span<const NodeType> gridNodes() { return types; }
+
+}  // namespace woodcock

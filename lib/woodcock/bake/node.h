@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "woodcock/bake/interval.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+/// Positions in world space, and a box around them.
+struct Points {
+    std::size_t count = 0;
+    std::array<const double*, 3> at{};  ///< x, y and z of each
+    Box3d box{};
+
+    Vec3d operator[](std::size_t i) const { return {at[0][i], at[1][i], at[2][i]}; }
+};
+
+/// Values of an input at the points, by channel; a scalar's three channels are the same.
+struct Values {
+    std::array<const double*, 3> channel{};
+};
+using Bounds = std::array<Interval, 3>;
+
+/// A function of space: a piece of a recipe. Its inputs are the values of other nodes at the same
+/// points. Nodes are shared by threads and keep no state.
+class Node {
+public:
+    virtual ~Node() = default;
+
+    virtual int channels() const { return 1; }  ///< 1 or 3
+    /// Fills out[c][i] for each channel and point. What is computed for a point must not depend on
+    /// the others of its batch: that makes sparse evaluation equal dense evaluation.
+    virtual void evaluate(const Points& points, std::span<const Values> inputs,
+                          std::span<double* const> out) const = 0;
+    /// Contains every value that evaluate() can give for points in the box.
+    virtual Bounds bound(const Box3d& box, std::span<const Bounds> inputs) const = 0;
+};
+
+/// A node that hands on another node's values at moved points. Its inputs are taken at its own
+/// points.
+class Mapping {
+public:
+    virtual ~Mapping() = default;
+    virtual void move(const Points& points, std::span<const Values> inputs,
+                      std::span<double* const> out) const = 0;
+    /// Contains all points that those of the box can move to.
+    virtual Box3d moveBox(const Box3d& box, std::span<const Bounds> inputs) const = 0;
+};
+
+/// The pieces of a recipe; indices are those of `nodes`, and an input comes before its user.
+struct Graph {
+    struct Entry {
+        std::unique_ptr<const Node> node = nullptr;        ///< either this
+        std::unique_ptr<const Mapping> mapping = nullptr;  ///< or this, of entry `mapped`
+        std::vector<int> inputs{};
+        int mapped = -1;
+        int channels = 1;
+    };
+    std::vector<Entry> entries;
+};
+
+}  // namespace woodcock

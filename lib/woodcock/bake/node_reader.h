@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "woodcock/bake/node.h"
+#include "woodcock/base/toml_reader.h"
+
+namespace woodcock {
+
+class ParameterSet;
+
+/// One node's table in a recipe, as those read it who make nodes. Numbers may be expressions of the
+/// recipe's parameters. Every key that is asked for counts as known; finish() refuses the others.
+class NodeReader {
+public:
+    /// Adds what a key names to the graph (a node's name, a number, or a table that is a node of
+    /// its own) and returns its entry.
+    using AddInput = std::function<int(const TomlValue&)>;
+
+    NodeReader(TomlTable table, const ParameterSet& parameters, std::filesystem::path base,
+               const Graph& graph, AddInput add)
+        : table_(std::move(table)),
+          parameters_(&parameters),
+          base_(std::move(base)),
+          graph_(&graph),
+          add_(std::move(add)) {}
+
+    const TomlTable& table() const { return table_; }
+    bool has(std::string_view key);
+    double number(std::string_view key, double otherwise, NumberRange range = {});
+    double number(std::string_view key, NumberRange range = {});  ///< needed
+    Vec3d vector(std::string_view key, Vec3d otherwise);
+    Vec3d vector(std::string_view key);  ///< needed
+    /// From one number, for all axes, or three.
+    Vec3d extent(std::string_view key, std::optional<double> otherwise, NumberRange range);
+    int integer(std::string_view key, int otherwise, int lower, int upper);
+    std::uint64_t seed();  ///< of the recipe's seed and the node's own `seed`
+    std::string text(std::string_view key, std::string_view example);
+    std::size_t choice(std::string_view key, std::span<const std::string> known,
+                       std::size_t otherwise);
+    std::filesystem::path file(std::string_view key = "file");
+    std::vector<TomlValue> list(std::string_view key, std::string_view expected);
+    double numberOf(const TomlValue& value, NumberRange range = {}) const;
+    Vec3d vectorOf(const TomlValue& value) const;
+
+    /// Adds an input, with as many channels (0: any), and returns how many it has.
+    int input(std::string_view key, int channels = 1);
+    int inputs(std::string_view key);  ///< a list of at least one; returns the most channels
+    /// The entry that a mapping moves.
+    int mapped(std::string_view key);
+
+    std::vector<int> takeInputs() { return std::move(inputs_); }
+    void finish() const;
+
+private:
+    TomlValue need(std::string_view key);
+    std::optional<TomlValue> find(std::string_view key);
+    int addInput(const TomlValue& value, int channels);
+
+    TomlTable table_;
+    const ParameterSet* parameters_;
+    std::filesystem::path base_;
+    const Graph* graph_;
+    AddInput add_;
+    std::vector<std::string> known_{"type"};
+    std::vector<int> inputs_;
+};
+
+/// Makes the node that the table's `type` names. Errors: Input, with the place in the recipe.
+Graph::Entry makeNode(NodeReader& reader);
+
+std::vector<std::string> nodeTypes();  ///< all that makeNode knows, sorted
+
+// Makers of the kinds of nodes, one for each type; makeNode() calls them. Each file of nodes offers
+// its own list.
+struct NodeType {
+    const char* name;
+    Graph::Entry (*make)(NodeReader&);
+};
+std::span<const NodeType> shapeNodes();
+std::span<const NodeType> noiseNodes();
+std::span<const NodeType> combinationNodes();
+std::span<const NodeType> mappingNodes();
+std::span<const NodeType> puffNodes();
+std::span<const NodeType> gridNodes();
+
+}  // namespace woodcock

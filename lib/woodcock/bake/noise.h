@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "woodcock/bake/interval.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+// Noises of unit wavelength over space, and over a fourth coordinate, `w`, by which they evolve.
+// Nothing but additions, multiplications, square roots and integer hashes goes into them, so that
+// they are the same on every machine. Lattice coordinates wrap beyond 2^51.
+
+/// Gradient noise in [-1, 1], zero at lattice points. Perlin 2002, "Improving noise", with hashed
+/// gradients instead of a table.
+double perlinNoise(Vec3d p, double w, std::uint64_t seed);
+
+/// Its value and its gradient with respect to p.
+struct NoiseGradient {
+    double value;
+    Vec3d gradient;
+};
+NoiseGradient perlinGradient(Vec3d p, double w, std::uint64_t seed);
+
+/// No partial derivative of perlinNoise is larger. Along x it is fade'(t) (B - A) + lerp(A', B')
+/// with |A'|, |B'| <= 1, and |A| + |B| <= 2.5 - t for t <= 1/2, as the other two coordinates
+/// average to 1/2 at most: fade'(t) (2.5 - t) <= 3.77.
+inline constexpr double perlinSlope = 4.78;
+
+/// Gradient noise on a lattice of tetrahedra, in [-1, 1]. Perlin 2001, as Gustavson 2005 explains
+/// it.
+double simplexNoise(Vec3d p, std::uint64_t seed);
+
+/// Distances, at most 1, to the nearest and the second nearest of points that are scattered one to
+/// a unit cell; they wander in their cells with w. Worley 1996.
+struct CellDistances {
+    double first, second;
+};
+CellDistances cellNoise(Vec3d p, double w, std::uint64_t seed);
+
+}  // namespace woodcock

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "woodcock/bake/node.h"
+#include "woodcock/bake/parameters.h"
+
+namespace woodcock {
+
+/// A grid that a recipe makes.
+struct RecipeOutput {
+    std::string name;
+    int entry = 0;  ///< of the graph
+    int channels = 1;
+    double tolerance = 0;     ///< values this near to zero are left out, and to each other, merged
+    std::optional<int> mask;  ///< made only where this other output is not empty
+    std::string place;        ///< in the recipe's file
+};
+
+/// Procedural media: functions of space, and what grids to make of them.
+struct Recipe {
+    std::string name, about;
+    ParameterSet parameters;
+    Graph graph;
+    Box3d bounds;  ///< world space; nothing is made outside
+    std::vector<RecipeOutput> outputs;
+    std::string boundsPlace;
+};
+
+/// A recipe's text, and where it comes from.
+struct RecipeText {
+    std::string text;
+    std::string name;                 ///< for messages: the file
+    std::filesystem::path directory;  ///< that relative paths in it start from
+};
+
+/// "size=3": a parameter's new value, and the option that it was given by, for messages.
+struct ParameterSetting {
+    std::string name;
+    double value = 0;
+    std::string origin;
+};
+
+/// The recipe that a file holds. Errors: Input.
+RecipeText readRecipe(const std::filesystem::path& file);
+
+/// Only its parameters, with these settings. Errors: as of makeRecipe().
+ParameterSet recipeParameters(const RecipeText& text, const std::vector<ParameterSetting>& set);
+std::string recipeAbout(const RecipeText& text);
+
+/// Reads and checks a recipe, and loads the files that it names. Errors: Input, with file, line,
+/// column, what was found and what was expected; Usage, of settings.
+Recipe makeRecipe(const RecipeText& text, const std::vector<ParameterSetting>& set);
+
+/// Recipes that come with the program, by name.
+const std::map<std::string, std::string_view>& presets();
+
+}  // namespace woodcock

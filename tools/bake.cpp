@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "log.h"
+#include "option_kinds.h"
+#include "preview.h"
+#include "progress.h"
+#include "woodcock/bake/bake_file.h"
+#include "woodcock/bake/baker.h"
+#include "woodcock/base/memory.h"
+#include "woodcock/base/parse.h"
+#include "woodcock/base/toml_text.h"
+#include "woodcock/base/version.h"
+#include "woodcock/base/whole_file.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int interruptedCode = 130;
+
+struct BakeOptions {
+    std::string input;
+    fs::path output, like, preview, writeRecipe;
+    std::string likeGrid;
+    bool list = false, describe = false, half = false, full = false, quiet = false;
+    std::optional<double> voxel, seed, time, mostVoxels, tolerance;
+    std::optional<int> resolution, threads, levels;
+    std::vector<std::string> settings;
+    std::string compression = "blosc", progress = "auto";
+};
+
+std::vector<std::string> presetNames() {
+    std::vector<std::string> names;
+    for (const auto& preset : presets()) names.push_back(preset.first);
+    return names;
+}
+
+/// A preset by its name, a recipe's file, or a VDB file, whose grids are sampled anew.
+RecipeText findRecipe(const std::string& input) {
+    if (const auto preset = presets().find(input); preset != presets().end())
+        return {std::string(preset->second), input, ""};
+    const fs::path file = input;
+    if (file.extension() == ".toml") return readRecipe(file);
+    if (file.extension() == ".vdb") return recipeOfGrids(file);
+    if (fs::exists(file))
+        throw usageError(
+            "'{}' is neither a recipe (.toml) nor a volume (.vdb); to convert other "
+            "data, see woodcock convert",
+            input);
+    const std::vector<std::string> names = presetNames();
+    throw usageError("there is no preset '{}'{}; a recipe's file ends with .toml", input,
+                     suggestName(input, "presets", names));
+}
+
+std::vector<ParameterSetting> settingsOf(const BakeOptions& options) {
+    std::vector<ParameterSetting> settings;
+    for (const std::string& text : options.settings) {
+        const std::string origin = "--set " + text;
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw usageError("{}: expected NAME=VALUE, as in --set size=3", origin);
+        try {
+            settings.push_back({text.substr(0, equals),
+                                parseNumber(text.substr(equals + 1), -1e300, 1e300), origin});
+        } catch (const Error& e) {
+            throw usageError("{}: {}", origin, e.what());
+        }
+    }
+    if (options.seed) settings.push_back({"seed", *options.seed, "--seed"});
+    if (options.time) settings.push_back({"time", *options.time, "--time"});
+    return settings;
+}
+
+void printPresets() {
+    for (const auto& [name, text] : presets())
+        fmt::print("{:<20} {}\n", name, recipeAbout({std::string(text), name, ""}));
+    fmt::print("woodcock bake NAME --describe lists a recipe's parameters.\n");
+}
+
+void printParameters(const RecipeText& recipe, const std::vector<ParameterSetting>& settings) {
+    fmt::print("{}: {}\n", recipe.name, recipeAbout(recipe));
+    const ParameterSet set = recipeParameters(recipe, settings);
+    for (const Parameter& p : set.all()) {
+        const std::string range =
+            p.lower ? fmt::format(" [{:g} to {:g}]", *p.lower, *p.upper) : std::string();
+        fmt::print("  {:<16} {:<10g} {}{}\n", p.name, p.value, p.about, range);
+    }
+}
+
+BakeSettings settingsFor(const Recipe& recipe, const BakeOptions& options) {
+    BakeSettings settings;
+    if (!options.like.empty()) {
+        settings.worldFromIndex = transformOf(options.like, options.likeGrid);
+    } else {
+        const Vec3d size = recipe.bounds.size();
+        const double longest = std::max({size.x, size.y, size.z});
+        const double voxel = options.voxel.value_or(
+            (longest > 0 ? longest : 1) / std::max(1, options.resolution.value_or(256) - 1));
+        settings = cubicVoxels(voxel);
+        if (!options.voxel)
+            spdlog::info("voxels of {:.4g} world units: {} along the recipe's longest side", voxel,
+                         options.resolution.value_or(256));
+    }
+    double bytes = 0;  // of a voxel in all grids, with its share of the tree
+    for (const RecipeOutput& output : recipe.outputs) bytes += 4.2 * output.channels;
+    settings.mostVoxels =
+        options.mostVoxels.value_or(static_cast<double>(memoryLimit()) * 0.8 / bytes);
+    settings.threads = options.threads.value_or(0);
+    return settings;
+}
+
+std::string describeParameters(const Recipe& recipe) {
+    std::string text;
+    for (const Parameter& p : recipe.parameters.all())
+        text += fmt::format("{}{}={}", text.empty() ? "" : " ", p.name, tomlNumber(p.value));
+    return text;
+}
+
+void report(const Bake& bake) {
+    constexpr const char* sides[]{"-x", "+x", "-y", "+y", "-z", "+z"};
+    for (const BakedGridStatistics& grid : bake.statistics) {
+        spdlog::info(
+            "{}: {} active voxels ({:.2g} % of the box) in {} leaves and {} tiles, {}, values {:g} "
+            "to {:g}",
+            grid.name, grid.activeVoxels,
+            100 * static_cast<double>(grid.activeVoxels) / bake.boxVoxels, grid.leaves, grid.tiles,
+            formatGiB(static_cast<double>(grid.bytes)), grid.least, grid.greatest);
+        if (grid.activeVoxels == 0) spdlog::warn("{} is empty", grid.name);
+        std::string cut;
+        for (std::size_t i = 0; i < 6; ++i)
+            if (grid.atBounds[i])
+                cut += fmt::format("{}{} ({} voxels)", cut.empty() ? "" : ", ", sides[i],
+                                   grid.atBounds[i]);
+        if (!cut.empty())
+            spdlog::warn("{} reaches the recipe's bounds, which may cut it off: {}", grid.name,
+                         cut);
+    }
+    spdlog::info("evaluated {} voxels of {:.3g} in {}: {:.3g} million a second",
+                 bake.evaluatedVoxels, bake.boxVoxels, formatDuration(bake.seconds),
+                 static_cast<double>(bake.evaluatedVoxels) / std::max(bake.seconds, 1e-9) / 1e6);
+}
+
+void run(const BakeOptions& options) {
+    const ProgressStyle style =
+        options.quiet ? ProgressStyle::None : progressStyle(options.progress);
+    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
+             options.quiet ? "warning" : "info");
+    if (options.list) return printPresets();
+    if (options.input.empty())
+        throw usageError("name a preset ({}), a recipe (.toml) or a volume (.vdb)",
+                         joinNames(presetNames()));
+    const RecipeText text = findRecipe(options.input);
+    const std::vector<ParameterSetting> settings = settingsOf(options);
+    if (options.describe) return printParameters(text, settings);
+    if (!options.writeRecipe.empty()) {
+        checkWritable(options.writeRecipe);
+        writeWholeFile(
+            options.writeRecipe,
+            {reinterpret_cast<const unsigned char*>(text.text.data()), text.text.size()});
+        spdlog::info("wrote {}", options.writeRecipe.string());
+        if (options.output.empty()) return;
+    }
+    if (options.output.empty())
+        throw usageError("there is no output; name a file with -o, such as -o {}.vdb",
+                         fs::path(options.input).stem().string());
+    if (options.output.extension() != ".vdb")
+        throw usageError(
+            "--output {}: bake writes .vdb files; woodcock convert makes others of them",
+            options.output.string());
+    if (fs::path(options.input).lexically_normal() == options.output.lexically_normal() ||
+        options.like.lexically_normal() == options.output.lexically_normal())
+        throw usageError("'{}' is an input and an output", options.output.string());
+    checkWritable(options.output);
+    if (!options.preview.empty()) checkWritable(options.preview);
+    catchInterrupts();
+
+    Recipe recipe = makeRecipe(text, settings);
+    if (options.tolerance)
+        for (RecipeOutput& output : recipe.outputs) output.tolerance = *options.tolerance;
+    const BakeSettings how = settingsFor(recipe, options);
+    std::optional<Bake> bake;
+    {
+        WorkProgress progress(style, "bake");
+        bake = bakeRecipe(recipe, how, [&](double done) {
+            progress.update(done);
+            return !interrupted();
+        });
+    }
+    if (!bake || interrupted()) {
+        spdlog::warn("interrupted: nothing is written");
+        throw CLI::RuntimeError(interruptedCode);
+    }
+    report(*bake);
+    VdbWriteOptions writing;
+    writing.half = options.half;
+    writing.compression = compressionNamed(options.compression);
+    writing.metadata = {{"creator", fmt::format("woodcock {} bake", version())},
+                        {"recipe", text.name},
+                        {"parameters", describeParameters(recipe)}};
+    if (options.half)
+        for (const BakedGridStatistics& grid : bake->statistics)
+            if (std::max(std::abs(grid.least), std::abs(grid.greatest)) > 65504)
+                throw inputError(
+                    "output '{}' has values up to {:g}, and half precision ends at "
+                    "65504; bake with --float",
+                    grid.name, std::max(std::abs(grid.least), grid.greatest));
+    for (const fs::path& file :
+         writeBake(options.output, *bake, writing, options.levels.value_or(0)))
+        spdlog::info("wrote {} ({:.1f} MB)", file.string(),
+                     static_cast<double>(fs::file_size(file)) / 1e6);
+    if (!options.preview.empty() && !renderPreview(options.output, options.preview, style))
+        throw CLI::RuntimeError(interruptedCode);
+}
+
+}  // namespace
+
+CLI::App& addBakeCommand(CLI::App& app) {
+    CLI::App& command = *app.add_subcommand(
+        "bake", "Make a VDB file from a recipe: clouds, smoke and other procedural media");
+    const auto o = std::make_shared<BakeOptions>();
+    const auto number = [&](const char* name, std::optional<double>& value, double lowest,
+                            double highest, const char* help) {
+        addParsed(
+            command, name, value,
+            [=](const std::string& text) { return parseNumber(text, lowest, highest); }, help)
+            ->type_name("NUMBER");
+    };
+    command
+        .add_option("INPUT", o->input,
+                    "A preset's name, a recipe (.toml), or a volume (.vdb) to be sampled anew")
+        ->type_name("RECIPE");
+    command.add_option("-o,--output", o->output, "The volume to write")->type_name("FILE.vdb");
+    command.add_flag("--list", o->list, "List the presets");
+    command.add_flag("--describe", o->describe, "List the recipe's parameters");
+    command
+        .add_option("--write-recipe", o->writeRecipe,
+                    "Save the recipe's text, to be edited; bakes only with -o")
+        ->type_name("FILE.toml");
+    command.add_option("--set", o->settings, "A parameter of the recipe; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE");
+    number("--seed", o->seed, -9e15, 9e15, "Short for --set seed=NUMBER");
+    number("--time", o->time, -1e9, 1e9, "Short for --set time=NUMBER, seconds");
+    number("--voxel", o->voxel, 1e-12, 1e12, "Size of a voxel, world units");
+    addCount(command, "--resolution", o->resolution, 1, 1000000,
+             "Voxels along the longest side of the recipe's bounds; 256 if nothing else is said");
+    command.add_option("--like", o->like, "Take this volume's voxels: its grid's transform")
+        ->type_name("FILE.vdb");
+    command.add_option("--grid", o->likeGrid, "The grid of --like; the first if not given")
+        ->type_name("NAME");
+    number("--tolerance", o->tolerance, 0, 1e30,
+           "Leave out values this near to zero and merge equal ones, instead of the recipe's own");
+    addCount(command, "--lod", o->levels, 0, 16,
+             "Write as many coarser files too, FILE.lod1.vdb with voxels twice as large and so on");
+    CLI::Option* half = command.add_flag("--half", o->half, "Save values in half precision");
+    command.add_flag("--float", o->full, "Save values in single precision (the default)")
+        ->excludes(half);
+    addChoice(command, "--compression", o->compression, {"none", "zip", "blosc"}, "One of")
+        ->type_name("WORD");
+    command
+        .add_option("--preview", o->preview, "Render a small picture of it at once: PNG, JPEG, EXR")
+        ->type_name("FILE");
+    number("--max-voxels", o->mostVoxels, 1, 1e15,
+           "Refuse to evaluate more voxels; as many as fit into memory if not given");
+    addCount(command, "--threads", o->threads, 1, 1024, "Threads; all if not given");
+    addChoice(command, "--progress", o->progress, {"auto", "bar", "json", "none"}, "One of")
+        ->type_name("WORD");
+    command.add_flag("-q,--quiet", o->quiet, "Say only what goes wrong");
+    command.callback([o] { run(*o); });
+    return command;
+}
+
+}  // namespace woodcock::tool
