@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <tuple>
 #include <variant>
 
 #include "woodcock/bake/program.h"
@@ -106,6 +108,7 @@ struct OutputParts {
 struct Worker {
     Program::Workspace work;
     std::vector<OutputParts> outputs;
+    std::vector<Region> pieces;
     std::array<std::array<double, 512>, 3> positions{};
     std::uint64_t evaluatedLeaves = 0;
 };
@@ -132,9 +135,11 @@ private:
                                 std::vector<Bounds>& bounds) const;
     template <class Visit>
     void descend(const Region& region, int smallest, const Visit& visit);
-    std::uint64_t countRegions(int size, std::uint64_t most);
-    void planWork();
-    void bakeRegion(const Region& region, Worker& worker);
+    void findPieces();
+    void checkAmount();
+    Error tooMuch(const char* about, double voxels) const;
+    void fillRegion(const Region& region, const std::vector<Status>& status,
+                    const std::vector<Bounds>& bounds, Worker& worker) const;
     void bakeLeaf(const Region& region, const std::vector<Status>& status,
                   const std::vector<Bounds>& bounds, Worker& worker);
     void countAtBounds(const Region& region, const std::array<std::uint64_t, 8>* active,
@@ -151,7 +156,7 @@ private:
         return mine;
     }
 
-    static constexpr int pieceSize = 64;  ///< of regions that progress counts
+    static constexpr int pieceSize = 64;
 
     const Recipe& recipe_;
     const BakeSettings& settings_;
@@ -159,10 +164,10 @@ private:
     Program program_;
     Vec3i first_, last_;  ///< voxels inside the recipe's bounds, or around them where turned
     bool aligned_ = true;
+    std::vector<Region> pieces_;  ///< where something varies
     tbb::enumerable_thread_specific<Worker> workers_;
     std::atomic<bool> stopped_{false};
     std::atomic<std::uint64_t> donePieces_{0};
-    std::uint64_t pieces_ = 1;
     std::mutex progressMutex_;
 };
 
@@ -262,42 +267,69 @@ void Baker::descend(const Region& region, int smallest, const Visit& visit) {
         for (int i = 0; i < 8; ++i) child(i);
 }
 
-/// How many regions of a size vary; stops counting beyond `most`.
-std::uint64_t Baker::countRegions(int size, std::uint64_t most) {
-    std::atomic<std::uint64_t> count{0};
-    const std::vector<Region> roots = rootRegions();
-    const auto visit = [&](const Region&, const std::vector<Status>& status, const auto&, Worker&) {
-        if (any(status, Status::Varying) && ++count > most) stopped_ = true;
-    };
-    tbb::parallel_for(std::size_t{0}, roots.size(),
-                      [&](std::size_t i) { descend(roots[i], size, visit); });
-    stopped_ = false;
-    return count;
+/// Adds what a region without varying outputs is filled with.
+void Baker::fillRegion(const Region& region, const std::vector<Status>& status,
+                       const std::vector<Bounds>& bounds, Worker& worker) const {
+    for (std::size_t o = 0; o < status.size(); ++o) {
+        if (status[o] != Status::Constant) continue;
+        std::array<float, 3> value{};
+        for (std::size_t c = 0; c < static_cast<std::size_t>(recipe_.outputs[o].channels); ++c) {
+            value[c] = static_cast<float>(bounds[o][c].lower);
+            worker.outputs[o].addRange(value[c]);
+        }
+        countAtBounds(region, nullptr, worker.outputs[o]);
+        std::visit([&](auto& parts) { parts.add(region, value); }, worker.outputs[o].parts);
+    }
 }
 
-void Baker::planWork() {
-    const auto most = [&](int size) {
-        return static_cast<std::uint64_t>(
-            std::min(settings_.mostVoxels / std::pow(double(size), 3), 1e18));
+Error Baker::tooMuch(const char* about, double voxels) const {
+    const double factor = std::max(std::cbrt(voxels / settings_.mostVoxels), 1.01);
+    return inputError(
+        "the recipe would be evaluated at {} {:.2g} voxels, more than the limit of {:.2g}. Voxels "
+        "{:.2g} times as large would do; or raise the limit with --max-voxels",
+        about, voxels, settings_.mostVoxels, factor);
+}
+
+/// Fills what is constant on a coarse scale, and notes what is not.
+void Baker::findPieces() {
+    constexpr std::size_t most = 300'000;
+    std::atomic<std::size_t> count{0};
+    const std::vector<Region> roots = rootRegions();
+    const auto visit = [&](const Region& region, const std::vector<Status>& status,
+                           const std::vector<Bounds>& bounds, Worker& mine) {
+        if (!any(status, Status::Varying)) return fillRegion(region, status, bounds, mine);
+        mine.pieces.push_back(region);
+        if (++count > most) stopped_ = true;
     };
-    // Coarse regions are counted first: their number tells, most of the time, that it is little.
-    constexpr std::uint64_t affordable = 2'000'000;
-    pieces_ = countRegions(pieceSize, affordable);
-    double voxels = static_cast<double>(pieces_) * std::pow(pieceSize, 3);
-    for (int size = pieceSize; size >= 8 && voxels > settings_.mostVoxels; size /= 2) {
-        const std::uint64_t count = countRegions(size, std::max(most(size), affordable));
-        voxels = static_cast<double>(count) * std::pow(double(size), 3);
-        if (size > 8 && count <= affordable) continue;
-        if (count <= most(size)) return;
-        break;
-    }
-    if (voxels <= settings_.mostVoxels) return;
-    const double factor = std::cbrt(voxels / settings_.mostVoxels);
-    throw inputError(
-        "the recipe would be evaluated at {:.3g} voxels or more; at most {:.3g} are allowed. "
-        "Voxels "
-        "{:.2g} times as large would do, or raise the limit with --max-voxels",
-        voxels, settings_.mostVoxels, std::max(factor, 1.01));
+    tbb::parallel_for(std::size_t{0}, roots.size(),
+                      [&](std::size_t i) { descend(roots[i], pieceSize, visit); });
+    // A surface alone crosses that many leaves of a piece.
+    constexpr double fewest = (pieceSize / 8) * (pieceSize / 8) * 512.0;
+    if (stopped_) throw tooMuch("more than", fewest * most);
+    for (Worker& worker : workers_)
+        pieces_.insert(pieces_.end(), worker.pieces.begin(), worker.pieces.end());
+    std::sort(pieces_.begin(), pieces_.end(), [](const Region& a, const Region& b) {
+        return std::tie(a.origin.x, a.origin.y, a.origin.z) <
+               std::tie(b.origin.x, b.origin.y, b.origin.z);
+    });
+}
+
+/// Counts the leaves of some of the pieces, to know about how many there are in all.
+void Baker::checkAmount() {
+    if (static_cast<double>(pieces_.size()) * std::pow(pieceSize, 3) <= settings_.mostVoxels)
+        return;
+    const std::size_t step = std::max<std::size_t>(1, pieces_.size() / 200);
+    const std::size_t samples = (pieces_.size() + step - 1) / step;
+    std::atomic<std::uint64_t> leaves{0};
+    const auto visit = [&](const Region&, const std::vector<Status>& status,
+                           const std::vector<Bounds>&, Worker&) {
+        if (any(status, Status::Varying)) ++leaves;
+    };
+    tbb::parallel_for(std::size_t{0}, samples,
+                      [&](std::size_t i) { descend(pieces_[i * step], 8, visit); });
+    const double voxels = 512 * static_cast<double>(leaves) * static_cast<double>(pieces_.size()) /
+                          static_cast<double>(samples);
+    if (voxels > settings_.mostVoxels) throw tooMuch("about", voxels);
 }
 
 void Baker::finishPiece() {
@@ -305,8 +337,7 @@ void Baker::finishPiece() {
     if (!progress_) return;
     const std::unique_lock lock(progressMutex_, std::try_to_lock);
     if (!lock) return;
-    const double share = std::min(
-        1.0, static_cast<double>(done) / static_cast<double>(std::max(pieces_, std::uint64_t{1})));
+    const double share = static_cast<double>(done) / static_cast<double>(pieces_.size());
     if (!progress_(share)) stopped_ = true;
 }
 
@@ -404,26 +435,6 @@ void Baker::bakeLeaf(const Region& region, const std::vector<Status>& status,
         if (!outputs[o].mask) make(o);
     for (std::size_t o = 0; o < outputs.size(); ++o)
         if (outputs[o].mask) make(o);
-}
-
-void Baker::bakeRegion(const Region& region, Worker&) {
-    const auto visit = [&](const Region& part, const std::vector<Status>& status,
-                           const std::vector<Bounds>& bounds, Worker& mine) {
-        if (any(status, Status::Varying)) return bakeLeaf(part, status, bounds, mine);
-        for (std::size_t o = 0; o < status.size(); ++o) {
-            if (status[o] != Status::Constant) continue;
-            std::array<float, 3> value{};
-            for (std::size_t c = 0; c < static_cast<std::size_t>(recipe_.outputs[o].channels);
-                 ++c) {
-                value[c] = static_cast<float>(bounds[o][c].lower);
-                mine.outputs[o].addRange(value[c]);
-            }
-            countAtBounds(part, nullptr, mine.outputs[o]);
-            std::visit([&](auto& parts) { parts.add(part, value); }, mine.outputs[o].parts);
-        }
-    };
-    descend(region, 8, visit);
-    if (region.size == pieceSize) finishPiece();
 }
 
 void Baker::refuseFaulty(const std::vector<OutputParts>& outputs) const {
@@ -530,15 +541,19 @@ Bake Baker::assemble() {
 
 std::optional<Bake> Baker::run() {
     const auto start = std::chrono::steady_clock::now();
-    planWork();
-    const std::vector<Region> roots = rootRegions();
-    // Pieces are handed out singly; what is constant or empty above them is done on the way.
+    findPieces();
+    checkAmount();
     const auto visit = [&](const Region& region, const std::vector<Status>& status,
-                           const std::vector<Bounds>&, Worker& mine) {
-        if (any(status, Status::Varying) || any(status, Status::Constant)) bakeRegion(region, mine);
+                           const std::vector<Bounds>& bounds, Worker& mine) {
+        if (any(status, Status::Varying))
+            bakeLeaf(region, status, bounds, mine);
+        else
+            fillRegion(region, status, bounds, mine);
     };
-    tbb::parallel_for(std::size_t{0}, roots.size(),
-                      [&](std::size_t i) { descend(roots[i], pieceSize, visit); });
+    tbb::parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t i) {
+        descend(pieces_[i], 8, visit);
+        if (!stopped_) finishPiece();
+    });
     if (stopped_) return std::nullopt;
     Bake bake = assemble();
     bake.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -554,6 +569,10 @@ BakeSettings cubicVoxels(double size) {
 std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& settings,
                                const BakeProgress& progress) {
     openvdb::initialize();
+    std::optional<tbb::global_control> allow;  // more threads than cores, where asked for
+    if (settings.threads > 0)
+        allow.emplace(tbb::global_control::max_allowed_parallelism,
+                      static_cast<std::size_t>(settings.threads));
     tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
     std::optional<Bake> bake;
     arena.execute([&] { bake = Baker(recipe, settings, progress).run(); });

@@ -188,6 +188,16 @@ Graph::Entry power(NodeReader& r) {
                 })};
 }
 
+Graph::Entry exponential(NodeReader& r) {
+    const int channels = r.input("input", 0);
+    return {.node = pointwise(
+                channels, [](Numbers in) { return std::exp(in[0]); },
+                [](Intervals in) {
+                    const Interval v = rising(in[0], [](double x) { return std::exp(x); });
+                    return Interval{v.lower * (1 - 1e-15), v.upper * (1 + 1e-15)};
+                })};
+}
+
 Graph::Entry absolute(NodeReader& r) {
     const int channels = r.input("input", 0);
     return {.node = pointwise(
@@ -308,6 +318,7 @@ constexpr NodeType types[]{{"add", add},
                            {"erode", erode},
                            {"power", power},
                            {"abs", absolute},
+                           {"exp", exponential},
                            {"vector", vectorOf},
                            {"length", length},
                            {"colour_ramp", colourRamp}};

@@ -108,8 +108,9 @@ private:
     std::vector<Octave> octaves_;
 };
 
-/// The curl of three noises: a flow without divergence (Bridson et al. 2007), about 1 in size, in
-/// units of length over `size`.
+/// The curl of three noises: a flow without divergence (Bridson et al. 2007), about 1 in length.
+/// Each octave is held to a length of 1.5 (and has divergence in those few places), so that what is
+/// warped by it has narrow bounds.
 class CurlNode : public Node {
 public:
     explicit CurlNode(const Fractal& fractal) : f_(fractal) {}
@@ -129,13 +130,13 @@ public:
     Bounds bound(const Box3d&, std::span<const Bounds>) const override {
         double most = 0, weight = 1;
         for (int octave = 0; octave < f_.octaves; ++octave, weight *= f_.gain)
-            most += weight * 2 * perlinSlope * scale;
+            most += weight * longest;
         const Interval all{-most, most};
         return {all, all, all};
     }
 
 private:
-    static constexpr double scale = 0.6;
+    static constexpr double scale = 0.6, longest = 1.5;
 
     Vec3d curl(Vec3d p, double frequency, int octave) const {
         const Vec3d q = p - f_.offset;
@@ -145,7 +146,9 @@ private:
         for (int c = 0; c < 3; ++c)
             g[c] =
                 perlinGradient(at, f_.evolution * frequency, hashOf(f_.seed, octave, c)).gradient;
-        return Vec3d{g[2].y - g[1].z, g[0].z - g[2].x, g[1].x - g[0].y} * scale;
+        const Vec3d v = Vec3d{g[2].y - g[1].z, g[0].z - g[2].x, g[1].x - g[0].y} * scale;
+        const double square = dot(v, v);
+        return square > longest * longest ? v * ((1 - 1e-12) * longest / std::sqrt(square)) : v;
     }
 
     Fractal f_;
