@@ -93,28 +93,45 @@ TEST(Noise, HasNoBiasAndFillsItsRange) {
     EXPECT_GT(highestSimplex, 0.85);
 }
 
-// The 27 cells around a point are enough for distances below 1: against a search of 343 cells.
-TEST(Noise, CellsFindTheNearestPoint) {
+// Points are found once for a box of places; cells are passed over where no point can be near.
+TEST(Noise, CachedCellsAreTheSame) {
     RandomStream random(6);
-    for (int i = 0; i < 300; ++i) {
-        const Vec3d p = randomPoint(random, 10);
-        // A point is where the first distance is zero: walk down to it.
-        Vec3d q = p;
-        double d = cellNoise(q, 0, 2).first;
-        for (int step = 0; step < 400 && d > 1e-7; ++step) {
-            Vec3d best = q;
-            for (int k = 0; k < 6; ++k) {
-                Vec3d move;
-                move[k % 3] = (k < 3 ? 0.5 : -0.5) * d;
-                const double there = cellNoise(q + move, 0, 2).first;
-                if (there < d) d = there, best = q + move;
-            }
-            if (best == q) break;
-            q = best;
+    for (const double size : {0.01, 0.5, 3.0, 30.0}) {
+        const Vec3d low = randomPoint(random, 10);
+        const Box3d box{low, low + Vec3d{1, 1, 1} * size};
+        const CellCache cells(box, 0.3, 4);
+        for (int i = 0; i < 300; ++i) {
+            const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+            const Vec3d p = min(low + Vec3d{x, y, z} * size, box.upper);
+            const CellDistances a = cells.distances(p), b = cellNoise(p, 0.3, 4);
+            ASSERT_EQ(a.first, b.first);
+            ASSERT_EQ(a.second, b.second);
+            ASSERT_EQ(cells.nearest(p), b.first);
         }
-        if (d > 1e-5) continue;  // stuck between two
-        EXPECT_GE(length(q - p) + 1e-4, cellNoise(p, 0, 2).first);
     }
+}
+
+// A cell's point is where the first distance vanishes. Seen from anywhere, it is no nearer than the
+// distance there says: no point is missed by looking at too few cells.
+TEST(Noise, CellsFindTheNearestPoint) {
+    RandomStream random(7);
+    int found = 0;
+    for (int i = 0; i < 300; ++i) {
+        Vec3d q = randomPoint(random, 5);
+        double d = cellNoise(q, 0, 2).first;
+        for (int step = 0; step < 2000 && d > 1e-6; ++step) {
+            const Vec3d there = q + normalize(randomPoint(random, 1)) * (d * 0.3);
+            const double other = cellNoise(there, 0, 2).first;
+            if (other < d) q = there, d = other;
+        }
+        if (d > 1e-6) continue;
+        ++found;
+        for (int k = 0; k < 200; ++k) {
+            const Vec3d p = q + randomPoint(random, 1);
+            ASSERT_LE(cellNoise(p, 0, 2).first, length(p - q) + 2e-6);
+        }
+    }
+    EXPECT_GT(found, 200);
 }
 
 TEST(Noise, SeedsGiveOtherNoises) {

@@ -132,29 +132,94 @@ double simplexNoise(Vec3d p, std::uint64_t seed) {
     return std::clamp(sum * scale, -1.0, 1.0);
 }
 
+namespace {
+
+/// The point of a cell, from the cell's lower corner.
+Vec3d cellPoint(std::int64_t x, std::int64_t y, std::int64_t z, const Lattice& time,
+                std::uint64_t seed) {
+    const std::uint64_t hash = cellHash(x, y, z, seed);
+    const auto place = [hash](std::int64_t slice) {
+        RandomStream random(hashOf(hash, static_cast<std::uint64_t>(slice)));
+        const double u = random.uniform(), v = random.uniform();
+        return Vec3d{u, v, random.uniform()};
+    };
+    const double blend = fade(time.t);
+    const Vec3d now = place(time.cell);
+    return blend > 0 ? now * (1 - blend) + place(time.cell + 1) * blend : now;
+}
+
+/// The nearest two of the points of the 27 cells around p, or the nearest alone (as both);
+/// `pointOf(i, j, k)` gives the one of the cell that is that far away. Cells that cannot hold one
+/// are passed over.
+template <bool Two, class PointOf>
+CellDistances nearestPoints(const Lattice (&at)[3], const PointOf& pointOf) {
+    double first = 1, second = 1;  // squared
+    double gap[3][3];              // squared, to the cells below, at and above along each axis
+    for (int a = 0; a < 3; ++a) {
+        gap[a][0] = at[a].t * at[a].t, gap[a][1] = 0;
+        gap[a][2] = (1 - at[a].t) * (1 - at[a].t);
+    }
+    constexpr int order[]{1, 0, 2};  // the own cell first
+    for (const int i : order)
+        for (const int j : order)
+            for (const int k : order) {
+                if (gap[0][i] + gap[1][j] + gap[2][k] > (Two ? second : first)) continue;
+                const Vec3d d = pointOf(i - 1, j - 1, k - 1) +
+                                Vec3d{i - 1 - at[0].t, j - 1 - at[1].t, k - 1 - at[2].t};
+                const double square = dot(d, d);
+                if (Two) second = std::min(second, std::max(first, square));
+                first = std::min(first, square);
+            }
+    const double nearest = std::sqrt(first);
+    return {nearest, Two ? std::sqrt(second) : nearest};
+}
+
+}  // namespace
+
 CellDistances cellNoise(Vec3d p, double w, std::uint64_t seed) {
     const Lattice at[3]{locate(p.x), locate(p.y), locate(p.z)};
     const Lattice time = locate(w);
-    const double blend = fade(time.t);
-    double first = 1, second = 1;  // squared
-    for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-            for (int k = -1; k <= 1; ++k) {
-                const std::uint64_t hash =
-                    cellHash(at[0].cell + i, at[1].cell + j, at[2].cell + k, seed);
-                const auto place = [hash](std::int64_t slice) {
-                    RandomStream random(hashOf(hash, static_cast<std::uint64_t>(slice)));
-                    const double x = random.uniform(), y = random.uniform();
-                    return Vec3d{x, y, random.uniform()};
-                };
-                Vec3d point = place(time.cell);
-                if (blend > 0) point = point * (1 - blend) + place(time.cell + 1) * blend;
-                const Vec3d d = point + Vec3d{i - at[0].t, j - at[1].t, k - at[2].t};
-                const double square = dot(d, d);
-                second = std::min(second, std::max(first, square));
-                first = std::min(first, square);
-            }
-    return {std::sqrt(first), std::sqrt(second)};
+    return nearestPoints<true>(at, [&](int i, int j, int k) {
+        return cellPoint(at[0].cell + i, at[1].cell + j, at[2].cell + k, time, seed);
+    });
+}
+
+CellCache::CellCache(const Box3d& box, double w, std::uint64_t seed) : w_(w), seed_(seed) {
+    constexpr double most = 4096;
+    double count = 1;
+    for (int a = 0; a < 3; ++a) {
+        const std::int64_t low = locate(box.lower[a]).cell - 1,
+                           high = locate(box.upper[a]).cell + 1;
+        first_[static_cast<std::size_t>(a)] = low;
+        size_[static_cast<std::size_t>(a)] = high - low + 1;
+        count *= static_cast<double>(high - low + 1);
+    }
+    if (!(count <= most)) return;
+    const Lattice time = locate(w);
+    points_.reserve(static_cast<std::size_t>(count));
+    for (std::int64_t x = 0; x < size_[0]; ++x)
+        for (std::int64_t y = 0; y < size_[1]; ++y)
+            for (std::int64_t z = 0; z < size_[2]; ++z)
+                points_.push_back(
+                    cellPoint(first_[0] + x, first_[1] + y, first_[2] + z, time, seed));
+}
+
+template <bool Two>
+CellDistances CellCache::search(Vec3d p) const {
+    const Lattice at[3]{locate(p.x), locate(p.y), locate(p.z)};
+    const Vec3d* const own =
+        points_.data() + ((at[0].cell - first_[0]) * size_[1] + at[1].cell - first_[1]) * size_[2] +
+        at[2].cell - first_[2];
+    return nearestPoints<Two>(
+        at, [&](int i, int j, int k) { return own[(i * size_[1] + j) * size_[2] + k]; });
+}
+
+CellDistances CellCache::distances(Vec3d p) const {
+    return points_.empty() ? cellNoise(p, w_, seed_) : search<true>(p);
+}
+
+double CellCache::nearest(Vec3d p) const {
+    return points_.empty() ? cellNoise(p, w_, seed_).first : search<false>(p).first;
 }
 
 }  // namespace woodcock

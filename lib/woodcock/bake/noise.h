@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "woodcock/bake/interval.h"
 #include "woodcock/base/vec.h"
@@ -38,5 +40,23 @@ struct CellDistances {
     double first, second;
 };
 CellDistances cellNoise(Vec3d p, double w, std::uint64_t seed);
+
+/// The same for many places of one box, whose cells' points are found once.
+class CellCache {
+public:
+    CellCache(const Box3d& box, double w, std::uint64_t seed);
+    /// cellNoise(p, w, seed), for p in the box.
+    CellDistances distances(Vec3d p) const;
+    double nearest(Vec3d p) const;  ///< the first of them alone
+
+private:
+    template <bool Two>
+    CellDistances search(Vec3d p) const;
+
+    double w_;
+    std::uint64_t seed_;
+    std::array<std::int64_t, 3> first_{}, size_{};  ///< of the cells
+    std::vector<Vec3d> points_;                     ///< none where there would be very many
+};
 
 }  // namespace woodcock

@@ -51,11 +51,23 @@ public:
 
     void evaluate(const Points& points, std::span<const Values>,
                   std::span<double* const> out) const override {
-        for (std::size_t i = 0; i < points.count; ++i) {
-            double sum = 0;
-            for (const Octave& o : octaves_)
-                sum += o.weight * fold(f_.fold, noise(o, scaled(points[i], o)));
-            out[0][i] = sum;
+        std::fill_n(out[0], points.count, 0.0);
+        for (const Octave& o : octaves_) {
+            const auto add = [&](const auto& noiseAt) {
+                for (std::size_t i = 0; i < points.count; ++i)
+                    out[0][i] += o.weight * fold(f_.fold, noiseAt(scaled(points[i], o)));
+            };
+            if (f_.basis != Basis::Worley) {
+                add([&](Vec3d p) { return noise(o, p); });
+                continue;
+            }
+            Box3d box;
+            box.add(scaled(points.box.lower, o)), box.add(scaled(points.box.upper, o));
+            const CellCache cells(box, o.w, o.seed);
+            if (f_.cell == CellValue::First)
+                add([&](Vec3d p) { return 1 - cells.nearest(p); });
+            else
+                add([&](Vec3d p) { return cellValue(cells.distances(p)); });
         }
     }
 
@@ -87,7 +99,9 @@ private:
     double noise(const Octave& o, Vec3d p) const {
         if (f_.basis == Basis::Perlin) return perlinNoise(p, o.w, o.seed);
         if (f_.basis == Basis::Simplex) return simplexNoise(p, o.seed);
-        const CellDistances d = cellNoise(p, o.w, o.seed);
+        return cellValue(cellNoise(p, o.w, o.seed));
+    }
+    double cellValue(CellDistances d) const {
         if (f_.cell == CellValue::First) return 1 - d.first;
         return f_.cell == CellValue::Second ? 1 - d.second : d.second - d.first;
     }
