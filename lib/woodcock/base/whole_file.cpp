@@ -27,7 +27,8 @@ fs::path temporaryBeside(const fs::path& file) {
 int writeBytes(const fs::path& file, std::span<const unsigned char> bytes) {
     std::FILE* out = std::fopen(file.c_str(), "wbx");
     if (!out) return errno;
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
+    const bool written =
+        bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
     const int error = written ? 0 : errno;
     // A full disk may show itself only when the buffers are flushed.
     const int closeError = std::fclose(out) == 0 ? 0 : errno;
