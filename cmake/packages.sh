@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
     cmake ninja-build g++ ccache pkgconf
-    libopenvdb-dev libboost-iostreams-dev zlib1g-dev
+    libopenvdb-dev libopenvdb-ax-dev libboost-iostreams-dev zlib1g-dev
     libopenimageio-dev libopencolorio-dev
     libtbb-dev libfmt-dev libspdlog-dev
     libtomlplusplus-dev libmuparser-dev nlohmann-json3-dev libcli11-dev

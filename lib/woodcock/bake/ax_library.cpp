@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/ranges.h>
+#include <openvdb/openvdb.h>
+#include <openvdb_ax/ast/AST.h>
+#include <openvdb_ax/ast/Parse.h>
+#include <openvdb_ax/ast/Scanners.h>
+#include <openvdb_ax/ax.h>
+#include <openvdb_ax/compiler/AttributeRegistry.h>
+#include <openvdb_ax/compiler/Compiler.h>
+#include <openvdb_ax/compiler/Logger.h>
+#include <openvdb_ax/compiler/VolumeExecutable.h>
+
+#include <string>
+#include <vector>
+
+#include "woodcock/bake/openvdb_ax_program.h"
+#include "woodcock/bake/openvdb_ax_rules.h"
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+namespace {
+
+namespace ax = openvdb::ax;
+using ax::ast::tokens::CoreType;
+using Streaming = ax::VolumeExecutable::Streaming;
+
+/// AX goes down the code's tree by recursion: this keeps it well inside a stack of 8 MiB.
+constexpr std::size_t longestCode = 16384;
+
+/// AX's own messages, with line and column first: "AX 2:14: unexpected SEMICOLON".
+class Messages {
+public:
+    Messages() {
+        logger.setErrorPrefix("");
+        logger.setNumberedOutput(false);
+    }
+    Messages(const Messages&) = delete;
+    Messages& operator=(const Messages&) = delete;
+
+    bool empty() const { return found_.empty(); }
+    std::string text() const { return fmt::format("{}", fmt::join(found_, "; ")); }
+
+    /// The line and column of a node of the code that was parsed with this logger.
+    std::string placeOf(const ax::ast::Node& node) {
+        std::vector<std::string> before;
+        before.swap(found_);
+        logger.error("", &node);
+        before.swap(found_);
+        return before.empty() ? "AX" : before.front().substr(0, before.front().find(": "));
+    }
+
+    ax::Logger logger{
+        [this](const std::string& message) { found_.push_back(placeFirst(message)); }};
+
+private:
+    /// AX writes "message 2:14", and "message: 2:14" at times.
+    static std::string placeFirst(const std::string& message) {
+        const std::size_t space = message.rfind(' ');
+        if (space == std::string::npos) return "AX: " + message;
+        const std::string place = message.substr(space + 1);
+        if (place.find(':') == std::string::npos ||
+            place.find_first_not_of("0123456789:") != std::string::npos)
+            return "AX: " + message;
+        std::string what = message.substr(0, space);
+        if (what.ends_with(':')) what.pop_back();
+        // What AX leaves of its parser's "memory exhausted" when it cuts off "syntax error, ".
+        if (what == "ed") what = "nested too deeply";
+        return fmt::format("AX {}: {}", place, what);
+    }
+
+    std::vector<std::string> found_;
+};
+
+/// A name of the code that stands for a grid.
+struct Access {
+    std::string name;
+    CoreType type;
+    bool writes;
+    std::string place;
+};
+
+std::string typeName(CoreType type) { return ax::ast::tokens::typeStringFromToken(type); }
+
+std::string accessName(const openvdb::GridBase& grid) {
+    const CoreType type = ax::ast::tokens::tokenFromTypeString(grid.valueType());
+    const std::string known = type == CoreType::UNKNOWN ? grid.valueType() : typeName(type);
+    return known + "@" + grid.getName();
+}
+
+openvdb::GridBase& gridOf(const Access& access, const openvdb::GridPtrVec& grids,
+                          const std::string& name) {
+    std::vector<std::string> existing;
+    for (const openvdb::GridBase::Ptr& grid : grids) {
+        const CoreType type = ax::ast::tokens::tokenFromTypeString(grid->valueType());
+        if (grid->getName() == access.name && type == access.type) return *grid;
+        existing.push_back(accessName(*grid));
+    }
+    throw inputError("{}: {}: there is no grid {}@{}; there is {}", name, access.place,
+                     typeName(access.type), access.name,
+                     existing.empty() ? "none" : fmt::format("{}", fmt::join(existing, ", ")));
+}
+
+/// Turns active tiles of the root, 4096 voxels wide, into nodes of equal tiles one level below.
+/// OpenVDB AX 10 takes the first of a root tile's parts for all of them where only some change.
+void splitRootTiles(openvdb::GridBase& grid) {
+    using Types =
+        openvdb::NumericGridTypes::Append<openvdb::Vec3GridTypes>::Append<openvdb::BoolGrid>;
+    grid.apply<Types>([](auto& typed) {
+        auto& root = typed.tree().root();
+        using Node = typename std::decay_t<decltype(root)>::ChildNodeType;
+        std::vector<Node*> nodes;
+        for (auto tile = root.beginValueOn(); tile; ++tile)
+            nodes.push_back(new Node(tile.getCoord(), tile.getValue(), true));
+        for (Node* node : nodes) root.addChild(node);
+    });
+}
+
+class Program : public AxProgram {
+public:
+    Program(const std::string& code, const std::string& name) : name_(name) {
+        ax::initialize();
+        if (code.size() > longestCode)
+            throw inputError("{}: AX code of {} characters; it may have {}", name, code.size(),
+                             longestCode);
+        if (const std::size_t zero = code.find('\0'); zero != std::string::npos)
+            throw inputError("{}: AX code with a null character, at {}", name, zero);
+        Messages messages;
+        const auto refuse = [&] {
+            if (!messages.empty()) throw inputError("{}: {}", name, messages.text());
+        };
+        try {
+            const ax::ast::Tree::ConstPtr tree = ax::ast::parse(code.c_str(), messages.logger);
+            refuse();
+            checkAxRules(*tree, [&](const std::string& message, const ax::ast::Node& node) {
+                messages.logger.error(message, &node);
+            });
+            executable_ = ax::Compiler().compile<ax::VolumeExecutable>(*tree, messages.logger);
+            refuse();
+            findAccesses(*tree, messages);
+        } catch (const openvdb::Exception& error) {
+            throw inputError("{}: AX: {}", name, error.what());
+        }
+        executable_->setCreateMissing(false);
+        executable_->setValueIterator(ax::VolumeExecutable::IterType::ON);
+        // AX leaves a tile whole where it finds nothing in the code that differs from voxel to
+        // voxel. That is safe only where nothing is read but the tile itself.
+        if (accesses_.size() > 1 || executable_->getActiveTileStreaming() == Streaming::AUTO)
+            executable_->setActiveTileStreaming(Streaming::ON);
+    }
+
+    void run(openvdb::GridPtrVec& grids) const override {
+        std::vector<openvdb::GridBase*> written;
+        for (const Access& access : accesses_) {
+            openvdb::GridBase& grid = gridOf(access, grids, name_);
+            if (access.writes) written.push_back(&grid);
+        }
+        if (executable_->getActiveTileStreaming() == Streaming::ON)
+            for (openvdb::GridBase* grid : written) splitRootTiles(*grid);
+        try {
+            executable_->execute(grids);
+        } catch (const openvdb::Exception& error) {
+            throw inputError("{}: AX: {}", name_, error.what());
+        }
+    }
+
+private:
+    void findAccesses(const ax::ast::Tree& tree, Messages& messages) {
+        const auto registry = ax::AttributeRegistry::create(tree);
+        for (const auto& access : registry->data()) {
+            const auto token = ax::ast::Attribute::tokenFromNameType(access.name(), access.type());
+            const ax::ast::Variable* use = ax::ast::firstUse(tree, token);
+            accesses_.push_back({access.name(), access.type(), access.writes(),
+                                 use ? messages.placeOf(*use) : "AX"});
+        }
+    }
+
+    std::string name_;
+    ax::VolumeExecutable::Ptr executable_;
+    std::vector<Access> accesses_;
+};
+
+}  // namespace
+
+extern "C" AxProgram* woodcockCompileAx(const std::string& code, const std::string& name) {
+    return new Program(code, name);
+}
+
+}  // namespace woodcock
