@@ -180,7 +180,10 @@ void run(const BakeOptions& options) {
         options.like.lexically_normal() == options.output.lexically_normal())
         throw usageError("'{}' is an input and an output", options.output.string());
     checkWritable(options.output);
-    if (!options.preview.empty()) checkWritable(options.preview);
+    if (!options.preview.empty()) {
+        checkWritable(options.preview);
+        checkPreview(options.preview);
+    }
     catchInterrupts();
 
     Recipe recipe = makeRecipe(text, settings);

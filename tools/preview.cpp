@@ -14,6 +14,19 @@
 
 namespace woodcock::tool {
 
+namespace {
+
+Outputs previewOutputs(const std::filesystem::path& picture) {
+    ColorConfig colour("");
+    OutputSettings settings{.colour = std::move(colour)};
+    settings.files = {picture};
+    return Outputs(std::move(settings));
+}
+
+}  // namespace
+
+void checkPreview(const std::filesystem::path& picture) { previewOutputs(picture); }
+
 bool renderPreview(const std::filesystem::path& volume, const std::filesystem::path& picture,
                    ProgressStyle style) {
     const std::vector<std::filesystem::path> inputs{volume};
@@ -24,10 +37,7 @@ bool renderPreview(const std::filesystem::path& volume, const std::filesystem::p
     completeScene(description, loaded);
     const Scene scene = buildScene(description, std::move(loaded));
 
-    ColorConfig colour("");
-    OutputSettings files{.colour = std::move(colour)};
-    files.files = {picture};
-    const Outputs outputs(std::move(files));
+    const Outputs outputs = previewOutputs(picture);
     RenderSettings settings;
     settings.width = description.render.width, settings.height = description.render.height;
     settings.endSample = description.render.spp;

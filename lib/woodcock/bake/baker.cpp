@@ -15,6 +15,7 @@
 #include <tuple>
 #include <variant>
 
+#include "woodcock/bake/openvdb_field.h"
 #include "woodcock/bake/program.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/voxel_scan.h"
@@ -113,9 +114,17 @@ struct Worker {
     std::uint64_t evaluatedLeaves = 0;
 };
 
+/// What a bake takes of a recipe; stages have been run.
+struct Plan {
+    Graph graph;
+    std::vector<RecipeOutput> outputs;
+    Box3d bounds;
+    std::string boundsPlace;
+};
+
 class Baker {
 public:
-    Baker(const Recipe& recipe, const BakeSettings& settings, const BakeProgress& progress)
+    Baker(const Plan& recipe, const BakeSettings& settings, const BakeProgress& progress)
         : recipe_(recipe), settings_(settings), progress_(progress), program_(makeProgram(recipe)) {
         findIndexBox();
     }
@@ -123,7 +132,7 @@ public:
     std::optional<Bake> run();
 
 private:
-    static Program makeProgram(const Recipe& recipe) {
+    static Program makeProgram(const Plan& recipe) {
         std::vector<int> roots;
         for (const RecipeOutput& output : recipe.outputs) roots.push_back(output.entry);
         return {recipe.graph, roots};
@@ -137,7 +146,8 @@ private:
     void descend(const Region& region, int smallest, const Visit& visit);
     void findPieces();
     void checkAmount();
-    Error tooMuch(const char* about, double voxels) const;
+    Error tooMuch(double voxels) const;
+    double guessVoxels();
     void fillRegion(const Region& region, const std::vector<Status>& status,
                     const std::vector<Bounds>& bounds, Worker& worker) const;
     void bakeLeaf(const Region& region, const std::vector<Status>& status,
@@ -158,7 +168,7 @@ private:
 
     static constexpr int pieceSize = 64;
 
-    const Recipe& recipe_;
+    const Plan& recipe_;
     const BakeSettings& settings_;
     const BakeProgress& progress_;
     Program program_;
@@ -282,12 +292,33 @@ void Baker::fillRegion(const Region& region, const std::vector<Status>& status,
     }
 }
 
-Error Baker::tooMuch(const char* about, double voxels) const {
-    const double factor = std::max(std::cbrt(voxels / settings_.mostVoxels), 1.01);
+Error Baker::tooMuch(double voxels) const {
+    // What varies grows with surfaces: a factor of two in size is one of four in voxels.
+    const double factor = std::max(std::sqrt(voxels / settings_.mostVoxels), 1.1);
     return inputError(
-        "the recipe would be evaluated at {} {:.2g} voxels, more than the limit of {:.2g}. Voxels "
+        "the recipe would be evaluated at about {:.2g} voxels, and the limit is {:.2g}. Voxels "
         "{:.2g} times as large would do; or raise the limit with --max-voxels",
-        about, voxels, settings_.mostVoxels, factor);
+        voxels, settings_.mostVoxels, factor);
+}
+
+/// About how many voxels vary, from the number of regions of a size that is coarse enough to count:
+/// a surface crosses (size / 8)^2 leaves of each.
+double Baker::guessVoxels() {
+    constexpr std::uint64_t affordable = 20'000;
+    const std::vector<Region> roots = rootRegions();
+    for (int size = 2 * pieceSize;; size *= 2) {
+        std::atomic<std::uint64_t> count{0};
+        stopped_ = false;
+        const auto visit = [&](const Region&, const std::vector<Status>& status,
+                               const std::vector<Bounds>&, Worker&) {
+            if (any(status, Status::Varying) && ++count > affordable) stopped_ = true;
+        };
+        tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
+            descend(roots[i], std::min(size, roots[i].size), visit);
+        });
+        if (!stopped_ || size >= roots.front().size)
+            return 512.0 * static_cast<double>(count) * std::pow(size / 8.0, 2);
+    }
 }
 
 /// Fills what is constant on a coarse scale, and notes what is not.
@@ -303,9 +334,7 @@ void Baker::findPieces() {
     };
     tbb::parallel_for(std::size_t{0}, roots.size(),
                       [&](std::size_t i) { descend(roots[i], pieceSize, visit); });
-    // A surface alone crosses that many leaves of a piece.
-    constexpr double fewest = (pieceSize / 8) * (pieceSize / 8) * 512.0;
-    if (stopped_) throw tooMuch("more than", fewest * most);
+    if (stopped_) throw tooMuch(std::max(guessVoxels(), settings_.mostVoxels));
     for (Worker& worker : workers_)
         pieces_.insert(pieces_.end(), worker.pieces.begin(), worker.pieces.end());
     std::sort(pieces_.begin(), pieces_.end(), [](const Region& a, const Region& b) {
@@ -329,7 +358,7 @@ void Baker::checkAmount() {
                       [&](std::size_t i) { descend(pieces_[i * step], 8, visit); });
     const double voxels = 512 * static_cast<double>(leaves) * static_cast<double>(pieces_.size()) /
                           static_cast<double>(samples);
-    if (voxels > settings_.mostVoxels) throw tooMuch("about", voxels);
+    if (voxels > settings_.mostVoxels) throw tooMuch(voxels);
 }
 
 void Baker::finishPiece() {
@@ -500,12 +529,6 @@ Bake Baker::assemble() {
     refuseFaulty(totals);
 
     Bake bake{.grids = std::make_shared<VdbGrids>(), .evaluatedVoxels = evaluated};
-    const Affine3d& world = settings_.worldFromIndex;
-    openvdb::Mat4d matrix = openvdb::Mat4d::identity();
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) matrix(i, j) = world.column[static_cast<std::size_t>(i)][j];
-        matrix(3, i) = world.translation[i];
-    }
     bool something = false;
     for (std::size_t o = 0; o < recipe_.outputs.size(); ++o) {
         const RecipeOutput& output = recipe_.outputs[o];
@@ -521,7 +544,7 @@ Bake Baker::assemble() {
                                                 : gather.operator()<openvdb::FloatTree>();
         grid->setName(output.name);
         grid->setGridClass(output.channels == 1 ? openvdb::GRID_FOG_VOLUME : openvdb::GRID_UNKNOWN);
-        grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+        setTransform(*grid, settings_.worldFromIndex);
         BakedGridStatistics& statistics = totals[o].statistics;
         statistics.name = output.name;
         statistics.activeVoxels = grid->activeVoxelCount();
@@ -560,6 +583,30 @@ std::optional<Bake> Baker::run() {
     return bake;
 }
 
+/// Runs the stages of a graph, in their order, and puts the nodes that they make in their places.
+/// Returns false when it was ended by `progress`.
+bool runStages(Plan& plan, const BakeSettings& settings, const BakeProgress& progress) {
+    for (std::size_t i = 0; i < plan.graph.entries.size(); ++i) {
+        const Graph::Entry entry = plan.graph.entries[i];
+        if (!entry.stage) continue;
+        Plan inputs{plan.graph, {}, plan.bounds, plan.boundsPlace};
+        const std::vector<std::string> names = entry.stage->gridNames();
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            RecipeOutput output;
+            output.name = names[k], output.entry = entry.inputs[k], output.place = entry.place;
+            output.channels = plan.graph.entries[static_cast<std::size_t>(output.entry)].channels;
+            if (k > 0) output.mask = 0;
+            inputs.outputs.push_back(output);
+        }
+        const std::optional<Bake> bake = Baker(inputs, settings, progress).run();
+        if (!bake) return false;
+        plan.graph.entries[i].node = entry.stage->run(*bake->grids);
+        plan.graph.entries[i].stage = nullptr;
+        plan.graph.entries[i].inputs.clear();
+    }
+    return true;
+}
+
 }  // namespace
 
 BakeSettings cubicVoxels(double size) {
@@ -575,7 +622,10 @@ std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& setting
                       static_cast<std::size_t>(settings.threads));
     tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
     std::optional<Bake> bake;
-    arena.execute([&] { bake = Baker(recipe, settings, progress).run(); });
+    arena.execute([&] {
+        Plan plan{recipe.graph, recipe.outputs, recipe.bounds, recipe.boundsPlace};
+        if (runStages(plan, settings, progress)) bake = Baker(plan, settings, progress).run();
+    });
     return bake;
 }
 

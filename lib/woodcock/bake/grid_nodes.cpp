@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "woodcock/bake/grid_node.h"
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/grid/vdb_load.h"
@@ -14,9 +15,9 @@ namespace {
 /// A grid's trilinear interpolation. At its own voxels' positions it gives their very values.
 class GridNode : public Node {
 public:
-    explicit GridNode(LoadedGrid grid)
-        : field_(std::move(grid.field)),
-          indexFromWorld_(grid.worldFromIndex.inverse()),
+    GridNode(Field field, const Affine3d& worldFromIndex)
+        : field_(std::move(field)),
+          indexFromWorld_(worldFromIndex.inverse()),
           ranges_(blockRanges(field_)) {}
 
     int channels() const override { return field_.channels(); }
@@ -75,6 +76,14 @@ private:
     BlockTable<Range> ranges_;
 };
 
+}  // namespace
+
+std::shared_ptr<const Node> gridNode(Field field, const Affine3d& worldFromIndex) {
+    return std::make_shared<GridNode>(std::move(field), worldFromIndex);
+}
+
+namespace {
+
 Graph::Entry grid(NodeReader& r) {
     const std::filesystem::path file = r.file();
     const std::string name = r.text("grid", "grid = \"density\"");
@@ -83,7 +92,8 @@ Graph::Entry grid(NodeReader& r) {
     for (const GridListing& listing : listed.grids)
         if ((listing.uniqueName == name || listing.name == name) && listing.channels == 3)
             options.use = GridUse::Colour;
-    return {.node = std::make_unique<GridNode>(loadGrid(file, name, options))};
+    LoadedGrid loaded = loadGrid(file, name, options);
+    return {.node = gridNode(std::move(loaded.field), loaded.worldFromIndex)};
 }
 
 constexpr NodeType types[]{{"grid", grid}};

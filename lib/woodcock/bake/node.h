@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "woodcock/bake/interval.h"
@@ -53,14 +54,27 @@ public:
     virtual Box3d moveBox(const Box3d& box, std::span<const Bounds> inputs) const = 0;
 };
 
+struct VdbGrids;
+
+/// A node whose inputs are made as grids before it can say anything: the first one where it is not
+/// zero, the others there too.
+class Stage {
+public:
+    virtual ~Stage() = default;
+    virtual std::vector<std::string> gridNames() const = 0;  ///< of the inputs
+    virtual std::shared_ptr<const Node> run(VdbGrids& inputs) const = 0;
+};
+
 /// The pieces of a recipe; indices are those of `nodes`, and an input comes before its user.
 struct Graph {
     struct Entry {
-        std::unique_ptr<const Node> node = nullptr;        ///< either this
-        std::unique_ptr<const Mapping> mapping = nullptr;  ///< or this, of entry `mapped`
+        std::shared_ptr<const Node> node = nullptr;        ///< either this
+        std::shared_ptr<const Mapping> mapping = nullptr;  ///< or this, of entry `mapped`
+        std::shared_ptr<const Stage> stage = nullptr;      ///< or this, which will make a node
         std::vector<int> inputs{};
         int mapped = -1;
         int channels = 1;
+        std::string place{};  ///< in the recipe's file
     };
     std::vector<Entry> entries;
 };

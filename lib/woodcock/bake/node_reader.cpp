@@ -112,6 +112,16 @@ int NodeReader::inputs(std::string_view key) {
     return most;
 }
 
+std::vector<std::pair<std::string, int>> NodeReader::namedInputs(std::string_view key) {
+    std::vector<std::pair<std::string, int>> inputs;
+    const auto value = find(key);
+    if (!value) return inputs;
+    const TomlTable table = value->table();
+    for (const std::string& name : table.keys())
+        inputs.emplace_back(name, addInput(*table.find(name), 0));
+    return inputs;
+}
+
 int NodeReader::mapped(std::string_view key) { return add_(need(key)); }
 
 void NodeReader::finish() const {
@@ -122,8 +132,8 @@ namespace {
 
 std::vector<NodeType> allTypes() {
     std::vector<NodeType> all;
-    for (const auto& some :
-         {shapeNodes(), noiseNodes(), combinationNodes(), mappingNodes(), puffNodes(), gridNodes()})
+    for (const auto& some : {shapeNodes(), noiseNodes(), combinationNodes(), mappingNodes(),
+                             puffNodes(), gridNodes(), axNodes()})
         all.insert(all.end(), some.begin(), some.end());
     std::sort(all.begin(), all.end(), [](const NodeType& a, const NodeType& b) {
         return std::string_view(a.name) < b.name;
@@ -147,6 +157,7 @@ Graph::Entry makeNode(NodeReader& reader) {
     Graph::Entry entry = types[which].make(reader);
     reader.finish();
     entry.inputs = reader.takeInputs();
+    entry.place = reader.table().place();
     if (entry.node) entry.channels = entry.node->channels();
     return entry;
 }

@@ -55,9 +55,12 @@ public:
     /// Adds an input, with as many channels (0: any), and returns how many it has.
     int input(std::string_view key, int channels = 1);
     int inputs(std::string_view key);  ///< a list of at least one; returns the most channels
+    /// A table of inputs of any kind, if there is one: their names and numbers of channels.
+    std::vector<std::pair<std::string, int>> namedInputs(std::string_view key);
     /// The entry that a mapping moves.
     int mapped(std::string_view key);
 
+    std::string placeOf(std::string_view key) { return need(key).place(); }
     std::vector<int> takeInputs() { return std::move(inputs_); }
     void finish() const;
 
@@ -92,5 +95,6 @@ std::span<const NodeType> combinationNodes();
 std::span<const NodeType> mappingNodes();
 std::span<const NodeType> puffNodes();
 std::span<const NodeType> gridNodes();
+std::span<const NodeType> axNodes();
 
 }  // namespace woodcock

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/bake/program.h"
 
+#include "woodcock/base/error.h"
+
 namespace woodcock {
 
 Program::Program(const Graph& graph, std::span<const int> roots) {
@@ -24,6 +26,7 @@ int Program::add(const Graph& graph, int entry, int domain) {
     const auto d = static_cast<std::size_t>(domain), e = static_cast<std::size_t>(entry);
     if (stepOf_[d][e] >= 0) return stepOf_[d][e];
     const Graph::Entry& node = graph.entries[e];
+    if (node.stage) throw inputError("{}: needs grids, which only a bake makes", node.place);
     Step step{.entry = &node, .domain = domain};
     for (const int input : node.inputs) step.inputs.push_back(add(graph, input, domain));
     step.result = columns_;

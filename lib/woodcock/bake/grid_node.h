@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "woodcock/bake/node.h"
+#include "woodcock/base/affine.h"
+#include "woodcock/grid/field.h"
+
+namespace woodcock {
+
+/// A field's trilinear interpolation as a node; at its own voxels' positions, their very values.
+std::shared_ptr<const Node> gridNode(Field field, const Affine3d& worldFromIndex);
+
+}  // namespace woodcock

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <signal.h>
+
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+#include "woodcock/bake/recipe.h"
+#include "woodcock/grid/vdb_load.h"
+
+namespace woodcock::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* ball = R"(about = "a ball"
+[parameters]
+size = { default = 1, range = [0.1, 10], about = "its radius" }
+[bounds]
+min = [-2, -2, -2]
+max = [2, 2, 2]
+[[output]]
+name = "density"
+node = { type = "falloff", edge = 0.5, input = { type = "sphere", radius = "size" } }
+)";
+
+class BakeCommand : public testing::Test {
+protected:
+    void SetUp() override { writeText(dir / "ball.toml", ball); }
+    std::string file(const std::string& name) const { return (dir / name).string(); }
+
+    ProgramResult bake(std::vector<std::string> more) const {
+        more.insert(more.begin(), "bake");
+        return runProgram(more);
+    }
+    void expectFailure(const std::vector<std::string>& arguments, int exitCode,
+                       const std::string& said) const {
+        const ProgramResult result = bake(arguments);
+        EXPECT_EQ(result.exitCode, exitCode) << fmt::format("{}", fmt::join(arguments, " "));
+        EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+        std::size_t files = 0;
+        for ([[maybe_unused]] const auto& entry : fs::directory_iterator(dir.path())) ++files;
+        EXPECT_EQ(files, 1u) << "something is left behind";
+    }
+
+    TempDir dir;
+};
+
+TEST_F(BakeCommand, MakesAVolume) {
+    const ProgramResult result = bake({file("ball.toml"), "-o", file("ball.vdb"), "--resolution",
+                                       "81", "--set", "size=1.5", "--half"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const LoadedGrid grid = loadGrid(file("ball.vdb"), "density");
+    EXPECT_EQ(grid.field.voxel({0, 0, 0}), 1);
+    EXPECT_EQ(grid.field.voxel({30, 0, 0}), 0);  // 1.5 of 0.05
+    EXPECT_GT(grid.field.voxel({29, 0, 0}), 0);
+    const GridListing listing = listGrids(file("ball.vdb")).grids.at(0);
+    EXPECT_EQ(listing.gridClass, GridClass::FogVolume);
+    EXPECT_EQ(listing.valueType, "half-saved float");
+    EXPECT_NEAR(listing.voxelSize.x, 0.05, 1e-12);
+    openvdb::initialize();
+    openvdb::io::File in(file("ball.vdb"));
+    in.open();
+    const openvdb::MetaMap::Ptr metadata = in.getMetadata();
+    EXPECT_EQ(metadata->metaValue<std::string>("parameters"), "seed=1 time=0 size=1.5");
+    EXPECT_NE(metadata->metaValue<std::string>("recipe").find("ball.toml"), std::string::npos);
+    EXPECT_EQ(metadata->metaValue<std::string>("creator").find("woodcock "), 0u);
+}
+
+TEST_F(BakeCommand, TheSameBytesWithAnyThreads) {
+    const auto make = [&](const std::string& name, const std::string& threads) {
+        const ProgramResult result = bake({"cumulus", "-q", "-o", file(name), "--resolution", "60",
+                                           "--threads", threads, "--seed", "7"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return readText(file(name));
+    };
+    const std::string one = make("1.vdb", "1");
+    EXPECT_EQ(one, make("2.vdb", "2"));
+    EXPECT_EQ(one, make("3.vdb", "3"));
+}
+
+TEST_F(BakeCommand, ListsPresetsAndParameters) {
+    const ProgramResult list = bake({"--list"});
+    EXPECT_EQ(list.exitCode, 0);
+    for (const auto& preset : presets())
+        EXPECT_NE(list.out.find(preset.first), std::string::npos) << preset.first;
+    const ProgramResult one = bake({file("ball.toml"), "--describe"});
+    EXPECT_NE(one.out.find("its radius [0.1 to 10]"), std::string::npos) << one.out;
+}
+
+TEST_F(BakeCommand, SavesARecipeThatBakesTheSame) {
+    ASSERT_EQ(bake({"cumulus", "--write-recipe", file("mine.toml")}).exitCode, 0);
+    EXPECT_EQ(readText(file("mine.toml")), presets().at("cumulus"));
+}
+
+TEST_F(BakeCommand, SamplesAVolumeLikeAnother) {
+    ASSERT_EQ(bake({file("ball.toml"), "-o", file("a.vdb"), "--voxel", "0.05"}).exitCode, 0);
+    ASSERT_EQ(bake({file("ball.toml"), "-o", file("b.vdb"), "--voxel", "0.1"}).exitCode, 0);
+    const ProgramResult result =
+        bake({file("a.vdb"), "-o", file("c.vdb"), "--like", file("b.vdb")});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const LoadedGrid b = loadGrid(file("b.vdb"), "density"), c = loadGrid(file("c.vdb"), "density");
+    EXPECT_EQ(b.worldFromIndex, c.worldFromIndex);
+    for (int x = -11; x <= 11; ++x)
+        for (int y = -11; y <= 11; ++y)  // every second voxel of a.vdb sits on one of b.vdb
+            EXPECT_NEAR(b.field.voxel({x, y, 2}), c.field.voxel({x, y, 2}), 1e-6);
+}
+
+TEST_F(BakeCommand, RendersAPreview) {
+    const ProgramResult result = bake({file("ball.toml"), "-o", file("ball.vdb"), "--resolution",
+                                       "40", "--preview", file("ball.png"), "--lod", "1"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(fs::exists(file("ball.png")));
+    EXPECT_TRUE(fs::exists(file("ball.lod1.vdb")));
+}
+
+TEST_F(BakeCommand, WrongUseIsNamed) {
+    const std::string in = file("ball.toml"), out = file("x.vdb");
+    expectFailure({}, 2, "name a preset (");
+    expectFailure({in}, 2, "there is no output");
+    expectFailure({"cumullus", "-o", out}, 2, "did you mean 'cumulus'");
+    expectFailure({file("no.toml"), "-o", out}, 3, "does not exist");
+    expectFailure({in, "-o", file("x.exr")}, 2, "woodcock convert");
+    expectFailure({in, "-o", file("no/x.vdb")}, 2, "there is no directory");
+    expectFailure({in, "-o", out, "--set", "sise=2"}, 2, "did you mean 'size'");
+    expectFailure({in, "-o", out, "--set", "size"}, 2, "NAME=VALUE");
+    expectFailure({in, "-o", out, "--set", "size=20"}, 2, "between 0.1 and 10");
+    expectFailure({in, "-o", out, "--voxel", "0"}, 2, "--voxel");
+    expectFailure({in, "-o", out, "--voxel", "0.0001"}, 3, "--max-voxels");
+    expectFailure({in, "-o", out, "--max-voxels", "10"}, 3, "--max-voxels");
+    expectFailure({in, "-o", out, "--like", file("no.vdb")}, 3, "no.vdb");
+    expectFailure({in, "-o", out, "--half", "--float"}, 2, "--half");
+    expectFailure({in, "-o", out, "--preview", file("x.bmp")}, 2, "x.bmp");
+}
+
+TEST_F(BakeCommand, AnInterruptLeavesNothing) {
+    RunningProgram running(
+        {"bake", "cumulus", "-o", file("x.vdb"), "--resolution", "1500", "--progress", "json"});
+    EXPECT_NE(running.awaitLine("\"fraction\""), "");
+    running.signal(SIGINT);
+    EXPECT_EQ(running.wait().exitCode, 130);
+    EXPECT_FALSE(fs::exists(file("x.vdb")));
+    for (const auto& entry : fs::directory_iterator(dir.path()))
+        EXPECT_EQ(entry.path().filename(), "ball.toml");
+}
+
+}  // namespace
+}  // namespace woodcock::test
