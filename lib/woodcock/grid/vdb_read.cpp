@@ -9,17 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <istream>
 #include <limits>
 #include <memory>
 #include <new>
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/half.h"
-#include "woodcock/grid/vdb_bytes.h"
-#include "woodcock/grid/vdb_grid_head.h"
-#include "woodcock/grid/vdb_header.h"
-#include "woodcock/grid/vdb_layout.h"
+#include "woodcock/grid/openvdb_stored_tree.h"
 
 namespace woodcock {
 
@@ -69,33 +65,6 @@ void copyValues(const Leaf& leaf, float* to) {
 
 Vec3i toVec(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
-/// The bytes of a tree in memory, and what is needed to read them.
-struct StoredTree {
-    std::string treeType;
-    openvdb::VersionId libraryVersion;
-    std::uint32_t fileVersion = 0, compression = 0;
-    bool savedAsHalf = false;
-    VdbLayout layout;
-    std::span<const char> bytes;  ///< from layout.topology to layout.end
-};
-
-/// Set up as OpenVDB's own archives set theirs up; reading beyond its end throws.
-class TreeStream : public std::istream {
-public:
-    explicit TreeStream(const StoredTree& tree)
-        : std::istream(nullptr), buffer_(tree.bytes), begin_(tree.layout.topology) {
-        rdbuf(&buffer_);
-        exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-        openvdb::io::setVersion(*this, tree.libraryVersion, tree.fileVersion);
-        openvdb::io::setDataCompression(*this, tree.compression);
-    }
-    void seek(std::uint64_t fileOffset) { seekg(static_cast<off_type>(fileOffset - begin_)); }
-
-private:
-    MemoryBuffer buffer_;
-    std::uint64_t begin_;
-};
-
 /// Reads one kind of tree: its nodes one after the other, then its leaves in parallel.
 template <class TreeT>
 class TreeReader {
@@ -136,7 +105,7 @@ private:
                 TreeStream stream(stored_);
                 openvdb::io::setGridBackgroundValuePtr(stream, &tree_->background());
                 for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                    readLeaf(stream, i, *(*leaves)[i]);
+                    readLeafOf(stored_, stream, i, *(*leaves)[i]);
                     kinds[i] = scanOne(*(*leaves)[i], scan);
                 }
                 return scan;
@@ -152,13 +121,6 @@ private:
             copyValues(*(*leaves)[i], values.data());
             if (repair.faulty) repairValues(values, repair.negative);
         };
-    }
-
-    void readLeaf(TreeStream& stream, std::size_t i, Leaf& leaf) const {
-        const openvdb::Coord origin = leaf.origin();
-        stream.seek(stored_.layout.leaves[i]);
-        leaf.readBuffers(stream, stored_.savedAsHalf);
-        if (leaf.origin() != origin) throw std::runtime_error("a leaf says it lies elsewhere");
     }
 
     LeafKind scanOne(const Leaf& leaf, VoxelScan& scan) const {
@@ -257,47 +219,11 @@ bool readAsOneOf(const StoredTree& stored, Repair repair, GridSource& source) {
     return (readAs<TreeT>(stored, repair, source) || ...);
 }
 
-const VdbHeader::Entry& findEntry(const FileBytes& file, const VdbHeader& header,
-                                  const std::string& uniqueName) {
-    const auto found =
-        std::find_if(header.entries.begin(), header.entries.end(),
-                     [&](const VdbHeader::Entry& e) { return e.uniqueName == uniqueName; });
-    if (found == header.entries.end())
-        throw inputError("grid '{}' not found in {}", uniqueName, file.path().string());
-    return *found;
-}
-
-/// Brings the grid into memory and makes sure that OpenVDB can read it there.
-StoredTree loadTree(FileBytes& file, const GridListing& grid) {
-    const VdbHeader header = readVdbHeader(file);
-    const VdbHeader::Entry* entry = &findEntry(file, header, grid.uniqueName);
-    if (!entry->treeOf.empty()) entry = &findEntry(file, header, entry->treeOf);
-    if (!entry->treeOf.empty())
-        throw inputError("grid '{}' in {} shares the tree of '{}', which has none of its own",
-                         grid.uniqueName, file.path().string(), entry->uniqueName);
-    StoredTree stored;
-    stored.treeType = entry->treeType;
-    stored.libraryVersion = {header.libraryMajor, header.libraryMinor};
-    stored.fileVersion = header.fileVersion;
-    const VdbValueType type = valueTypeOf(entry->treeType);
-    if (type.channels != grid.channels || type.channels == 0)
-        throw inputError("grid '{}' in {} has type {}, which holds no values to render",
-                         grid.uniqueName, file.path().string(), type.name);
-    file.enter(entry->begin, entry->end, fmt::format("grid '{}'", entry->uniqueName));
-    file.loadAll();
-    const VdbGridHead head = readGridHead(file);
-    stored.compression = head.compression;
-    stored.savedAsHalf = head.savedAsHalf;
-    stored.layout = findLayout(file, type, head.compression, head.savedAsHalf);
-    stored.bytes = file.loaded(stored.layout.topology, stored.layout.end);
-    return stored;
-}
-
 }  // namespace
 
 GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair repair) {
     FileBytes file(listed.path);
-    const StoredTree stored = loadTree(file, grid);
+    const StoredTree stored = loadStoredTree(file, grid);
     GridSource source;
     try {
         using namespace openvdb;

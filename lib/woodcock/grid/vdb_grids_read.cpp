@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/grid/vdb_grids_read.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "woodcock/base/error.h"
+#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_stored_tree.h"
+
+namespace woodcock {
+
+namespace {
+
+/// True where the tree is of this type.
+template <class TreeT>
+bool readAs(const StoredTree& stored, openvdb::GridBase& grid) {
+    if (stored.treeType != TreeT::treeType()) return false;
+    const auto tree = std::make_shared<TreeT>();
+    TreeStream topology(stored);
+    tree->readTopology(topology, stored.savedAsHalf);
+    std::vector<typename TreeT::LeafNodeType*> leaves;
+    leaves.reserve(stored.layout.leaves.size());
+    tree->getNodes(leaves);
+    if (leaves.size() != stored.layout.leaves.size())
+        throw std::runtime_error("its leaves are not where they should be");
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 128),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          TreeStream stream(stored);
+                          openvdb::io::setGridBackgroundValuePtr(stream, &tree->background());
+                          for (std::size_t i = range.begin(); i != range.end(); ++i)
+                              readLeafOf(stored, stream, i, *leaves[i]);
+                      });
+    grid.setTree(tree);
+    return true;
+}
+
+template <class... TreeT>
+void readAsOneOf(const StoredTree& stored, openvdb::GridBase& grid) {
+    (readAs<TreeT>(stored, grid) || ...);
+}
+
+openvdb::GridBase::Ptr readOne(const VdbFile& listed, const GridListing& listing) {
+    if (!isReadable(listing))
+        throw inputError("grid '{}' in {} cannot be used: {}", listing.uniqueName,
+                         listed.path.string(), listing.unusable);
+    FileBytes file(listed.path);
+    try {
+        const openvdb::GridBase::Ptr grid = readGridWithoutTree(file, listing.uniqueName);
+        const StoredTree stored = loadStoredTree(file, listing);
+        using namespace openvdb;
+        readAsOneOf<FloatTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree, Vec3STree,
+                    Vec3DTree, Vec3ITree>(stored, *grid);
+        return grid;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw failure("out of memory while reading {}", listed.path.string());
+    } catch (const std::exception& e) {
+        throw inputError("{} is damaged: grid '{}': {}", listed.path.string(), listing.uniqueName,
+                         e.what());
+    }
+}
+
+}  // namespace
+
+bool isReadable(const GridListing& grid) {
+    if (grid.usable()) return true;
+    if (grid.gridClass != GridClass::LevelSet || grid.channels == 0 || !grid.worldFromIndex)
+        return false;
+    const double determinant = grid.worldFromIndex->determinant();
+    return std::isfinite(determinant) && determinant != 0 && isFinite(grid.voxelSize) &&
+           isFinite(grid.worldFromIndex->translation);
+}
+
+VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqueNames) {
+    VdbGrids read;
+    for (const std::string& name : uniqueNames) {
+        const auto found =
+            std::find_if(file.grids.begin(), file.grids.end(),
+                         [&](const GridListing& grid) { return grid.uniqueName == name; });
+        if (found == file.grids.end())
+            throw inputError("grid '{}' not found in {}; it has: {}", name, file.path.string(),
+                             describeGrids(file));
+        read.grids.push_back(readOne(file, *found));
+    }
+    return read;
+}
+
+}  // namespace woodcock
