@@ -26,6 +26,7 @@ pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 find_package(TBB 2021 REQUIRED COMPONENTS tbb)
 find_package(fmt REQUIRED)
 find_package(tomlplusplus REQUIRED)
+find_package(ZLIB REQUIRED)
 
 # Without it the library still builds, and says so where a mesh is to be read.
 pkg_check_modules(Assimp QUIET IMPORTED_TARGET assimp>=5.2)
