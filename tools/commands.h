@@ -9,6 +9,7 @@ namespace woodcock::tool {
 // One file per subcommand. Each adds its options and the callback that does the work; a callback
 // reports what goes wrong by throwing, and another exit code than 0 by throwing CLI::RuntimeError.
 
+CLI::App& addConvertCommand(CLI::App& app);
 CLI::App& addInfoCommand(CLI::App& app);
 CLI::App& addVerifyCommand(CLI::App& app);
 /// `commandLine` goes into the images' headers.
