@@ -14,12 +14,16 @@ inline openvdb::math::Transform::Ptr openVdbTransform(const Affine3d& worldFromI
     const auto& m = worldFromIndex.column;
     const Vec3d t = worldFromIndex.translation;
     if (m[0].y == 0 && m[0].z == 0 && m[1].x == 0 && m[1].z == 0 && m[2].x == 0 && m[2].y == 0) {
-        const openvdb::Vec3d scale(m[0].x, m[1].y, m[2].z), translation(t.x, t.y, t.z);
-        if (scale[0] == scale[1] && scale[0] == scale[2])
-            return std::make_shared<Transform>(
-                std::make_shared<openvdb::math::UniformScaleTranslateMap>(scale[0], translation));
-        return std::make_shared<Transform>(
-            std::make_shared<openvdb::math::ScaleTranslateMap>(scale, translation));
+        using openvdb::math::ScaleMap, openvdb::math::UniformScaleMap;
+        const openvdb::Vec3d scale(m[0].x, m[1].y, m[2].z);
+        const bool uniform = scale[0] == scale[1] && scale[0] == scale[2];
+        const auto transform =
+            uniform ? std::make_shared<Transform>(std::make_shared<UniformScaleMap>(scale[0]))
+                    : std::make_shared<Transform>(std::make_shared<ScaleMap>(scale));
+        // Apart: a transform takes the map that it is made from to pieces, as differences of
+        // points, which loses digits where it translates.
+        transform->postTranslate(openvdb::Vec3d(t.x, t.y, t.z));
+        return transform;
     }
     // OpenVDB's matrices act on row vectors: the images of the axes are its rows.
     openvdb::Mat4d rows = openvdb::Mat4d::identity();
