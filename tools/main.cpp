@@ -94,6 +94,7 @@ int run(int argc, char** argv) {
         "Exit codes: 0 done, 1 failed while working, 2 wrong usage, 3 bad input, 130 interrupted.");
     tool::addRenderCommand(app, commandLine(argc, argv));
     tool::addBakeCommand(app);
+    tool::addConvertCommand(app);
     tool::addInfoCommand(app);
     tool::addVerifyCommand(app);
     for (CLI::App* command : app.get_subcommands(nullptr))

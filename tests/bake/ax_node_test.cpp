@@ -63,7 +63,7 @@ TEST(AxNode, MistakesNameThePlaceInTheRecipe) {
                  code("@density = nosuch(1);"));
         FAIL() << "no error";
     } catch (const Error& e) {
-        EXPECT_NE(std::string(e.what()).find("test.toml:12:8: AX 1:"), std::string::npos)
+        EXPECT_NE(std::string(e.what()).find("test.toml:13:8: AX 1:"), std::string::npos)
             << e.what();
         EXPECT_NE(std::string(e.what()).find("nosuch"), std::string::npos) << e.what();
     }

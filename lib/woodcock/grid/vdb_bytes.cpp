@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t usualWindow = 1 << 16;
 
-std::uint64_t sizeOfRegularFile(const std::filesystem::path& file) {
+std::uint64_t sizeOfRegularFile(const std::filesystem::path& file, std::string_view expected) {
     struct stat status {};
     if (::stat(file.c_str(), &status) != 0) {
         if (errno == ENOENT || errno == ENOTDIR)
@@ -23,16 +23,16 @@ std::uint64_t sizeOfRegularFile(const std::filesystem::path& file) {
         throw inputError("cannot open {}: {}", file.string(), std::strerror(errno));
     }
     if (S_ISDIR(status.st_mode))
-        throw inputError("{} is a directory; expected a .vdb file", file.string());
+        throw inputError("{} is a directory; expected {}", file.string(), expected);
     if (!S_ISREG(status.st_mode))
-        throw inputError("{} is not a regular file; expected a .vdb file", file.string());
+        throw inputError("{} is not a regular file; expected {}", file.string(), expected);
     return static_cast<std::uint64_t>(status.st_size);
 }
 
 }  // namespace
 
-FileBytes::FileBytes(const std::filesystem::path& file)
-    : path_(file), size_(sizeOfRegularFile(file)), end_(size_) {
+FileBytes::FileBytes(const std::filesystem::path& file, std::string_view expected)
+    : path_(file), size_(sizeOfRegularFile(file, expected)), end_(size_) {
     descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor_ < 0)
         throw inputError("cannot open {}: {}", file.string(), std::strerror(errno));

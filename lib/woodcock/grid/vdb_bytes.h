@@ -8,6 +8,7 @@
 #include <span>
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "woodcock/base/error.h"
@@ -18,8 +19,10 @@ namespace woodcock {
 /// copied: a file that shrinks meanwhile is an error, where a mapped one would end the program.
 class FileBytes {
 public:
-    /// Errors: Input when the file is missing, no regular file, or cannot be opened.
-    explicit FileBytes(const std::filesystem::path& file);
+    /// Errors: Input when the file is missing, no regular file, or cannot be opened; they say what
+    /// was `expected`.
+    explicit FileBytes(const std::filesystem::path& file,
+                       std::string_view expected = "a .vdb file");
     ~FileBytes();
     FileBytes(const FileBytes&) = delete;
     FileBytes& operator=(const FileBytes&) = delete;

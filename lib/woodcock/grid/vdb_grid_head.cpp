@@ -8,6 +8,7 @@
 #include <map>
 
 #include "woodcock/base/printable.h"
+#include "woodcock/grid/openvdb_transform.h"
 
 namespace woodcock {
 
@@ -57,23 +58,11 @@ void readMetadata(FileBytes& file, VdbGridHead& head) {
         if (key == openvdb::GridBase::META_GRID_NAME) head.name = printable(text);
         if (key == openvdb::GridBase::META_GRID_CLASS) head.gridClass = text;
         if (key == openvdb::GridBase::META_SAVE_HALF_FLOAT)
-            head.savedAsHalf = datum && datum->asBool();
+            // A damaged flag's byte is neither 0 nor 1, and then no bool of C++: its text is read.
+            head.savedAsHalf = datum && (type == "bool" ? text == "true" : datum->asBool());
         if (text.size() <= longestText) texts[key] = std::move(text);
     }
     head.metadata.assign(texts.begin(), texts.end());
-}
-
-/// Through the map's own functions: its affine matrix refuses to exist for voxels below 1e-5.
-Affine3d affineOf(const openvdb::math::MapBase& map) {
-    const auto vec = [](const openvdb::Vec3d& v) { return Vec3d{v[0], v[1], v[2]}; };
-    Affine3d m;
-    for (int i = 0; i < 3; ++i) {
-        openvdb::Vec3d axis(0.0);
-        axis[i] = 1;
-        m.column[static_cast<std::size_t>(i)] = vec(map.applyJacobian(axis));
-    }
-    m.translation = vec(map.applyMap(openvdb::Vec3d(0.0)));
-    return m;
 }
 
 void readTransform(FileBytes& file, VdbGridHead& head) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace woodcock {
+
+/// The whole text as a number, with a plus sign or not.
+std::optional<double> parseDouble(std::string_view text);
+
+/// Numbers one after the other, with white space or commas between them.
+class NumberText {
+public:
+    explicit NumberText(std::string_view text) : rest_(text) {}
+
+    /// Nothing at the end, and where something else than a number stands.
+    std::optional<double> next();
+    bool atEnd();
+    std::string describeRest();  ///< "the end", or "'...'"
+
+private:
+    void skipSpace();
+    std::string_view rest_;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/bake/convert.h"
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "log.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/parse.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int interruptedCode = 130;
+constexpr double largest = std::numeric_limits<double>::max();
+
+/// What the command line says, as it is written.
+struct ConvertWords {
+    std::filesystem::path in, out;
+    std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
+        axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
+        compression, outType, bounds;
+    bool repair = false, quiet = false;
+};
+
+/// "1,2,3": exactly `count` numbers.
+std::vector<double> numbers(std::string_view text, std::size_t count, const char* example) {
+    std::vector<double> values;
+    for (std::string_view rest = text; values.size() < count;) {
+        const std::size_t comma = values.size() + 1 < count ? rest.find(',') : rest.size();
+        double value = 0;
+        const char* const end = rest.data() + std::min(comma, rest.size());
+        const auto [stop, error] = std::from_chars(rest.data(), end, value);
+        if (comma == rest.npos || error != std::errc() || stop != end || !std::isfinite(value))
+            throw usageError("'{}' is not {} numbers such as {}", text, count, example);
+        values.push_back(value);
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    return values;
+}
+
+std::vector<std::int64_t> wholeNumbers(std::string_view text, std::size_t count,
+                                       const char* example) {
+    std::vector<std::int64_t> whole;
+    for (const double value : numbers(text, count, example)) {
+        if (value != std::floor(value) || std::abs(value) > double(mostVoxelsOfSide))
+            throw usageError("'{}' is not {} whole numbers such as {}", text, count, example);
+        whole.push_back(static_cast<std::int64_t>(value));
+    }
+    return whole;
+}
+
+/// Calls `use` with the option's text, so that a mistake in it names the option.
+template <class Use>
+void ifGiven(const char* option, const std::optional<std::string>& text, Use use) {
+    if (!text) return;
+    try {
+        use(*text);
+    } catch (const Error& e) {
+        throw Error(e.kind(), fmt::format("{}: {}", option, e.what()));
+    }
+}
+
+Dims parseDims(const std::string& text) {
+    const auto n = wholeNumbers(text, 3, "64,64,32");
+    if (n[0] < 1 || n[1] < 1 || n[2] < 1) throw usageError("'{}' has a side below 1", text);
+    return {n[0], n[1], n[2]};
+}
+
+Box3i parseBounds(const std::string& text) {
+    const auto n = wholeNumbers(text, 6, "0,0,0,63,63,31");
+    const auto corner = [&](std::size_t i) {
+        return Vec3i{static_cast<int>(n[i]), static_cast<int>(n[i + 1]),
+                     static_cast<int>(n[i + 2])};
+    };
+    const Box3i box{corner(0), corner(3)};
+    if (box.empty()) throw usageError("'{}' is empty: the first corner is beyond the last", text);
+    return box;
+}
+
+template <class T>
+T oneOf(const std::string& text, std::initializer_list<std::pair<const char*, T>> known) {
+    std::string names;
+    for (const auto& [name, value] : known) {
+        if (text == name) return value;
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    throw usageError("'{}' is not one of {}", text, names);
+}
+
+void readValueWords(const ConvertWords& words, ValueOptions& values) {
+    const auto number = [](double& to) {
+        return [&to](const std::string& t) { to = parseNumber(t, -largest, largest); };
+    };
+    ifGiven("--scale", words.scale, number(values.remap.scale));
+    ifGiven("--offset", words.offset, number(values.remap.offset));
+    ifGiven("--threshold", words.threshold, number(values.remap.threshold));
+    ifGiven("--clamp", words.clamp, [&](const std::string& t) {
+        const auto ends = numbers(t, 2, "0,1");
+        if (ends[0] > ends[1]) throw usageError("'{}' has its low end above its high end", t);
+        values.remap.low = ends[0];
+        values.remap.high = ends[1];
+    });
+    ifGiven("--tolerance", words.tolerance,
+            [&](const std::string& t) { values.tolerance = parseNumber(t, 0, largest); });
+    values.repair = words.repair;
+}
+
+ConvertOptions readWords(const ConvertWords& words) {
+    ConvertOptions options;
+    options.from = words.from;
+    options.grid = words.grid;
+    options.name = words.name;
+    ifGiven("--dims", words.dims, [&](const std::string& t) { options.dims = parseDims(t); });
+    ifGiven("--type", words.type,
+            [&](const std::string& t) { options.type = sampleTypeFromName(t); });
+    ifGiven("--channels", words.channels, [&](const std::string& t) {
+        options.channels = static_cast<int>(parseCount(t, 1, 1024));
+    });
+    ifGiven("--endian", words.endian, [&](const std::string& t) {
+        options.bigEndian = oneOf<bool>(t, {{"little", false}, {"big", true}});
+    });
+    ifGiven("--header", words.header, [&](const std::string& t) {
+        options.headerBytes = parseCount(t, 0, std::numeric_limits<std::int64_t>::max());
+    });
+    ifGiven("--channel", words.channel, [&](const std::string& t) {
+        options.channel = static_cast<int>(parseCount(t, 0, 1023));
+    });
+    ifGiven("--axes", words.axes, [&](const std::string& t) { options.axes = parseAxisOrder(t); });
+    ifGiven("--voxel", words.voxel,
+            [&](const std::string& t) { options.placement.voxel = parseNumber(t, 1e-30, 1e30); });
+    ifGiven("--size", words.size,
+            [&](const std::string& t) { options.placement.size = parseNumber(t, 1e-30, 1e30); });
+    ifGiven("--origin", words.origin, [&](const std::string& t) {
+        const auto p = numbers(t, 3, "0,0.5,0");
+        options.placement.origin = Vec3d{p[0], p[1], p[2]};
+    });
+    if (words.voxel && words.size)
+        throw usageError("--voxel and --size both say how large the volume is; give one");
+    readValueWords(words, options.values);
+    ifGiven("--precision", words.precision, [&](const std::string& t) {
+        options.precision = oneOf<Precision>(t, {{"half", Precision::Half},
+                                                 {"float", Precision::Float},
+                                                 {"double", Precision::Double}});
+    });
+    ifGiven("--compression", words.compression, [&](const std::string& t) {
+        options.compression = oneOf<VdbCompression>(t, {{"none", VdbCompression::None},
+                                                        {"zip", VdbCompression::Zip},
+                                                        {"blosc", VdbCompression::Blosc}});
+    });
+    ifGiven("--out-type", words.outType,
+            [&](const std::string& t) { options.outputType = sampleTypeFromName(t); });
+    ifGiven("--bounds", words.bounds,
+            [&](const std::string& t) { options.bounds = parseBounds(t); });
+    return options;
+}
+
+/// A bar on stderr, where that is a terminal.
+class StageBar {
+public:
+    explicit StageBar(bool shown) : shown_(shown && isatty(STDERR_FILENO)) {}
+    ~StageBar() { clear(); }
+
+    void show(std::string_view stage, double fraction) {
+        const int percent = static_cast<int>(100 * fraction);
+        if (!shown_ || (stage == stage_ && percent == percent_)) return;
+        stage_ = stage;
+        percent_ = percent;
+        constexpr int width = 30;
+        const int full = percent * width / 100;
+        fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3} %, {}\x1b[K", "", full, "", width - full,
+                   percent, stage);
+        std::fflush(stderr);
+    }
+    void clear() {
+        if (percent_ >= 0) fmt::print(stderr, "\r\x1b[K");
+        percent_ = -1;
+    }
+
+private:
+    bool shown_;
+    std::string stage_;
+    int percent_ = -1;
+};
+
+void stopWhereInterrupted() {
+    if (interrupted()) throw CLI::RuntimeError(interruptedCode);
+}
+
+void run(const ConvertWords& words) {
+    setUpLog(LogStyle::Text, words.quiet ? "warning" : "info");
+    catchInterrupts();
+    ConvertOptions options = readWords(words);
+    StageBar bar(!words.quiet);
+    options.info = [&](const std::string& text) {
+        stopWhereInterrupted();
+        bar.clear();
+        spdlog::info("{}", text);
+    };
+    options.warn = [&](const std::string& text) {
+        bar.clear();
+        spdlog::warn("{}", text);
+    };
+    options.progress = [&](std::string_view stage, double fraction) {
+        stopWhereInterrupted();
+        bar.show(stage, fraction);
+    };
+    convert(words.in, words.out, options);
+}
+
+}  // namespace
+
+CLI::App& addConvertCommand(CLI::App& app) {
+    CLI::App& command = *app.add_subcommand("convert", "Convert other volumes to VDB, and back");
+    const auto words = std::make_shared<ConvertWords>();
+    command.add_option("in", words->in, "What to convert; slices as slice.####.png")->required();
+    command.add_option("out", words->out, "What to write")->required();
+    const auto add = [&](const char* group, const char* name, std::optional<std::string>& to,
+                         const char* type, const char* help) {
+        command.add_option(name, to, help)->type_name(type)->group(group);
+    };
+    add("Input", "--from", words->from, "FORMAT", "Format of IN, instead of what its name says");
+    add("Input", "--grid", words->grid, "NAME", "Grid of a VDB, or medium of a pbrt scene");
+    add("Input", "--channel", words->channel, "N", "Take one channel of several, from 0");
+    add("Bare numbers", "--dims", words->dims, "X,Y,Z", "Voxels; x varies fastest in the file");
+    add("Bare numbers", "--type", words->type, "TYPE",
+        "u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64");
+    add("Bare numbers", "--channels", words->channels, "N", "Numbers of each voxel (1)");
+    add("Bare numbers", "--endian", words->endian, "ORDER", "little (usual) or big");
+    add("Bare numbers", "--header", words->header, "BYTES", "Bytes before the numbers (0)");
+    add("Place", "--axes", words->axes, "ORDER",
+        "Axes of the source that become x, y and z, a minus reversing one: xzy, x,-z,y");
+    add("Place", "--voxel", words->voxel, "SIZE", "Side of a voxel; the shortest if unequal");
+    add("Place", "--size", words->size, "LENGTH", "Longest side of the volume, instead");
+    add("Place", "--origin", words->origin, "X,Y,Z", "Centre of the first voxel");
+    constexpr const char* values = "Values, in this order: repair, scale, offset, clamp, threshold";
+    command.add_flag("--repair", words->repair, "NaN and infinite values become zero")
+        ->group(values);
+    add(values, "--scale", words->scale, "S", "Multiply");
+    add(values, "--offset", words->offset, "B", "Then add");
+    add(values, "--clamp", words->clamp, "LOW,HIGH", "Then hold within");
+    add(values, "--threshold", words->threshold, "T", "Then zero where below");
+    add(values, "--tolerance", words->tolerance, "E",
+        "Values this near to zero become background, which takes no memory (0)");
+    add("Output", "--name", words->name, "NAME", "Of the grid (density)");
+    add("Output", "--precision", words->precision, "P",
+        "half, float or double; the error is measured and said");
+    add("Output", "--compression", words->compression, "C", "none, zip or blosc (usual)");
+    add("Output", "--out-type", words->outType, "TYPE", "Of the numbers of a dense file");
+    add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
+        "First and last voxel that a dense file gets; else the active ones' box");
+    command.add_flag("-q,--quiet", words->quiet, "Warnings and errors only");
+    command.footer("Formats:\n" + describeFormats());
+    command.callback([words] { run(*words); });
+    return command;
+}
+
+}  // namespace woodcock::tool
