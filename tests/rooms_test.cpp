@@ -33,7 +33,7 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
       "base"}}};
 
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
-/// that bear the library's name, which only .cpp files include.
+/// that bear the library's name, which only .cpp files and each other include.
 const std::map<std::string, std::set<std::string>> roomsOfLibrary{
     {"openvdb", {"grid", "bake"}},   {"openvdb_ax", {"bake"}},   {"nanovdb", {"bake"}},
     {"assimp", {"bake", "surface"}}, {"OpenImageIO", {"image"}}, {"OpenColorIO", {"image"}}};
@@ -62,7 +62,7 @@ std::vector<std::string> violations(const fs::path& lib) {
             if (top == "woodcock") {
                 const std::string other = std::next(included.begin())->string();
                 allowed = (other == room || roomsBelow.at(room).contains(other)) &&
-                          (!bearsName(included) || file.extension() == ".cpp");
+                          (!bearsName(included) || bearsName(file) || file.extension() == ".cpp");
             } else if (const auto library = roomsOfLibrary.find(top);
                        library != roomsOfLibrary.end()) {
                 allowed = (file.extension() == ".cpp" || bearsName(file)) &&

@@ -28,8 +28,8 @@ struct ConvertWords {
     std::filesystem::path in, out;
     std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
         axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
-        compression, outType, bounds;
-    bool repair = false, quiet = false;
+        compression, outType, bounds, band, radius;
+    bool repair = false, shell = false, quiet = false;
 };
 
 /// "1,2,3": exactly `count` numbers.
@@ -140,6 +140,12 @@ ConvertOptions readWords(const ConvertWords& words) {
             [&](const std::string& t) { options.placement.voxel = parseNumber(t, 1e-30, 1e30); });
     ifGiven("--size", words.size,
             [&](const std::string& t) { options.placement.size = parseNumber(t, 1e-30, 1e30); });
+    const auto length = [](std::optional<double>& to) {
+        return [&to](const std::string& t) { to = parseNumber(t, 1e-30, 1e30); };
+    };
+    ifGiven("--band", words.band, length(options.band));
+    ifGiven("--radius", words.radius, length(options.radius));
+    options.shell = words.shell;
     ifGiven("--origin", words.origin, [&](const std::string& t) {
         const auto p = numbers(t, 3, "0,0.5,0");
         options.placement.origin = Vec3d{p[0], p[1], p[2]};
@@ -237,6 +243,11 @@ CLI::App& addConvertCommand(CLI::App& app) {
     add("Bare numbers", "--channels", words->channels, "N", "Numbers of each voxel (1)");
     add("Bare numbers", "--endian", words->endian, "ORDER", "little (usual) or big");
     add("Bare numbers", "--header", words->header, "BYTES", "Bytes before the numbers (0)");
+    add("Shapes", "--band", words->band, "WIDTH",
+        "Depth below a mesh's or level set's surface at which density is one (three voxels)");
+    add("Shapes", "--radius", words->radius, "R", "Of points without one of their own (2 voxels)");
+    command.add_flag("--shell", words->shell, "Fog around a mesh's surface instead of inside it")
+        ->group("Shapes");
     add("Place", "--axes", words->axes, "ORDER",
         "Axes of the source that become x, y and z, a minus reversing one: xzy, x,-z,y");
     add("Place", "--voxel", words->voxel, "SIZE", "Side of a voxel; the shortest if unequal");

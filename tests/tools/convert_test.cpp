@@ -138,7 +138,7 @@ TEST_F(Convert, AFullDiskLeavesNothing) {
     for (const std::string out : {"a.vdb", "a.npy", "a.vol", "a.nrrd"}) {
         std::vector<std::string> arguments{"convert", file("a.raw"), file(out)};
         arguments.insert(arguments.end(), layout.begin(), layout.end());
-        const ProgramResult result = runProgram(arguments, {.fileSize = 1000});
+        const ProgramResult result = runProgram(arguments, {.fileSize = 600});
         EXPECT_EQ(result.exitCode, 1) << result.err;
         EXPECT_FALSE(fs::exists(file(out)));
     }

@@ -9,6 +9,7 @@
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/bake/openvdb_field.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_transform.h"
 #include "woodcock/grid/voxel_scan.h"
 
 namespace woodcock {
@@ -47,7 +48,7 @@ public:
             checkFinite(*scalars, place_);
         else
             checkFinite(dynamic_cast<const openvdb::Vec3SGrid&>(grid), place_);
-        return gridNode(fieldOf(grid), worldFromIndexOf(grid));
+        return gridNode(fieldOf(grid), affineOf(*grid.transform().baseMap()));
     }
 
 private:

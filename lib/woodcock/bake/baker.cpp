@@ -15,9 +15,9 @@
 #include <tuple>
 #include <variant>
 
-#include "woodcock/bake/openvdb_field.h"
 #include "woodcock/bake/program.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_transform.h"
 #include "woodcock/grid/voxel_scan.h"
 
 namespace woodcock {
@@ -544,7 +544,7 @@ Bake Baker::assemble() {
                                                 : gather.operator()<openvdb::FloatTree>();
         grid->setName(output.name);
         grid->setGridClass(output.channels == 1 ? openvdb::GRID_FOG_VOLUME : openvdb::GRID_UNKNOWN);
-        setTransform(*grid, settings_.worldFromIndex);
+        grid->setTransform(openVdbTransform(settings_.worldFromIndex));
         BakedGridStatistics& statistics = totals[o].statistics;
         statistics.name = output.name;
         statistics.activeVoxels = grid->activeVoxelCount();

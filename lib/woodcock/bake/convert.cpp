@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/bake/openvdb_convert_source.h"
 #include "woodcock/bake/openvdb_each_type.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
@@ -18,13 +19,11 @@ namespace woodcock {
 
 namespace fs = std::filesystem;
 
-namespace {
+void say(const std::function<void(const std::string&)>& log, const std::string& text) {
+    if (log && !text.empty()) log(text);
+}
 
-/// What a source holds, on its way to the file that is written.
-struct Source {
-    VdbGrids grids;
-    std::optional<Box3i> box;  ///< of the voxels, where the source was dense
-};
+namespace {
 
 using ReadSource = Source (*)(const fs::path&, const ConvertOptions&);
 using WriteDense = double (*)(const fs::path&, const DenseVolume&, const DenseWriteOptions&);
@@ -37,10 +36,6 @@ struct Format {
     WriteDense writeDense = nullptr;
     bool isVdb = false;
 };
-
-void say(const std::function<void(const std::string&)>& log, const std::string& text) {
-    if (log && !text.empty()) log(text);
-}
 
 WorkProgress stage(const ConvertOptions& options, std::string_view name) {
     if (!options.progress) return {};
@@ -168,6 +163,7 @@ Source readVdbSource(const fs::path& in, const ConvertOptions& options) {
     std::vector<std::string> names;
     for (const GridListing& grid : chosen) names.push_back(grid.uniqueName);
     Source source{readVdbGrids(file, names), {}};
+    fillLevelSets(source.grids, options);
     useFloatingPoint(source.grids);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         say(options.info, fmt::format("read '{}' ({}) from {}: {} active voxels",
@@ -198,6 +194,9 @@ const std::vector<Format>& formats() {
         {"vol", {".vol"}, "Mitsuba", readMitsubaSource, writeMitsubaVolume},
         {"nrrd", {".nrrd"}, "nearly raw raster data", readNrrdSource, writeNrrd},
         {"pbrt", {".pbrt"}, "pbrt's grid media", readPbrtSource},
+        {"mesh", {".obj", ".stl", ".gltf", ".glb"}, "triangles", readMeshSource},
+        {"ply", {".ply"}, "triangles or points", readPlySource},
+        {"points", {".csv", ".txt", ".xyz"}, "a table of points", readPointsSource},
         {"images", {}, "slices: names with #### or %04d", readImagesSource}};
     return all;
 }
@@ -267,6 +266,11 @@ void checkOptions(const Format& from, const Format& to, const ConvertOptions& op
             from.what);
     if (options.grid && name != "vdb" && name != "pbrt")
         throw usageError("--grid is for VDB files and pbrt scenes; this one is {}", from.what);
+    const bool shape = name == "mesh" || name == "ply" || name == "points";
+    if ((options.band && !shape && name != "vdb") || ((options.radius || options.shell) && !shape))
+        throw usageError(
+            "--band, --shell and --radius are for meshes, points and level sets; this one is {}",
+            from.what);
     if (to.isVdb && (options.outputType || options.bounds))
         throw usageError("--out-type and --bounds are for dense formats, and VDB is none");
     if (to.writeDense && options.precision == Precision::Half)

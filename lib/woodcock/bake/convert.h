@@ -33,6 +33,11 @@ struct ConvertOptions {
     std::optional<bool> bigEndian;
     std::optional<std::uint64_t> headerBytes;
 
+    // Of meshes, points and level sets.
+    std::optional<double> band;    ///< depth at which density reaches one, world units
+    std::optional<double> radius;  ///< of points that have none of their own
+    bool shell = false;            ///< fog around a mesh's surface instead of inside it
+
     std::optional<int> channel;  ///< the one that is taken
     AxisOrder axes;
     Placement placement;

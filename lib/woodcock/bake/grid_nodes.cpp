@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grids of VDB files as inputs.
+// Grids of VDB files, and meshes, as inputs.
 #include <cmath>
 #include <map>
 
 #include "woodcock/bake/grid_node.h"
+#include "woodcock/bake/mesh_to_fog.h"
 #include "woodcock/bake/node_reader.h"
+#include "woodcock/bake/openvdb_field.h"
 #include "woodcock/grid/block_ranges.h"
+#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_transform.h"
 #include "woodcock/grid/vdb_load.h"
 
 namespace woodcock {
@@ -96,7 +100,23 @@ Graph::Entry grid(NodeReader& r) {
     return {.node = gridNode(std::move(loaded.field), loaded.worldFromIndex)};
 }
 
-constexpr NodeType types[]{{"grid", grid}};
+/// Signed distance to a mesh, found as a grid: true to `band` on both sides, then level.
+Graph::Entry mesh(NodeReader& r) {
+    const std::filesystem::path file = r.file();
+    const TriangleMesh triangles = readMesh(file);
+    const Vec3d size = boundsOf(triangles).size();
+    const double longest = std::max({size.x, size.y, size.z});
+    MeshToLevelSetOptions options;
+    options.voxel = r.number("voxel", longest / 128, positive);
+    options.band = r.number("band", 0.1 * longest, positive);
+    std::vector<std::string> notes;
+    const VdbGrids grids = meshToLevelSet(triangles, options, notes);
+    if (!notes.empty()) throw r.table().error("{}: {}", file.string(), notes.front());
+    const openvdb::GridBase& grid = *grids.grids.front();
+    return {.node = gridNode(fieldOf(grid), affineOf(*grid.transform().baseMap()))};
+}
+
+constexpr NodeType types[]{{"grid", grid}, {"mesh", mesh}};
 
 }  // namespace
 

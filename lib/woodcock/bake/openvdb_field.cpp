@@ -44,23 +44,4 @@ Field fieldOf(const openvdb::GridBase& grid) {
     return build(dynamic_cast<const openvdb::Vec3SGrid&>(grid).tree());
 }
 
-Affine3d worldFromIndexOf(const openvdb::GridBase& grid) {
-    const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
-    Affine3d world;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) world.column[static_cast<std::size_t>(i)][j] = m(i, j);
-        world.translation[i] = m(3, i);
-    }
-    return world;
-}
-
-void setTransform(openvdb::GridBase& grid, const Affine3d& worldFromIndex) {
-    openvdb::Mat4d m = openvdb::Mat4d::identity();
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) m(i, j) = worldFromIndex.column[static_cast<std::size_t>(i)][j];
-        m(3, i) = worldFromIndex.translation[i];
-    }
-    grid.setTransform(openvdb::math::Transform::createLinearTransform(m));
-}
-
 }  // namespace woodcock

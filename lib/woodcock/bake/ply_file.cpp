@@ -219,4 +219,10 @@ std::vector<PlyElement> readPly(const std::filesystem::path& file) {
     return PlyReader(file).read();
 }
 
+bool plyHasFaces(const std::filesystem::path& file) {
+    for (const PlyElement& element : readPly(file))
+        if (element.name == "face" && element.count > 0) return true;
+    return false;
+}
+
 }  // namespace woodcock

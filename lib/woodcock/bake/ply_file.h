@@ -38,4 +38,7 @@ struct PlyElement {
 /// checked against its length before memory is taken. Errors: Input, with the place.
 std::vector<PlyElement> readPly(const std::filesystem::path& file);
 
+/// Whether there are faces among them. Errors: as of readPly().
+bool plyHasFaces(const std::filesystem::path& file);
+
 }  // namespace woodcock

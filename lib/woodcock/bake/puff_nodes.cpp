@@ -3,12 +3,15 @@
 #include <cmath>
 
 #include "woodcock/bake/node_reader.h"
+#include "woodcock/bake/points_to_density.h"
 #include "woodcock/bake/pointwise.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock {
 
 namespace {
+
+constexpr std::size_t mostPuffs = 20000;
 
 struct Puff {
     Vec3d centre;
@@ -132,10 +135,9 @@ Graph::Entry puffs(NodeReader& r) {
     double total = 0, generation = count;
     for (int i = 0; i <= growth.generations; ++i, generation *= growth.children)
         total += generation;
-    constexpr double most = 20000;
-    if (total > most)
+    if (total > static_cast<double>(mostPuffs))
         throw r.table().error("makes {} puffs by count, children and generations; at most {}",
-                              total, most);
+                              total, mostPuffs);
 
     RandomStream random(r.seed());
     std::vector<Puff> all;
@@ -157,7 +159,26 @@ Graph::Entry puffs(NodeReader& r) {
     return {.node = std::make_unique<Puffs>(std::move(all), width)};
 }
 
-constexpr NodeType types[]{{"puffs", puffs}};
+/// A puff at each point of a file.
+Graph::Entry points(NodeReader& r) {
+    const std::filesystem::path file = r.file();
+    const PointCloud cloud = readPoints(file);
+    const double width = r.number("blend", positive);
+    const bool ownRadii = !cloud.radii.empty();
+    const double radius = ownRadii ? r.number("radius", 1, positive) : r.number("radius", positive);
+    if (cloud.points.size() > mostPuffs)
+        throw r.table().error(
+            "{} has {} points, and at most {} melt into each other; woodcock convert makes a "
+            "density of more",
+            file.string(), cloud.points.size(), mostPuffs);
+    std::vector<Puff> all;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+        all.push_back(
+            {cloud.points[i].as<double>(), ownRadii ? double(cloud.radii[i]) * radius : radius});
+    return {.node = std::make_unique<Puffs>(std::move(all), width)};
+}
+
+constexpr NodeType types[]{{"puffs", puffs}, {"points", points}};
 
 }  // namespace
 
