@@ -27,5 +27,5 @@ find_package(TBB 2021 REQUIRED COMPONENTS tbb)
 find_package(fmt REQUIRED)
 find_package(tomlplusplus REQUIRED)
 
-# Without it the library still builds, and says so where a mesh is to be read.
+# Without it the library still builds, and says so where a mesh other than PLY is to be read.
 pkg_check_modules(Assimp QUIET IMPORTED_TARGET assimp>=5.2)
