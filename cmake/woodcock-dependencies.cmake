@@ -29,5 +29,12 @@ find_package(tomlplusplus REQUIRED)
 find_package(muparser REQUIRED)
 find_package(ZLIB REQUIRED)
 
-# Without it the library still builds, and says so where a mesh is to be read.
+# Without it the library still builds, and says so where a mesh other than PLY is to be read.
 pkg_check_modules(Assimp QUIET IMPORTED_TARGET assimp>=5.2)
+
+# NanoVDB is headers alone. Without it, or the compressions of its files, the library still builds,
+# and says so where a .nvdb file is to be read or written.
+find_path(NANOVDB_INCLUDE_DIR nanovdb/NanoVDB.h)
+mark_as_advanced(NANOVDB_INCLUDE_DIR)
+find_package(ZLIB QUIET)
+pkg_check_modules(Blosc QUIET IMPORTED_TARGET blosc)

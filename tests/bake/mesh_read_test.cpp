@@ -88,6 +88,15 @@ std::string binaryPly(const TriangleMesh& mesh) {
     return bytes;
 }
 
+const std::string plyFaces = "property list uchar int vertex_index\n";
+
+/// Three points, and what follows them in the header and in the body.
+std::string plyText(const std::string& header, const std::string& body) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+           "property float z\n" +
+           header + "end_header\n0 0 0\n1 0 0\n0 1 0\n" + body + "\n";
+}
+
 /// One triangle (0,0,0), (1,0,0), (0,1,0) in `buffer`, which two nodes place.
 std::string gltf(const std::string& buffer) {
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
@@ -126,6 +135,19 @@ TEST(MeshRead, StlAndPlyAreTheSameMesh) {
     writeText(dir / "binary.ply", binaryPly(cube()));
     for (const char* name : {"ascii.stl", "binary.STL", "binary.ply"})
         expectUnitCube(readMesh(dir / name));
+}
+
+TEST(MeshRead, PolygonsOfAPlyAreReadWithoutAssimp) {
+    const TempDir dir;
+    writeText(dir / "a.ply",
+              "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\n"
+              "property double y\nproperty double z\nelement face 1\n" +
+                  plyFaces + "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 3 2 1 0\n");
+    const TriangleMesh mesh = readMesh(dir / "a.ply");
+    EXPECT_EQ(mesh.points.size(), 4u);
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    for (const auto& [a, b, c] : mesh.triangles)  // clockwise, as the file has it
+        EXPECT_LT(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]).z, 0);
 }
 
 TEST(MeshRead, NodesPlaceTheirParts) {
@@ -173,8 +195,16 @@ TEST(MeshRead, BadFilesAreErrorsThatNameThem) {
     expectBad("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n", "holds no triangles");
     expectBad("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "");
     expectBad("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "1 points that are not finite");
-    expectBad("empty.ply", "", "cannot read mesh");
-    expectBad("words.ply", "These are words.\n", "cannot read mesh");
+    expectBad("empty.ply", "", "is no PLY file");
+    expectBad("words.ply", "These are words.\n", "is no PLY file");
+    expectBad("points.ply", plyText("", "0"), "has no element 'face'");
+    expectBad("lines.ply", plyText("element face 1\n" + plyFaces, "2 0 1"), "no triangles");
+    expectBad("index.ply", plyText("element face 1\n" + plyFaces, "3 0 1 3"),
+              "face 0 refers to point 3 of 3");
+    expectBad("sign.ply", plyText("element face 1\n" + plyFaces, "3 0 1 -1"),
+              "face 0 refers to point -1 of 3");
+    expectBad("names.ply", plyText("element face 1\nproperty list uchar int corners\n", "3 0 1 2"),
+              "element 'face' has no list 'vertex_indices'");
     expectBad("words.gltf", "{\"asset\":", "cannot read mesh");
     expectBad("buffer.gltf", gltf("missing.bin"), "cannot read mesh");
     std::string lies = binaryStl(cube());
@@ -198,10 +228,10 @@ TEST(MeshRead, DamagedFilesDoNoHarm) {
     NEEDS_ASSIMP();
     const TempDir dir;
     writeText(dir / "a.bin", gltfBuffer());
-    const std::pair<const char*, std::string> samples[]{{"a.obj", cubeObj},
-                                                        {"a.stl", asciiStl(cube())},
-                                                        {"b.stl", binaryStl(cube())},
-                                                        {"a.gltf", gltf("a.bin")}};
+    const std::pair<const char*, std::string> samples[]{
+        {"a.obj", cubeObj},           {"a.stl", asciiStl(cube())},
+        {"b.stl", binaryStl(cube())}, {"a.ply", plyText("element face 1\n" + plyFaces, "3 0 1 2")},
+        {"b.ply", binaryPly(cube())}, {"a.gltf", gltf("a.bin")}};
     RandomStream random(7);
     int errors = 0, meshes = 0;
     for (int variant = 0; variant < 300; ++variant)

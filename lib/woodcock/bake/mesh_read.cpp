@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "woodcock/bake/ply_mesh.h"
 #include "woodcock/bake/polygon.h"
 #include "woodcock/bake/triangle_mesh.h"
 #include "woodcock/base/affine.h"
@@ -20,14 +21,41 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 
+#endif
+
 namespace woodcock {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-/// Assimp takes up to about this many times a file's size while reading.
+/// A mesh takes up to about this many times its file's size while it is read.
 constexpr double memoryPerByte = 12;
+
+/// The extension, of a file that may be read.
+std::string requireReadable(const fs::path& file) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) throw inputError("cannot read mesh '{}': no such file", file.string());
+    if (!fs::is_regular_file(status))
+        throw inputError("cannot read mesh '{}': it is not a regular file", file.string());
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    constexpr std::array known{".obj", ".ply", ".stl", ".gltf", ".glb"};
+    if (std::find(known.begin(), known.end(), extension) == known.end())
+        throw inputError(
+            "cannot read mesh '{}': its name ends in '{}', where .obj, .ply, .stl, .gltf or .glb "
+            "is expected",
+            file.string(), extension);
+    const double needed = memoryPerByte * static_cast<double>(fs::file_size(file, error));
+    if (const auto limit = static_cast<double>(memoryLimit()); needed > limit)
+        throw failure("cannot read mesh '{}': it may take {} of memory, and there are {}",
+                      file.string(), formatGiB(needed), formatGiB(limit));
+    return extension;
+}
+
+#ifdef WOODCOCK_WITH_ASSIMP
+
 constexpr double bytesPerTriangle = 100;  ///< of a TriangleMesh while it is welded
 
 /// Ends reading that goes on at the end of a file: some of Assimp's readers never would.
@@ -69,26 +97,6 @@ public:
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
 };
-
-void requireReadable(const fs::path& file) {
-    std::error_code error;
-    const fs::file_status status = fs::status(file, error);
-    if (!fs::exists(status)) throw inputError("cannot read mesh '{}': no such file", file.string());
-    if (!fs::is_regular_file(status))
-        throw inputError("cannot read mesh '{}': it is not a regular file", file.string());
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    constexpr std::array known{".obj", ".ply", ".stl", ".gltf", ".glb"};
-    if (std::find(known.begin(), known.end(), extension) == known.end())
-        throw inputError(
-            "cannot read mesh '{}': its name ends in '{}', where .obj, .ply, .stl, .gltf or .glb "
-            "is expected",
-            file.string(), extension);
-    const double needed = memoryPerByte * static_cast<double>(fs::file_size(file, error));
-    if (const auto limit = static_cast<double>(memoryLimit()); needed > limit)
-        throw failure("cannot read mesh '{}': it may take {} of memory, and there are {}",
-                      file.string(), formatGiB(needed), formatGiB(limit));
-}
 
 Affine3d toAffine(const aiMatrix4x4& m) {
     return {{Vec3d{m.a1, m.b1, m.c1}, Vec3d{m.a2, m.b2, m.c2}, Vec3d{m.a3, m.b3, m.c3}},
@@ -174,35 +182,37 @@ private:
     std::string firstFaultyPart_;
 };
 
-}  // namespace
-
-bool canReadMeshes() { return true; }
-
-TriangleMesh readMesh(const fs::path& file) {
-    requireReadable(file);
+TriangleMesh readByAssimp(const fs::path& file) {
     Assimp::Importer importer;
     importer.SetIOHandler(new RegularFiles);  // which the importer deletes
     // Without any of Assimp's steps of processing: they abort where a face is not as they expect.
     const aiScene* scene = importer.ReadFile(file.string(), 0);
     if (!scene)
         throw inputError("cannot read mesh '{}': {}", file.string(), importer.GetErrorString());
-    TriangleMesh mesh = weld(Joiner(file, *scene).join());
+    return weld(Joiner(file, *scene).join());
+}
+
+constexpr bool hasAssimp = true;
+
+#else
+
+TriangleMesh readByAssimp(const fs::path& file) {
+    throw failure("cannot read mesh '{}': this build has no Assimp", file.string());
+}
+
+constexpr bool hasAssimp = false;
+
+#endif
+
+}  // namespace
+
+bool canReadMeshes() { return hasAssimp; }
+
+TriangleMesh readMesh(const fs::path& file) {
+    // Assimp's reader of PLY does not end where some files are damaged.
+    TriangleMesh mesh = requireReadable(file) == ".ply" ? readPlyMesh(file) : readByAssimp(file);
     if (mesh.triangles.empty()) throw inputError("{} holds no triangles", file.string());
     return mesh;
 }
 
 }  // namespace woodcock
-
-#else
-
-namespace woodcock {
-
-bool canReadMeshes() { return false; }
-
-TriangleMesh readMesh(const std::filesystem::path& file) {
-    throw failure("cannot read mesh '{}': this build has no Assimp", file.string());
-}
-
-}  // namespace woodcock
-
-#endif

@@ -17,7 +17,7 @@ struct TriangleMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of three different points each
 };
 
-/// Whether this build can read meshes: it was made with Assimp.
+/// Whether this build can read meshes of all formats: it was made with Assimp. PLY needs none.
 bool canReadMeshes();
 
 /// All triangles of an OBJ, PLY, STL or glTF file (.gltf, .glb), each part where its nodes put it;
