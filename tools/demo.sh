@@ -9,7 +9,9 @@ build=build/demo
 
 cmake/packages.sh
 cmake --preset demo
-cmake --build --preset demo --target woodcock_program woodcock_demo_cloud
-[[ $build/cloud.vdb -nt $build/tools/demo_cloud ]] || $build/tools/demo_cloud $build/cloud.vdb
+cmake --build --preset demo --target woodcock_program
+# The program holds the recipe.
+[[ $build/cloud.vdb -nt $build/tools/woodcock ]] ||
+    $build/tools/woodcock bake cumulus --resolution 384 -o $build/cloud.vdb
 $build/tools/woodcock render data/scenes/demo.toml -o $build/demo.exr -o $build/demo.png "$@"
 echo "The picture: $PWD/$build/demo.png, and for compositing: $PWD/$build/demo.exr"
