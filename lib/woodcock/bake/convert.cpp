@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/bake/nanovdb_file.h"
 #include "woodcock/bake/openvdb_convert_source.h"
 #include "woodcock/bake/openvdb_each_type.h"
 #include "woodcock/base/error.h"
@@ -26,6 +27,8 @@ void say(const std::function<void(const std::string&)>& log, const std::string& 
 namespace {
 
 using ReadSource = Source (*)(const fs::path&, const ConvertOptions&);
+using WriteGrids = void (*)(const fs::path& in, const fs::path& out, VdbGrids&,
+                            const ConvertOptions&);
 using WriteDense = double (*)(const fs::path&, const DenseVolume&, const DenseWriteOptions&);
 
 struct Format {
@@ -34,7 +37,7 @@ struct Format {
     const char* what;
     ReadSource read = nullptr;
     WriteDense writeDense = nullptr;
-    bool isVdb = false;
+    WriteGrids writeGrids = nullptr;
 };
 
 WorkProgress stage(const ConvertOptions& options, std::string_view name) {
@@ -144,10 +147,32 @@ void turn(openvdb::GridBase& grid, const AxisOrder& axes, const Affine3d& worldF
     grid.setTransform(openVdbTransform(axes.map() * worldFromIndex));
 }
 
-Source readVdbSource(const fs::path& in, const ConvertOptions& options) {
+/// Names, turns and remaps the grids of a file, as the options say.
+void finishGrids(Source& source, const fs::path& in, const ConvertOptions& options) {
+    for (const openvdb::GridBase::Ptr& grid : source.grids.grids)
+        if (!options.axes.identity())
+            turn(*grid, options.axes, affineOf(*grid->transform().baseMap()));
+    if (options.name) {
+        if (source.grids.grids.size() > 1)
+            throw usageError("--name is for one grid, and {} has {}; choose one by --grid",
+                             in.string(), source.grids.grids.size());
+        source.grids.grids.front()->setName(*options.name);
+    }
+    ValueSummary found;
+    if (!options.values.remap.identity() || options.values.tolerance > 0 || options.values.repair) {
+        remapGrids(source.grids, options.values, found);
+        say(options.warn, requireSound(found, in.string(), options.values.repair));
+    }
+}
+
+void requireNoPlacement(const ConvertOptions& options) {
     const Placement& placement = options.placement;
     if (placement.voxel || placement.size || placement.origin || options.channel)
         throw usageError("--voxel, --size, --origin and --channel are for sources that are no VDB");
+}
+
+Source readVdbSource(const fs::path& in, const ConvertOptions& options) {
+    requireNoPlacement(options);
     const VdbFile file = listGrids(in);
     std::vector<GridListing> chosen;
     if (options.grid) chosen.push_back(findGrid(file, *options.grid).grid);
@@ -169,26 +194,81 @@ Source readVdbSource(const fs::path& in, const ConvertOptions& options) {
         say(options.info, fmt::format("read '{}' ({}) from {}: {} active voxels",
                                       chosen[i].uniqueName, chosen[i].valueType, in.string(),
                                       source.grids.grids[i]->activeVoxelCount()));
-        if (!options.axes.identity())
-            turn(*source.grids.grids[i], options.axes, *chosen[i].worldFromIndex);
     }
-    if (options.name) {
-        if (chosen.size() > 1)
-            throw usageError("--name is for one grid, and {} has {}; choose one by --grid",
-                             in.string(), describeGrids(file));
-        source.grids.grids.front()->setName(*options.name);
-    }
-    ValueSummary found;
-    if (!options.values.remap.identity() || options.values.tolerance > 0 || options.values.repair) {
-        remapGrids(source.grids, options.values, found);
-        say(options.warn, requireSound(found, in.string(), options.values.repair));
-    }
+    finishGrids(source, in, options);
     return source;
+}
+
+Source readNanoVdbSource(const fs::path& in, const ConvertOptions& options) {
+    requireNoPlacement(options);
+    Source source{readNanoVdb(in), {}};
+    std::vector<std::string> names;
+    for (const auto& grid : source.grids.grids) {
+        names.push_back(grid->getName());
+        say(options.info, fmt::format("read '{}' ({}) from {}: {} active voxels", grid->getName(),
+                                      grid->valueType(), in.string(), grid->activeVoxelCount()));
+    }
+    if (options.grid) {
+        std::erase_if(source.grids.grids,
+                      [&](const auto& grid) { return grid->getName() != *options.grid; });
+        if (source.grids.grids.empty())
+            throw inputError("grid '{}' not found in {}; it has: {}", *options.grid, in.string(),
+                             joinNames(names));
+    }
+    fillLevelSets(source.grids, options);
+    finishGrids(source, in, options);
+    return source;
+}
+
+void applyPrecision(VdbGrids& grids, Precision precision, const ConvertOptions& options) {
+    const PrecisionLoss loss = setPrecision(grids, precision);
+    if (precision == Precision::Half || precision == Precision::Float)
+        say(options.info,
+            fmt::format("--precision {}: values change by {:.3g} at most, relatively by {:.3g}",
+                        precision == Precision::Half ? "half" : "float", loss.absolute,
+                        loss.relative));
+}
+
+bool allSavedAsHalf(const VdbGrids& grids) {
+    return std::all_of(grids.grids.begin(), grids.grids.end(),
+                       [](const auto& grid) { return grid->saveFloatAsHalf(); });
+}
+
+void sayWritten(const fs::path& out, const VdbGrids& grids, const ConvertOptions& options) {
+    std::string contents;
+    for (const openvdb::GridBase::Ptr& grid : grids.grids)
+        contents += fmt::format("'{}' ({}), {} active voxels; ", grid->getName(), grid->valueType(),
+                                grid->activeVoxelCount());
+    say(options.info,
+        fmt::format("wrote {}: {}{} bytes", out.string(), contents, fs::file_size(out)));
+}
+
+void writeVdbFile(const fs::path& in, const fs::path& out, VdbGrids& grids,
+                  const ConvertOptions& options) {
+    applyPrecision(grids, options.precision, options);
+    VdbWriteOptions how;
+    // Halves stay halves, as long as nothing has changed them.
+    how.half = options.precision == Precision::Half ||
+               (options.precision == Precision::Source && options.values.remap.identity() &&
+                allSavedAsHalf(grids));
+    how.compression = options.compression;
+    how.metadata = {{"generator", fmt::format("woodcock {}", version())},
+                    {"source", in.filename().string()}};
+    writeVdb(out, grids, how);
+    sayWritten(out, grids, options);
+}
+
+void writeNanoVdbFile(const fs::path&, const fs::path& out, VdbGrids& grids,
+                      const ConvertOptions& options) {
+    applyPrecision(grids, Precision::Float, options);
+    writeNanoVdb(out, grids);
+    sayWritten(out, grids, options);
 }
 
 const std::vector<Format>& formats() {
     static const std::vector<Format> all{
-        {"vdb", {".vdb"}, "OpenVDB", readVdbSource, nullptr, true},
+        {"vdb", {".vdb"}, "OpenVDB", readVdbSource, nullptr, writeVdbFile},
+        {"nvdb", {".nvdb"}, "NanoVDB", readNanoVdbSource, nullptr, writeNanoVdbFile},
         {"raw", {".raw", ".bin", ".dat"}, "bare numbers", readRawSource, writeRaw},
         {"npy", {".npy"}, "NumPy", readNpySource, writeNpy},
         {"vol", {".vol"}, "Mitsuba", readMitsubaSource, writeMitsubaVolume},
@@ -210,7 +290,7 @@ std::string lowerExtension(const fs::path& file) {
 std::string listFormats(bool written) {
     std::string text;
     for (const Format& format : formats()) {
-        if (written && !format.writeDense && !format.isVdb) continue;
+        if (written && !format.writeDense && !format.writeGrids) continue;
         text += (text.empty() ? "" : ", ") + std::string(format.name);
         for (const std::string& extension : format.extensions)
             if (extension.substr(1) != format.name) text += " " + extension;
@@ -245,7 +325,7 @@ const Format& inputFormat(const fs::path& in, const ConvertOptions& options) {
 
 const Format& outputFormat(const fs::path& out) {
     const Format* format = formatOfName(out);
-    if (format && (format->isVdb || format->writeDense)) return *format;
+    if (format && (format->writeGrids || format->writeDense)) return *format;
     throw usageError("the name of '{}' tells no format that can be written; these can: {}",
                      out.string(), listFormats(true));
 }
@@ -264,51 +344,18 @@ void checkOptions(const Format& from, const Format& to, const ConvertOptions& op
             "--dims, --type, --channels, --endian and --header are for raw files; this one is {} "
             "(--from raw forces it)",
             from.what);
-    if (options.grid && name != "vdb" && name != "pbrt")
+    if (options.grid && name != "vdb" && name != "nvdb" && name != "pbrt")
         throw usageError("--grid is for VDB files and pbrt scenes; this one is {}", from.what);
     const bool shape = name == "mesh" || name == "ply" || name == "points";
-    if ((options.band && !shape && name != "vdb") || ((options.radius || options.shell) && !shape))
+    if ((options.band && !shape && name != "vdb" && name != "nvdb") ||
+        ((options.radius || options.shell) && !shape))
         throw usageError(
             "--band, --shell and --radius are for meshes, points and level sets; this one is {}",
             from.what);
-    if (to.isVdb && (options.outputType || options.bounds))
+    if (to.writeGrids && (options.outputType || options.bounds))
         throw usageError("--out-type and --bounds are for dense formats, and VDB is none");
     if (to.writeDense && options.precision == Precision::Half)
         throw usageError("--precision half is for VDB; dense formats have --out-type");
-}
-
-void applyPrecision(VdbGrids& grids, Precision precision, const ConvertOptions& options) {
-    const PrecisionLoss loss = setPrecision(grids, precision);
-    if (precision == Precision::Half || precision == Precision::Float)
-        say(options.info,
-            fmt::format("--precision {}: values change by {:.3g} at most, relatively by {:.3g}",
-                        precision == Precision::Half ? "half" : "float", loss.absolute,
-                        loss.relative));
-}
-
-bool allSavedAsHalf(const VdbGrids& grids) {
-    return std::all_of(grids.grids.begin(), grids.grids.end(),
-                       [](const auto& grid) { return grid->saveFloatAsHalf(); });
-}
-
-void writeVdbFile(const fs::path& in, const fs::path& out, VdbGrids& grids,
-                  const ConvertOptions& options) {
-    applyPrecision(grids, options.precision, options);
-    VdbWriteOptions how;
-    // Halves stay halves, as long as nothing has changed them.
-    how.half = options.precision == Precision::Half ||
-               (options.precision == Precision::Source && options.values.remap.identity() &&
-                allSavedAsHalf(grids));
-    how.compression = options.compression;
-    how.metadata = {{"generator", fmt::format("woodcock {}", version())},
-                    {"source", in.filename().string()}};
-    writeVdb(out, grids, how);
-    std::string contents;
-    for (const openvdb::GridBase::Ptr& grid : grids.grids)
-        contents += fmt::format("'{}' ({}), {} active voxels; ", grid->getName(), grid->valueType(),
-                                grid->activeVoxelCount());
-    say(options.info,
-        fmt::format("wrote {}: {}{} bytes", out.string(), contents, fs::file_size(out)));
 }
 
 std::size_t chooseGrid(const VdbGrids& grids) {
@@ -346,8 +393,8 @@ void convert(const fs::path& in, const fs::path& out, const ConvertOptions& opti
     checkWritable(out);
     openvdb::initialize();
     Source source = from.read(in, options);
-    if (to.isVdb)
-        writeVdbFile(in, out, source.grids, options);
+    if (to.writeGrids)
+        to.writeGrids(in, out, source.grids, options);
     else
         writeDenseFile(out, source, to, options);
 }
@@ -357,9 +404,9 @@ std::string describeFormats() {
     for (const Format& format : formats()) {
         std::string extensions;
         for (const std::string& extension : format.extensions) extensions += " " + extension;
-        text += fmt::format("  {:7} {}{}{}\n", format.name, format.what,
-                            extensions.empty() ? "" : ":" + extensions,
-                            format.isVdb || format.writeDense ? " (read and written)" : " (read)");
+        text += fmt::format(
+            "  {:7} {}{}{}\n", format.name, format.what, extensions.empty() ? "" : ":" + extensions,
+            format.writeGrids || format.writeDense ? " (read and written)" : " (read)");
     }
     return text;
 }
