@@ -84,7 +84,7 @@ void addReports(CLI::App& command, RenderOptions& o) {
             ->type_name("FILE"),
         addChoice(command, "--log-level", o.logLevel, levels, "The least to report:")
             ->type_name("LEVEL"),
-        command.add_flag("--quiet", o.quiet, "Report warnings and errors only")};
+        command.add_flag("-q,--quiet", o.quiet, "Report warnings and errors only")};
     for (CLI::Option* option : options) option->group("Reports");
 }
 

@@ -5,6 +5,10 @@
 #include <openvdb/openvdb.h>
 #include <signal.h>
 
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "woodcock/bake/recipe.h"
@@ -114,6 +118,56 @@ TEST_F(BakeCommand, RendersAPreview) {
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_TRUE(fs::exists(file("ball.png")));
     EXPECT_TRUE(fs::exists(file("ball.lod1.vdb")));
+}
+
+/// The first of this name on $PATH; empty for none.
+fs::path findOnPath(const std::string& name) {
+    const char* path = std::getenv("PATH");
+    std::istringstream directories(path ? path : "");
+    for (std::string directory; std::getline(directories, directory, ':');)
+        if (fs::exists(fs::path(directory) / name)) return fs::path(directory) / name;
+    return {};
+}
+
+// Blender's box is one of whole leaves, from the first voxel's position to the last one's.
+TEST_F(BakeCommand, BlenderSeesTheSame) {
+    const fs::path blender = findOnPath("blender");
+    if (blender.empty()) GTEST_SKIP() << "there is no blender on the path";
+    ASSERT_EQ(bake({file("ball.toml"), "-o", file("ball.vdb"), "--voxel", "0.05"}).exitCode, 0);
+    const ProgramResult result =
+        runProgram({"-b", "--python-exit-code", "9", "--python",
+                    (sourceDir() / "tests/programs/blender_volume.py").string(), "--",
+                    file("ball.vdb"), "density"},
+                   {}, blender);
+    const std::size_t line = result.out.find("VOLUME ");
+    if (line == std::string::npos && result.out.find("pyopenvdb") != std::string::npos)
+        GTEST_SKIP() << "this Blender has no pyopenvdb";
+    ASSERT_NE(line, std::string::npos) << result.out << result.err;
+    const auto seen =
+        nlohmann::json::parse(result.out.substr(line + 7, result.out.find('\n', line) - line - 7));
+    EXPECT_EQ(seen["type"], "FLOAT");
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            EXPECT_FLOAT_EQ(seen["matrix"][i][j].get<float>(), i != j ? 0.f : i < 3 ? 0.05f : 1.f);
+
+    openvdb::initialize();
+    openvdb::io::File in(file("ball.vdb"));
+    in.open();
+    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(in.readGrid("density"));
+    EXPECT_EQ(seen["active"], grid->activeVoxelCount());
+    openvdb::CoordBBox leaves;
+    grid->tree().evalLeafBoundingBox(leaves);
+    for (const auto& corner : seen["box"])
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto axis = static_cast<int>(c);
+            const double at = corner[c].get<double>();
+            EXPECT_LT(std::min(std::abs(at - 0.05 * leaves.min()[axis]),
+                               std::abs(at - 0.05 * leaves.max()[axis])),
+                      1e-5);
+        }
+    EXPECT_GT(seen["values"].size(), 1000u);
+    for (const auto& v : seen["values"])
+        EXPECT_EQ(v[3].get<float>(), grid->tree().getValue(openvdb::Coord(v[0], v[1], v[2])));
 }
 
 TEST_F(BakeCommand, WrongUseIsNamed) {

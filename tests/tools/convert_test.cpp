@@ -140,6 +140,7 @@ TEST_F(Convert, AFullDiskLeavesNothing) {
         arguments.insert(arguments.end(), layout.begin(), layout.end());
         const ProgramResult result = runProgram(arguments, {.fileSize = 600});
         EXPECT_EQ(result.exitCode, 1) << result.err;
+        EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;
         EXPECT_FALSE(fs::exists(file(out)));
     }
     EXPECT_EQ(std::distance(fs::directory_iterator(dir.path()), {}), 1);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <string_view>
 
 namespace woodcock {
@@ -75,12 +76,16 @@ private:
             throw file_.damaged("two nodes of one place");
     }
 
-    /// Of a root's tile or child.
+    /// Of a root's tile or child. None stands at the very end of what an int counts, so that the
+    /// voxels next to it have numbers as well.
     Origin readOrigin() {
-        constexpr std::int32_t size = 1 << (upperLog2 + lowerLog2 + leafLog2);
+        constexpr std::int32_t size = 1 << (upperLog2 + lowerLog2 + leafLog2),
+                               lowest = std::numeric_limits<std::int32_t>::min(),
+                               highest = std::numeric_limits<std::int32_t>::max();
         const auto origin = file_.value<Origin>();
         for (std::int32_t x : origin)
-            if (x % size != 0) throw file_.damaged(fmt::format("a node at index {}", x));
+            if (x % size != 0 || x < lowest + size || x > highest - 2 * size)
+                throw file_.damaged(fmt::format("a node at index {}", x));
         return origin;
     }
 

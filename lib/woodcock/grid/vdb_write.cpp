@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/grid/vdb_write.h"
 
-#include <openvdb/io/File.h>
+#include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 
-#include <array>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
+#include <vector>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
@@ -19,6 +21,13 @@ namespace {
 /// Magic number, version of the format and of the library (two numbers), flag of offsets.
 constexpr std::streamoff identifierPlace = 8 + 4 + 4 + 4 + 1;
 constexpr std::size_t identifierSize = 36;
+
+/// OpenVDB's own File goes on without a word when the disk is full: this one writes to a stream
+/// that throws.
+class Writer : public openvdb::io::Archive {
+public:
+    using Archive::write;
+};
 
 std::uint32_t compressionFlags(VdbCompression compression) {
     switch (compression) {
@@ -77,11 +86,17 @@ void writeVdb(const std::filesystem::path& file, const VdbGrids& grids,
         metadata.insertMeta(key, openvdb::StringMetadata(value));
     FileInTheMaking making(file);
     try {
-        openvdb::io::File out(making.temporary().string());
-        out.setCompression(compressionFlags(options.compression));
-        out.write(views, metadata);
+        std::ofstream out;
+        out.exceptions(std::ios::failbit | std::ios::badbit);
+        out.open(making.temporary(), std::ios::binary | std::ios::trunc);
+        Writer writer;
+        writer.setCompression(compressionFlags(options.compression));
+        writer.write(out, views, true, metadata);
         out.close();
         nameByContents(making.temporary());
+    } catch (const std::ios::failure&) {
+        throw failure("cannot write '{}': {}", file.string(),
+                      std::generic_category().message(errno ? errno : EIO));
     } catch (const std::exception& e) {
         throw failure("cannot write '{}': {}", file.string(), e.what());
     }
