@@ -197,8 +197,8 @@ TEST(NanoVdbFile, OtherFilesAreErrorsThatNameThem) {
     expectBad(with(14, std::string("\x02", 1)).replace(entry, 8, huge), "are said to hold");
     expectBad(with(entry + 8, huge), "bytes where");
     expectBad(with(grid, "x"), "does not begin with 'NanoVDB0'");
-    expectBad(with(grid + 636, "\x08"), "values of type 8 (Mask)");
-    expectBad(with(grid + 636, "\x63"), "values of type 99 (unknown)");
+    expectBad(with(grid + 636, "\x08"), "grid 'density' holds Mask");
+    expectBad(with(grid + 636, "\x63"), "holds an unknown type 99");
     expectBad(with(grid + 300, "\x63"), "the checksum of its head is wrong");
     expectBad(with(good.size() - 5, "\x63"), "the checksum of its nodes is wrong");
     expectBad(good + "more", "the header of a segment");

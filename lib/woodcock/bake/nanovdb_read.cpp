@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "woodcock/bake/nanovdb_segments.h"
+#include "woodcock/base/memory.h"
 
 namespace woodcock {
 
@@ -23,12 +24,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// NanoVDB changes how it computes the second checksum after this version.
+/// Later versions keep the layout, but compute checksums in other ways.
 constexpr unsigned lastKnownMinorVersion = 4;
 constexpr std::uint32_t noChecksum = 0xffffffff;
 
 /// What a grid begins with. Its root follows.
 constexpr std::uint64_t headBytes = sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>);
+
+struct GridName {
+    const fs::path& file;
+    const std::string& grid;
+
+    Error damaged(const std::string& what) const {
+        return inputError("{} is damaged: grid '{}': {}", file.string(), grid, what);
+    }
+};
 
 std::uint32_t hash(std::span<const std::uint8_t> bytes) {
     return static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size()));
@@ -62,22 +72,22 @@ public:
                                     openvdb::Vec3SGrid, openvdb::FloatGrid>;
 
     /// `bytes`: headBytes at least.
-    TreeReader(const FileBytes& file, std::span<const std::uint8_t> bytes)
-        : file_(file),
+    TreeReader(const GridName& name, std::span<const std::uint8_t> bytes)
+        : name_(name),
           bytes_(bytes),
           head_(*reinterpret_cast<const nanovdb::GridData*>(bytes.data())),
           treeHead_(*reinterpret_cast<const nanovdb::TreeData<3>*>(&head_ + 1)) {}
 
     typename Grid::Ptr read() {
         const std::uint64_t place = sizeof(nanovdb::GridData) + treeHead_.mNodeOffset[3];
-        if (place < headBytes) throw file_.damaged("a root that lies before its tree");
+        if (place < headBytes) throw name_.damaged("a root that lies before its tree");
         const auto& root = at<NanoRoot>(place, "its root");
         using Tile = typename NanoRoot::Tile;
         const std::uint64_t room = bytes_.size() - place - sizeof(NanoRoot);
         if (root.mTableSize > room / sizeof(Tile))
-            throw file_.damaged(fmt::format("a root of {} entries", root.mTableSize));
-        used_ = headBytes + sizeof(NanoRoot) + root.mTableSize * sizeof(Tile);
-        requireHeadHash(used_);
+            throw name_.damaged(fmt::format("a root of {} entries", root.mTableSize));
+        requireHeadHash(headBytes + sizeof(NanoRoot) + root.mTableSize * sizeof(Tile));
+        requireRoom();
         const auto grid = Grid::create(toFloat(root.mBackground));
         std::set<openvdb::Coord> origins;
         for (std::uint32_t i = 0; i < root.mTableSize; ++i) {
@@ -85,7 +95,7 @@ public:
             const nanovdb::Coord corner = tile.origin();
             const openvdb::Coord origin(corner[0], corner[1], corner[2]);
             if (!origins.insert(origin).second)
-                throw file_.damaged(fmt::format("two entries of its root at [{}, {}, {}]",
+                throw name_.damaged(fmt::format("two entries of its root at [{}, {}, {}]",
                                                 origin.x(), origin.y(), origin.z()));
             if (tile.isChild())
                 grid->tree().root().addChild(
@@ -95,7 +105,7 @@ public:
         }
         for (std::size_t level = 0; level < 3; ++level)
             if (hashes_[level].size() != treeHead_.mNodeCount[level])
-                throw file_.damaged(fmt::format("{} nodes of level {} where {} are expected",
+                throw name_.damaged(fmt::format("{} nodes of level {} where {} are expected",
                                                 hashes_[level].size(), level,
                                                 treeHead_.mNodeCount[level]));
         requireNodeHash(root.mTableSize == 0);
@@ -111,21 +121,36 @@ private:
     const T& at(std::uint64_t place, const char* what) const {
         if (place % NanoBuffer::alignment != 0 || bytes_.size() < sizeof(T) ||
             place > bytes_.size() - sizeof(T))
-            throw file_.damaged(fmt::format("{} at byte {} of {}", what, place, bytes_.size()));
+            throw name_.damaged(fmt::format("{} at byte {} of {}", what, place, bytes_.size()));
         return *reinterpret_cast<const T*>(bytes_.data() + place);
     }
 
-    /// Nodes have places of their own, so together they have no more bytes than the grid: one that
-    /// many refer to would become as many.
-    void use(std::uint64_t bytes) {
-        used_ += bytes;
-        if (used_ > bytes_.size()) throw file_.damaged("nodes that are referred to more than once");
+    /// Of as many nodes as the tree says it has: in the file, and as OpenVDB has them.
+    void requireRoom() const {
+        const std::uint32_t(&count)[3] = treeHead_.mNodeCount;
+        if (count[0] * sizeof(NanoLeaf) + count[1] * sizeof(NanoLower) +
+                count[2] * sizeof(NanoUpper) >
+            bytes_.size())
+            throw name_.damaged(fmt::format("{}, {} and {} nodes in {} bytes", count[2], count[1],
+                                            count[0], bytes_.size()));
+        using Value = typename Grid::ValueType;
+        const std::size_t needed = bytes_.size() +
+                                   count[0] * (sizeof(OpenLeaf) + OpenLeaf::SIZE * sizeof(Value)) +
+                                   count[1] * sizeof(OpenLower) + count[2] * sizeof(OpenUpper);
+        if (const std::uint64_t limit = memoryLimit(); needed > limit)
+            throw failure("cannot read grid '{}' of '{}': it takes {}, and there are {} of memory",
+                          name_.grid, name_.file.string(), formatGiB(static_cast<double>(needed)),
+                          formatGiB(static_cast<double>(limit)));
     }
 
+    /// One node that many refer to would become as many: there are no more than the tree says.
     template <class T>
     const T& node(std::size_t level, std::uint64_t place) {
         const T& found = at<T>(place, "a node");
-        use(sizeof(T));
+        if (hashes_[level].size() >= treeHead_.mNodeCount[level])
+            throw name_.damaged(
+                fmt::format("more nodes of level {} than the {} that it should have", level,
+                            treeHead_.mNodeCount[level]));
         hashes_[level].emplace_back(place, hash(bytes_.subspan(place, sizeof(T))));
         return found;
     }
@@ -162,12 +187,10 @@ private:
         if constexpr (std::is_same_v<BuildT, nanovdb::FpN>) {
             constexpr unsigned mostBits = 16;
             const unsigned bits = source.bitWidth();
-            if (bits == 0 || bits > mostBits)
-                throw file_.damaged(fmt::format("a leaf of {} bits a voxel", bits));
-            const std::uint64_t bytes = bits * OpenLeaf::SIZE / 8;
-            if (bytes > bytes_.size() - place - sizeof(NanoLeaf))
-                throw file_.damaged("a leaf that reaches beyond the end");
-            use(bytes);
+            if (bits > mostBits)
+                throw name_.damaged(fmt::format("a leaf of {} bits a voxel", bits));
+            if (bits * OpenLeaf::SIZE / 8 > bytes_.size() - place - sizeof(NanoLeaf))
+                throw name_.damaged("a leaf that reaches beyond the end");
         }
         auto target = std::make_unique<OpenLeaf>(origin, typename OpenLeaf::ValueType(0.0f), false);
         for (openvdb::Index n = 0; n < OpenLeaf::SIZE; ++n)
@@ -187,7 +210,7 @@ private:
         const auto expected = static_cast<std::uint32_t>(head_.mChecksum);
         if (hasKnownHashes() && expected != noChecksum &&
             expected != hash(bytes_.subspan(begin, end - begin)))
-            throw file_.damaged("the checksum of its head is wrong");
+            throw name_.damaged("the checksum of its head is wrong");
     }
 
     /// The upper half: of the hashes of all nodes, from the top.
@@ -202,19 +225,18 @@ private:
         }
         if (expected != hashOfHashes<std::uint64_t>(hashes) &&
             expected != hashOfHashes<std::uint32_t>(hashes))
-            throw file_.damaged("the checksum of its nodes is wrong");
+            throw name_.damaged("the checksum of its nodes is wrong");
     }
 
-    const FileBytes& file_;
+    GridName name_;
     std::span<const std::uint8_t> bytes_;
     const nanovdb::GridData& head_;
     const nanovdb::TreeData<3>& treeHead_;
-    std::uint64_t used_ = 0;  ///< bytes of all that was read, each node by itself
     /// Of leaves, lower and upper nodes: place and hash.
     std::array<std::vector<std::pair<std::uint64_t, std::uint32_t>>, 3> hashes_;
 };
 
-openvdb::math::Transform::Ptr readTransform(const FileBytes& file, const nanovdb::Map& map) {
+openvdb::math::Transform::Ptr readTransform(const GridName& name, const nanovdb::Map& map) {
     openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
     for (int row = 0; row < 3; ++row) {
         matrix(3, row) = map.mVecD[row];
@@ -223,11 +245,11 @@ openvdb::math::Transform::Ptr readTransform(const FileBytes& file, const nanovdb
     }
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(matrix.asPointer()[i]))
-            throw file.damaged("a transform that is not finite");
+            throw name.damaged("a transform that is not finite");
     try {
         return openvdb::math::Transform::createLinearTransform(matrix);
     } catch (const openvdb::Exception& e) {
-        throw file.damaged(fmt::format("a transform that is none ({})", e.what()));
+        throw name.damaged(fmt::format("a transform that is none ({})", e.what()));
     }
 }
 
@@ -244,57 +266,60 @@ openvdb::GridClass readClass(nanovdb::GridClass gridClass) {
     }
 }
 
-openvdb::GridBase::Ptr readTree(const FileBytes& file, std::span<const std::uint8_t> bytes,
+openvdb::GridBase::Ptr readTree(const GridName& name, std::span<const std::uint8_t> bytes,
                                 nanovdb::GridType type) {
     switch (type) {
         case nanovdb::GridType::Float:
-            return TreeReader<float>(file, bytes).read();
+            return TreeReader<float>(name, bytes).read();
         case nanovdb::GridType::Double:
-            return TreeReader<double>(file, bytes).read();
+            return TreeReader<double>(name, bytes).read();
         case nanovdb::GridType::Int32:
-            return TreeReader<std::int32_t>(file, bytes).read();
+            return TreeReader<std::int32_t>(name, bytes).read();
         case nanovdb::GridType::Int64:
-            return TreeReader<std::int64_t>(file, bytes).read();
+            return TreeReader<std::int64_t>(name, bytes).read();
         case nanovdb::GridType::Vec3f:
-            return TreeReader<nanovdb::Vec3f>(file, bytes).read();
+            return TreeReader<nanovdb::Vec3f>(name, bytes).read();
         case nanovdb::GridType::Vec3d:
-            return TreeReader<nanovdb::Vec3d>(file, bytes).read();
+            return TreeReader<nanovdb::Vec3d>(name, bytes).read();
         case nanovdb::GridType::Fp4:
-            return TreeReader<nanovdb::Fp4>(file, bytes).read();
+            return TreeReader<nanovdb::Fp4>(name, bytes).read();
         case nanovdb::GridType::Fp8:
-            return TreeReader<nanovdb::Fp8>(file, bytes).read();
+            return TreeReader<nanovdb::Fp8>(name, bytes).read();
         case nanovdb::GridType::Fp16:
-            return TreeReader<nanovdb::Fp16>(file, bytes).read();
+            return TreeReader<nanovdb::Fp16>(name, bytes).read();
         case nanovdb::GridType::FpN:
-            return TreeReader<nanovdb::FpN>(file, bytes).read();
+            return TreeReader<nanovdb::FpN>(name, bytes).read();
         default:
             break;
     }
-    const auto number = static_cast<std::uint32_t>(type);
-    const bool isKnown = type < nanovdb::GridType::End;
-    throw file.damaged(fmt::format(
-        "values of type {} ({}), where float, double, int32, int64, Vec3f, Vec3d or quantised "
-        "float are expected",
-        number, isKnown ? nanovdb::toStr(type) : "unknown"));
+    throw inputError(
+        "{}: grid '{}' holds {}, where float, double, int32, int64, Vec3f, Vec3d or quantised "
+        "float "
+        "are expected",
+        name.file.string(), name.grid,
+        type < nanovdb::GridType::End
+            ? nanovdb::toStr(type)
+            : fmt::format("an unknown type {}", static_cast<std::uint32_t>(type)));
 }
 
 openvdb::GridBase::Ptr readGrid(FileBytes& file, const NanoListing& listing) {
+    const GridName name{file.path(), listing.name};
     const NanoBuffer buffer = unpackNanoGrid(file, listing);
     if (buffer.size() < headBytes)
-        throw file.damaged(fmt::format("a grid of {} bytes", buffer.size()));
+        throw name.damaged(fmt::format("it has {} bytes", buffer.size()));
     const auto& head = *reinterpret_cast<const nanovdb::GridData*>(buffer.data());
     constexpr std::uint64_t newerMagic = 0x314244566f6e614e;  // "NanoVDB1"
     if (head.mMagic != NANOVDB_MAGIC_NUMBER && head.mMagic != newerMagic)
-        throw file.damaged("a grid that does not begin with 'NanoVDB0'");
+        throw name.damaged("it does not begin with 'NanoVDB0'");
     if (const unsigned major = head.mVersion.getMajor(); major != NANOVDB_MAJOR_VERSION_NUMBER)
-        throw file.damaged(fmt::format("a grid of format {}, where {} is expected", major,
+        throw name.damaged(fmt::format("it is of format {}, where {} is expected", major,
                                        NANOVDB_MAJOR_VERSION_NUMBER));
     if (head.mGridSize > buffer.size() || head.mGridSize < headBytes)
-        throw file.damaged(
-            fmt::format("{} bytes that say they are {}", buffer.size(), head.mGridSize));
+        throw name.damaged(
+            fmt::format("it has {} bytes and says {}", buffer.size(), head.mGridSize));
     const openvdb::GridBase::Ptr grid =
-        readTree(file, {buffer.data(), static_cast<std::size_t>(head.mGridSize)}, head.mGridType);
-    grid->setTransform(readTransform(file, head.mMap));
+        readTree(name, {buffer.data(), static_cast<std::size_t>(head.mGridSize)}, head.mGridType);
+    grid->setTransform(readTransform(name, head.mMap));
     grid->setName(listing.name);
     grid->setGridClass(readClass(head.mGridClass));
     return grid;

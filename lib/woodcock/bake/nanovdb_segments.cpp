@@ -146,8 +146,7 @@ std::vector<NanoListing> listNanoGrids(FileBytes& file) {
 }
 
 NanoBuffer unpackNanoGrid(FileBytes& file, const NanoListing& grid) {
-    // The grid of OpenVDB that is made of it takes as much again.
-    if (const std::uint64_t limit = memoryLimit(); grid.size > limit / 2)
+    if (const std::uint64_t limit = memoryLimit(); grid.size > limit)
         throw failure("cannot read grid '{}' of '{}': it has {}, and there are {} of memory",
                       grid.name, file.path().string(), formatGiB(static_cast<double>(grid.size)),
                       formatGiB(static_cast<double>(limit)));
