@@ -26,17 +26,18 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"camera", {"medium", "base"}},
     {"image", {"base"}},
     {"render", {"medium", "light", "surface", "camera", "image", "grid", "base"}},
-    {"bake", {"image", "grid", "base"}},
+    {"convert", {"image", "grid", "base"}},
+    {"bake", {"convert", "image", "grid", "base"}},
     {"compare", {"image", "base"}},
     {"scene",
-     {"compare", "bake", "render", "image", "light", "surface", "camera", "medium", "grid",
+     {"compare", "bake", "convert", "render", "image", "light", "surface", "camera", "medium", "grid",
       "base"}}};
 
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
 /// that bear the library's name, which only .cpp files and each other include.
 const std::map<std::string, std::set<std::string>> roomsOfLibrary{
-    {"openvdb", {"grid", "bake"}},   {"openvdb_ax", {"bake"}},   {"nanovdb", {"bake"}},
-    {"assimp", {"bake", "surface"}}, {"OpenImageIO", {"image"}}, {"OpenColorIO", {"image"}}};
+    {"openvdb", {"grid", "convert", "bake"}},   {"openvdb_ax", {"bake"}},   {"nanovdb", {"convert"}},
+    {"assimp", {"convert"}}, {"OpenImageIO", {"image"}}, {"OpenColorIO", {"image"}}};
 bool bearsName(const fs::path& header) {
     return header.filename().string().starts_with("openvdb_");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/bake/convert.h"
+#include "woodcock/convert/convert.h"
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>

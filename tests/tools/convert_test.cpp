@@ -121,8 +121,8 @@ TEST_F(Convert, RefusesBadInput) {
                   {"--dims", "12,10,7", "--type", "f32"});
     writeText(file("a.npy"), "no array");
     expectRefused(3, "NumPy", "a.npy", "a.vdb");
-    writeText(file("a.xyz"), "x");
-    expectRefused(3, "known: vdb", "a.xyz", "a.vdb");
+    writeText(file("a.qqq"), "x");
+    expectRefused(3, "known: vdb", "a.qqq", "a.vdb");
     expectRefused(3, "does not exist", "none.npy", "a.vdb");
     expectRefused(3, "there are no files", "s.####.png", "a.vdb");
     std::string bytes = numbers();

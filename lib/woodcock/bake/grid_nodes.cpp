@@ -4,7 +4,7 @@
 #include <map>
 
 #include "woodcock/bake/grid_node.h"
-#include "woodcock/bake/mesh_to_fog.h"
+#include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/bake/openvdb_field.h"
 #include "woodcock/grid/block_ranges.h"

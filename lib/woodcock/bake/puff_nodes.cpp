@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "woodcock/bake/node_reader.h"
-#include "woodcock/bake/points_to_density.h"
+#include "woodcock/convert/points_to_density.h"
 #include "woodcock/bake/pointwise.h"
 #include "woodcock/base/random.h"
 

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "woodcock/convert/dense_formats.h"
+#include "woodcock/convert/dense_to_vdb.h"
+#include "woodcock/grid/vdb_write.h"
+
+namespace woodcock {
+
+/// Where voxels go that a file does not place, or places wrongly.
+struct Placement {
+    std::optional<double> voxel;  ///< the shortest side of a voxel, world units
+    std::optional<double> size;   ///< the longest side of the volume, outer faces of its cells
+    std::optional<Vec3d> origin;  ///< the centre of the first voxel
+};
+
+struct ConvertOptions {
+    std::optional<std::string> from;  ///< format of the input, instead of what its name says
+    std::optional<std::string> grid;  ///< of a VDB, or medium of a pbrt scene
+    std::optional<std::string> name;  ///< of the grid that is made
+
+    // Of files that are nothing but numbers.
+    std::optional<Dims> dims;
+    std::optional<SampleType> type;
+    std::optional<int> channels;
+    std::optional<bool> bigEndian;
+    std::optional<std::uint64_t> headerBytes;
+
+    // Of meshes, points and level sets.
+    std::optional<double> band;    ///< depth at which density reaches one, world units
+    std::optional<double> radius;  ///< of points that have none of their own
+    bool shell = false;            ///< fog around a mesh's surface instead of inside it
+
+    std::optional<int> channel;  ///< the one that is taken
+    AxisOrder axes;
+    Placement placement;
+    ValueOptions values;
+
+    Precision precision = Precision::Source;
+    VdbCompression compression = VdbCompression::Blosc;
+    std::optional<SampleType> outputType;  ///< of dense formats
+    std::optional<Box3i> bounds;           ///< voxels that are written to dense formats
+
+    std::function<void(const std::string&)> info, warn;
+    /// The stage in a word, and its share that is done; what it throws ends the work.
+    std::function<void(std::string_view stage, double fraction)> progress;
+};
+
+/// Reads any format that is known and writes VDB, or a dense format. Nothing is written where
+/// anything is wrong. Errors: Usage for unknown formats and options that do not fit them, Input for
+/// what is wrong with the file, Failure where it cannot be written.
+void convert(const std::filesystem::path& in, const std::filesystem::path& out,
+             const ConvertOptions& options);
+
+/// A line for each format: name, extensions, read and written.
+std::string describeFormats();
+
+}  // namespace woodcock

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "woodcock/convert/dense_volume.h"
+#include "woodcock/convert/value_remap.h"
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+struct VdbGrids;
+
+/// A fog volume of the volume's name, with a voxel (i, j, k) for its own. Background zero; voxels
+/// that are zero after remapping, within the tolerance, are inactive and take no memory. Floats
+/// where they hold the samples' type exactly, else doubles; vectors for three channels. Leaves are
+/// made in parallel. Errors: Input for a number of channels other than 1 or 3, and for values that
+/// are not finite (see requireSound(), which the caller does for the sake of its note).
+VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options, ValueSummary& summary,
+                    const WorkProgress& progress = {});
+
+/// The voxels of `box` (or of the active ones' bounding box) of grid `i`, background included, x
+/// fastest; floats or doubles as in the grid. Errors: Input for a grid without active voxels, and
+/// where the box takes more than the machine's memory.
+DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional<Box3i>& box = {});
+
+/// The same remapping for the active values of grids as they are; inactive ones and the background
+/// stay. Active voxels that become zero are switched off where the background is zero.
+void remapGrids(VdbGrids& grids, const ValueOptions& options, ValueSummary& summary);
+
+/// Makes every grid one of floats, doubles, or vectors of these, the first that hold all values:
+/// whole numbers become doubles, booleans and masks floats.
+void useFloatingPoint(VdbGrids& grids);
+
+enum class Precision { Source, Half, Float, Double };
+
+/// The largest differences that a lower precision makes, among active values.
+struct PrecisionLoss {
+    double absolute = 0, relative = 0;
+};
+
+/// Turns grids to floats or doubles; for Half, to floats that are to be written as halves. Errors:
+/// Input where values lie beyond the range.
+PrecisionLoss setPrecision(VdbGrids& grids, Precision precision);
+
+}  // namespace woodcock

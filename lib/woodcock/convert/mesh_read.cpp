@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "woodcock/convert/ply_mesh.h"
+#include "woodcock/convert/polygon.h"
+#include "woodcock/convert/triangle_mesh.h"
+#include "woodcock/base/affine.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/memory.h"
+
+#ifdef WOODCOCK_WITH_ASSIMP
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/scene.h>
+
+#include <assimp/IOStream.hpp>
+#include <assimp/Importer.hpp>
+
+#endif
+
+namespace woodcock {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A mesh takes up to about this many times its file's size while it is read.
+constexpr double memoryPerByte = 12;
+
+/// The extension, of a file that may be read.
+std::string requireReadable(const fs::path& file) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) throw inputError("cannot read mesh '{}': no such file", file.string());
+    if (!fs::is_regular_file(status))
+        throw inputError("cannot read mesh '{}': it is not a regular file", file.string());
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    constexpr std::array known{".obj", ".ply", ".stl", ".gltf", ".glb"};
+    if (std::find(known.begin(), known.end(), extension) == known.end())
+        throw inputError(
+            "cannot read mesh '{}': its name ends in '{}', where .obj, .ply, .stl, .gltf or .glb "
+            "is expected",
+            file.string(), extension);
+    const double needed = memoryPerByte * static_cast<double>(fs::file_size(file, error));
+    if (const auto limit = static_cast<double>(memoryLimit()); needed > limit)
+        throw failure("cannot read mesh '{}': it may take {} of memory, and there are {}",
+                      file.string(), formatGiB(needed), formatGiB(limit));
+    return extension;
+}
+
+#ifdef WOODCOCK_WITH_ASSIMP
+
+constexpr double bytesPerTriangle = 100;  ///< of a TriangleMesh while it is welded
+
+/// Ends reading that goes on at the end of a file: some of Assimp's readers never would.
+class EndingStream : public Assimp::IOStream {
+public:
+    explicit EndingStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
+
+    std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+        constexpr int mostEmptyReads = 100;
+        const std::size_t read = stream_->Read(to, size, count);
+        if (read == 0 && ++emptyReads_ > mostEmptyReads)
+            throw std::runtime_error("the file is cut short");
+        return read;
+    }
+    std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+    aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+        return stream_->Seek(offset, origin);
+    }
+    std::size_t Tell() const override { return stream_->Tell(); }
+    std::size_t FileSize() const override { return stream_->FileSize(); }
+    void Flush() override {}
+
+private:
+    std::unique_ptr<Assimp::IOStream> stream_;
+    int emptyReads_ = 0;
+};
+
+/// Knows regular files alone: a pipe that a mesh refers to would be waited for without end.
+class RegularFiles : public Assimp::DefaultIOSystem {
+public:
+    bool Exists(const char* file) const override {
+        std::error_code ignored;
+        return fs::is_regular_file(file, ignored);
+    }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (!Exists(file)) return nullptr;
+        std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
+        return stream ? new EndingStream(std::move(stream)) : nullptr;
+    }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
+};
+
+Affine3d toAffine(const aiMatrix4x4& m) {
+    return {{Vec3d{m.a1, m.b1, m.c1}, Vec3d{m.a2, m.b2, m.c2}, Vec3d{m.a3, m.b3, m.c3}},
+            Vec3d{m.a4, m.b4, m.c4}};
+}
+
+/// Joins the parts of a scene, each where its nodes put it.
+class Joiner {
+public:
+    Joiner(const fs::path& file, const aiScene& scene) : file_(file), scene_(scene) {}
+
+    TriangleMesh join() {
+        struct Placed {
+            const aiNode* node;
+            Affine3d parent;
+        };
+        std::vector<Placed> waiting;  // a stack, not recursion: files may nest without end
+        if (scene_.mRootNode) waiting.push_back({scene_.mRootNode, {}});
+        while (!waiting.empty()) {
+            const auto [node, parent] = waiting.back();
+            waiting.pop_back();
+            const Affine3d world = parent * toAffine(node->mTransformation);
+            for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+                if (node->mMeshes[i] >= scene_.mNumMeshes)
+                    throw inputError("{} is damaged: a node refers to part {} of {}",
+                                     file_.string(), node->mMeshes[i], scene_.mNumMeshes);
+                add(*scene_.mMeshes[node->mMeshes[i]], world);
+            }
+            for (unsigned i = node->mNumChildren; i-- > 0;)
+                waiting.push_back({node->mChildren[i], world});
+        }
+        if (faulty_ > 0)
+            throw inputError("{} has {} points that are not finite, the first is {} of part '{}'",
+                             file_.string(), faulty_, firstFaulty_, firstFaultyPart_);
+        return std::move(mesh_);
+    }
+
+private:
+    void add(const aiMesh& part, const Affine3d& world) {
+        requireRoom(part);
+        const auto first = static_cast<std::uint32_t>(mesh_.points.size());
+        for (unsigned i = 0; i < part.mNumVertices; ++i) {
+            const aiVector3D& v = part.mVertices[i];
+            const Vec3f p = world.point(Vec3d{v.x, v.y, v.z}).as<float>();
+            if (!isFinite(p.as<double>()) && faulty_++ == 0)
+                firstFaulty_ = i, firstFaultyPart_ = part.mName.C_Str();
+            mesh_.points.push_back(p);
+        }
+        for (unsigned i = 0; i < part.mNumFaces; ++i) {
+            const aiFace& face = part.mFaces[i];
+            if (face.mNumIndices < 3) continue;  // points and lines
+            std::vector<Vec3d> corners;
+            for (unsigned j = 0; j < face.mNumIndices; ++j) {
+                if (face.mIndices[j] >= part.mNumVertices)
+                    throw inputError("{} is damaged: face {} refers to point {} of {}",
+                                     file_.string(), i, face.mIndices[j], part.mNumVertices);
+                corners.push_back(mesh_.points[first + face.mIndices[j]].as<double>());
+            }
+            for (const auto& [a, b, c] : triangulate(corners))
+                mesh_.triangles.push_back(
+                    {first + face.mIndices[a], first + face.mIndices[b], first + face.mIndices[c]});
+        }
+    }
+
+    /// One part may stand at many places.
+    void requireRoom(const aiMesh& part) const {
+        const std::uint64_t points = mesh_.points.size() + std::uint64_t{part.mNumVertices};
+        const std::uint64_t triangles = mesh_.triangles.size() + std::uint64_t{part.mNumFaces};
+        if (points > std::numeric_limits<std::uint32_t>::max())
+            throw inputError("{} has more than {} points", file_.string(),
+                             std::numeric_limits<std::uint32_t>::max());
+        const double needed = bytesPerTriangle * static_cast<double>(std::max(points, triangles));
+        if (const auto limit = static_cast<double>(memoryLimit()); needed > limit)
+            throw failure("cannot read mesh '{}': {} points take {} of memory, and there are {}",
+                          file_.string(), points, formatGiB(needed), formatGiB(limit));
+    }
+
+    const fs::path& file_;
+    const aiScene& scene_;
+    TriangleMesh mesh_;
+    std::size_t faulty_ = 0;
+    unsigned firstFaulty_ = 0;
+    std::string firstFaultyPart_;
+};
+
+TriangleMesh readByAssimp(const fs::path& file) {
+    Assimp::Importer importer;
+    importer.SetIOHandler(new RegularFiles);  // which the importer deletes
+    // Without any of Assimp's steps of processing: they abort where a face is not as they expect.
+    const aiScene* scene = importer.ReadFile(file.string(), 0);
+    if (!scene)
+        throw inputError("cannot read mesh '{}': {}", file.string(), importer.GetErrorString());
+    return weld(Joiner(file, *scene).join());
+}
+
+constexpr bool hasAssimp = true;
+
+#else
+
+TriangleMesh readByAssimp(const fs::path& file) {
+    throw failure("cannot read mesh '{}': this build has no Assimp", file.string());
+}
+
+constexpr bool hasAssimp = false;
+
+#endif
+
+}  // namespace
+
+bool canReadMeshes() { return hasAssimp; }
+
+TriangleMesh readMesh(const fs::path& file) {
+    // Assimp's reader of PLY does not end where some files are damaged.
+    TriangleMesh mesh = requireReadable(file) == ".ply" ? readPlyMesh(file) : readByAssimp(file);
+    if (mesh.triangles.empty()) throw inputError("{} holds no triangles", file.string());
+    return mesh;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "woodcock/convert/triangle_mesh.h"
+
+namespace woodcock {
+
+struct VdbGrids;
+
+struct MeshToFogOptions {
+    double voxel = 0;  ///< world units, as all lengths here
+    double band = 0;   ///< the depth at which density reaches one; 0: three voxels
+    /// Density around the surface instead of inside it: one at the surface, zero at `band` from it.
+    /// The way on for meshes that enclose nothing.
+    bool shell = false;
+    std::string name = "density";
+    std::uint64_t mostVoxels = 500'000'000;
+};
+
+/// Fog inside a mesh: zero at the surface, one from `band` below it on. Which way triangles face
+/// does not matter. `notes` says where the mesh is open. Errors: Input, where nothing is inside.
+VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
+                   std::vector<std::string>& notes);
+
+struct MeshToLevelSetOptions {
+    double voxel = 0;
+    double band = 0;  ///< distances are right up to this far from the surface, on both sides
+    std::string name = "surface";
+    std::uint64_t mostVoxels = 500'000'000;
+};
+
+/// Signed distance to a mesh in world units, negative inside; beyond the band plus or minus a
+/// little more than the band. `notes` as above.
+VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& options,
+                        std::vector<std::string>& notes);
+
+}  // namespace woodcock

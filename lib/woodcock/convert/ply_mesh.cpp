@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/ply_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "woodcock/convert/ply_file.h"
+#include "woodcock/convert/polygon.h"
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const PlyElement& require(const fs::path& file, const std::vector<PlyElement>& elements,
+                          std::string_view name) {
+    const auto found = std::find_if(elements.begin(), elements.end(),
+                                    [&](const PlyElement& e) { return e.name == name; });
+    if (found == elements.end()) throw inputError("{} has no element '{}'", file.string(), name);
+    return *found;
+}
+
+const PlyElement::Property& require(const fs::path& file, const PlyElement& element,
+                                    std::initializer_list<std::string_view> names, bool isList) {
+    const PlyElement::Property* found = element.find(names);
+    if (!found || found->isList != isList)
+        throw inputError("{}: element '{}' has no {} '{}'", file.string(), element.name,
+                         isList ? "list" : "number", *names.begin());
+    return *found;
+}
+
+std::vector<Vec3f> readPlyVertices(const fs::path& file, const PlyElement& vertices) {
+    const PlyElement::Property& x = require(file, vertices, {"x"}, false);
+    const PlyElement::Property& y = require(file, vertices, {"y"}, false);
+    const PlyElement::Property& z = require(file, vertices, {"z"}, false);
+    if (vertices.count > std::numeric_limits<std::uint32_t>::max())
+        throw inputError("{} has more than {} points", file.string(),
+                         std::numeric_limits<std::uint32_t>::max());
+    std::vector<Vec3f> points;
+    points.reserve(vertices.count);
+    std::size_t faulty = 0, firstFaulty = 0;
+    for (std::size_t i = 0; i < vertices.count; ++i) {
+        points.push_back(Vec3d{x.values[i], y.values[i], z.values[i]}.as<float>());
+        if (!isFinite(points.back().as<double>()) && faulty++ == 0) firstFaulty = i;
+    }
+    if (faulty > 0)
+        throw inputError("{} has {} points that are not finite, the first is {}", file.string(),
+                         faulty, firstFaulty);
+    return points;
+}
+
+}  // namespace
+
+TriangleMesh readPlyMesh(const fs::path& file) {
+    const std::vector<PlyElement> elements = readPly(file);
+    TriangleMesh mesh;
+    mesh.points = readPlyVertices(file, require(file, elements, "vertex"));
+    const PlyElement& faces = require(file, elements, "face");
+    const PlyElement::Property& corners =
+        require(file, faces, {"vertex_indices", "vertex_index"}, true);
+    for (std::size_t i = 0; i < faces.count; ++i) {
+        const std::span<const double> face = corners.list(i);
+        if (face.size() < 3) continue;  // points and lines
+        std::vector<Vec3d> polygon;
+        for (const double index : face) {
+            if (!(index >= 0 && index < static_cast<double>(mesh.points.size())) ||
+                index != std::floor(index))
+                throw inputError("{} is damaged: face {} refers to point {} of {}", file.string(),
+                                 i, index, mesh.points.size());
+            polygon.push_back(mesh.points[static_cast<std::size_t>(index)].as<double>());
+        }
+        for (const auto& [a, b, c] : triangulate(polygon))
+            mesh.triangles.push_back({static_cast<std::uint32_t>(face[a]),
+                                      static_cast<std::uint32_t>(face[b]),
+                                      static_cast<std::uint32_t>(face[c])});
+    }
+    return weld(mesh);
+}
+
+}  // namespace woodcock

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/dense_formats.h"
+#include "woodcock/image/read_slices.h"
+
+namespace woodcock {
+
+bool isImagePattern(const std::filesystem::path& file) { return hasSliceNumber(file); }
+
+DenseVolume readImageStack(const std::filesystem::path& pattern, const WorkProgress& progress) {
+    auto slices = std::make_shared<Slices>(readSlices(pattern, progress));
+    DenseVolume volume;
+    volume.dims = {slices->width, slices->height, static_cast<std::int64_t>(slices->count)};
+    volume.channels = slices->channels;
+    volume.setStridesXFirst();
+    // Rows come from the top, and y goes up.
+    volume.first = (volume.dims[1] - 1) * volume.stride[1];
+    volume.stride[1] = -volume.stride[1];
+    volume.samples = reinterpret_cast<const char*>(slices->values.data());
+    volume.owner = std::move(slices);
+    return volume;
+}
+
+}  // namespace woodcock
