@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <cmath>
@@ -13,6 +12,8 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "log.h"
+#include "option_kinds.h"
+#include "progress.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/parse.h"
 
@@ -29,6 +30,7 @@ struct ConvertWords {
     std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
         axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
         compression, outType, bounds, band, radius;
+    std::string progress = "auto";
     bool repair = false, shell = false, quiet = false;
 };
 
@@ -170,32 +172,24 @@ ConvertOptions readWords(const ConvertWords& words) {
     return options;
 }
 
-/// A bar on stderr, where that is a terminal.
-class StageBar {
+/// The progress of one stage after the other.
+class Stages {
 public:
-    explicit StageBar(bool shown) : shown_(shown && isatty(STDERR_FILENO)) {}
-    ~StageBar() { clear(); }
+    explicit Stages(ProgressStyle style) : style_(style) {}
 
     void show(std::string_view stage, double fraction) {
-        const int percent = static_cast<int>(100 * fraction);
-        if (!shown_ || (stage == stage_ && percent == percent_)) return;
-        stage_ = stage;
-        percent_ = percent;
-        constexpr int width = 30;
-        const int full = percent * width / 100;
-        fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3} %, {}\x1b[K", "", full, "", width - full,
-                   percent, stage);
-        std::fflush(stderr);
+        if (!now_ || stage != stage_) {
+            stage_ = stage;
+            now_.emplace(style_, stage_);
+        }
+        now_->update(fraction);
     }
-    void clear() {
-        if (percent_ >= 0) fmt::print(stderr, "\r\x1b[K");
-        percent_ = -1;
-    }
+    void clear() { now_.reset(); }
 
 private:
-    bool shown_;
+    ProgressStyle style_;
     std::string stage_;
-    int percent_ = -1;
+    std::optional<WorkProgress> now_;
 };
 
 void stopWhereInterrupted() {
@@ -203,10 +197,12 @@ void stopWhereInterrupted() {
 }
 
 void run(const ConvertWords& words) {
-    setUpLog(LogStyle::Text, words.quiet ? "warning" : "info");
+    const ProgressStyle style = words.quiet ? ProgressStyle::None : progressStyle(words.progress);
+    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
+             words.quiet ? "warning" : "info");
     catchInterrupts();
     ConvertOptions options = readWords(words);
-    StageBar bar(!words.quiet);
+    Stages bar(style);
     options.info = [&](const std::string& text) {
         stopWhereInterrupted();
         bar.clear();
@@ -269,6 +265,8 @@ CLI::App& addConvertCommand(CLI::App& app) {
     add("Output", "--out-type", words->outType, "TYPE", "Of the numbers of a dense file");
     add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
         "First and last voxel that a dense file gets; else the active ones' box");
+    addChoice(command, "--progress", words->progress, {"auto", "bar", "json", "none"}, "One of")
+        ->type_name("WORD");
     command.add_flag("-q,--quiet", words->quiet, "Warnings and errors only");
     command.footer("Formats:\n" + describeFormats());
     command.callback([words] { run(*words); });

@@ -32,6 +32,8 @@ public:
     /// `name` is the event's in JSON: {"event": "bake", "fraction": 0.5, ...}.
     WorkProgress(ProgressStyle style, std::string name) : style_(style), name_(std::move(name)) {}
     ~WorkProgress();  ///< wipes the bar
+    WorkProgress(const WorkProgress&) = delete;
+    WorkProgress& operator=(const WorkProgress&) = delete;
 
     void update(double fraction);
 
