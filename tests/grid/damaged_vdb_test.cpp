@@ -20,7 +20,6 @@ namespace woodcock::test {
 namespace {
 
 constexpr std::size_t variants = 2400, batchSize = 40;
-constexpr unsigned secondsPerFile = 10;
 
 /// What the program may take by itself, and for each byte of the file; see lib/README.md.
 std::size_t residentLimit(std::size_t fileBytes) { return (192u << 20) + 1000 * fileBytes; }
@@ -31,6 +30,7 @@ constexpr bool sanitized = true;  // reserves terabytes of addresses for itself
 #else
 constexpr bool sanitized = false;
 #endif
+constexpr unsigned secondsPerFile = sanitized ? 100 : 10;
 
 ProgramLimits limits(unsigned seconds) {
     ProgramLimits l{.seconds = seconds};
