@@ -133,7 +133,8 @@ void report(const Bake& bake) {
             "to {:g}",
             grid.name, grid.activeVoxels,
             100 * static_cast<double>(grid.activeVoxels) / bake.boxVoxels, grid.leaves, grid.tiles,
-            formatGiB(static_cast<double>(grid.bytes)), grid.least, grid.greatest);
+            fmt::format("{:.1f} MB", static_cast<double>(grid.bytes) / 1e6), grid.least,
+            grid.greatest);
         if (grid.activeVoxels == 0) spdlog::warn("{} is empty", grid.name);
         std::string cut;
         for (std::size_t i = 0; i < 6; ++i)

@@ -183,6 +183,8 @@ TEST_F(BakeCommand, WrongUseIsNamed) {
     expectFailure({in, "-o", out, "--set", "size=20"}, 2, "between 0.1 and 10");
     expectFailure({in, "-o", out, "--voxel", "0"}, 2, "--voxel");
     expectFailure({in, "-o", out, "--voxel", "0.0001"}, 3, "--max-voxels");
+    expectFailure({in, "-o", out, "--voxel", "2e-6", "--set", "size=0.1", "--max-voxels", "1e15"},
+                  3, "too small for a VDB file");
     expectFailure({in, "-o", out, "--max-voxels", "10"}, 3, "--max-voxels");
     expectFailure({in, "-o", out, "--like", file("no.vdb")}, 3, "no.vdb");
     expectFailure({in, "-o", out, "--half", "--float"}, 2, "--half");

@@ -524,6 +524,7 @@ std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& setting
     tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
     std::optional<Bake> bake;
     arena.execute([&] {
+        openVdbTransform(settings.worldFromIndex);  // throws before the work where it cannot be
         Plan plan{recipe.graph, recipe.outputs, recipe.bounds, recipe.boundsPlace};
         if (runStages(plan, settings, progress)) bake = Baker(plan, settings, progress).run();
     });

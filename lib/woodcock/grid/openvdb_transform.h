@@ -4,34 +4,44 @@
 #include <openvdb/math/Transform.h>
 
 #include "woodcock/base/affine.h"
+#include "woodcock/base/error.h"
 
 namespace woodcock {
 
 /// The map as OpenVDB has it, in its simplest form: a scale and a translation where that is all,
-/// which every reader understands, and which allows voxels too small for OpenVDB's matrices.
+/// which every reader understands. Errors: Input for voxels too small for OpenVDB's maps, whose
+/// determinant must not be below 1e-15.
 inline openvdb::math::Transform::Ptr openVdbTransform(const Affine3d& worldFromIndex) {
     using openvdb::math::Transform;
     const auto& m = worldFromIndex.column;
     const Vec3d t = worldFromIndex.translation;
-    if (m[0].y == 0 && m[0].z == 0 && m[1].x == 0 && m[1].z == 0 && m[2].x == 0 && m[2].y == 0) {
-        using openvdb::math::ScaleMap, openvdb::math::UniformScaleMap;
-        const openvdb::Vec3d scale(m[0].x, m[1].y, m[2].z);
-        const bool uniform = scale[0] == scale[1] && scale[0] == scale[2];
-        const auto transform =
-            uniform ? std::make_shared<Transform>(std::make_shared<UniformScaleMap>(scale[0]))
-                    : std::make_shared<Transform>(std::make_shared<ScaleMap>(scale));
-        // Apart: a transform takes the map that it is made from to pieces, as differences of
-        // points, which loses digits where it translates.
-        transform->postTranslate(openvdb::Vec3d(t.x, t.y, t.z));
-        return transform;
+    try {
+        if (m[0].y == 0 && m[0].z == 0 && m[1].x == 0 && m[1].z == 0 && m[2].x == 0 &&
+            m[2].y == 0) {
+            using openvdb::math::ScaleMap, openvdb::math::UniformScaleMap;
+            const openvdb::Vec3d scale(m[0].x, m[1].y, m[2].z);
+            const bool uniform = scale[0] == scale[1] && scale[0] == scale[2];
+            const auto transform =
+                uniform ? std::make_shared<Transform>(std::make_shared<UniformScaleMap>(scale[0]))
+                        : std::make_shared<Transform>(std::make_shared<ScaleMap>(scale));
+            // Apart: a transform takes the map that it is made from to pieces, as differences of
+            // points, which loses digits where it translates.
+            transform->postTranslate(openvdb::Vec3d(t.x, t.y, t.z));
+            return transform;
+        }
+        // OpenVDB's matrices act on row vectors: the images of the axes are its rows.
+        openvdb::Mat4d rows = openvdb::Mat4d::identity();
+        for (int i = 0; i < 3; ++i) {
+            for (int row = 0; row < 3; ++row) rows(row, i) = m[static_cast<std::size_t>(row)][i];
+            rows(3, i) = t[i];
+        }
+        return Transform::createLinearTransform(rows);
+    } catch (const openvdb::ArithmeticError&) {
+        throw inputError(
+            "voxels of {:.3g} x {:.3g} x {:.3g} world units are too small for a VDB file, which "
+            "begins at about 1e-5: take a larger unit of length",
+            length(m[0]), length(m[1]), length(m[2]));
     }
-    // OpenVDB's matrices act on row vectors: the images of the axes are its rows.
-    openvdb::Mat4d rows = openvdb::Mat4d::identity();
-    for (int i = 0; i < 3; ++i) {
-        for (int row = 0; row < 3; ++row) rows(row, i) = m[static_cast<std::size_t>(row)][i];
-        rows(3, i) = t[i];
-    }
-    return Transform::createLinearTransform(rows);
 }
 
 /// A linear map. Not through its matrix, which refuses to exist for voxels below 1e-5, nor, where
