@@ -307,10 +307,12 @@ TEST(Baker, RefusesWhatCannotBe) {
         "inputs = [500, { type = \"position\", of = \"x\" }] }");
     expect(wild, cubicVoxels(0.5), "is not finite at ");
     expect(wild, cubicVoxels(0.5), "first at [1, -4, -4]");
-    BakeSettings fine = cubicVoxels(1e-5);
+    BakeSettings fine = cubicVoxels(2e-5);
     fine.mostVoxels = 1e8;
-    expect(recipeOf(everything), fine, "voxels");
-    expect(recipeOf(everything), cubicVoxels(1e-12), "larger voxels");
+    expect(recipeOf(everything), fine, "--max-voxels");
+    expect(recipeOf(everything), cubicVoxels(1e-12), "too small for a VDB file");
+    expect(recipeOf(everything, "thing", "min = [-1e5, 0, 0]\nmax = [1e5, 1, 1]"),
+           cubicVoxels(5e-5), "larger voxels");
     BakeSettings some = cubicVoxels(0.01);
     some.mostVoxels = 1e5;
     expect(recipeOf(everything), some, "--max-voxels");
