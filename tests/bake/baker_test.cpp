@@ -307,6 +307,8 @@ TEST(Baker, RefusesWhatCannotBe) {
         "inputs = [500, { type = \"position\", of = \"x\" }] }");
     expect(wild, cubicVoxels(0.5), "is not finite at ");
     expect(wild, cubicVoxels(0.5), "first at [1, -4, -4]");
+    const Recipe level = recipeOf("[node.thing]\ntype = \"exp\"\ninput = 500");
+    expect(level, cubicVoxels(0.1), "is not finite at 68921 voxels, first at [-20, -20, -20]");
     BakeSettings fine = cubicVoxels(2e-5);
     fine.mostVoxels = 1e8;
     expect(recipeOf(everything), fine, "--max-voxels");

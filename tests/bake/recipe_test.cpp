@@ -100,6 +100,14 @@ TEST(Recipe, SettingsAreChecked) {
               std::string::npos);
 }
 
+TEST(Recipe, SeedsAreNumbersThatCanBeCounted) {
+    const std::string text =
+        std::string(bounds) + "[node.ball]\ntype = \"perlin\"\nsize = 1\n" + output;
+    EXPECT_NE(mistake(text, {{"seed", 1e300, "--set seed=1e300"}}).find("the recipe's seed"),
+              std::string::npos);
+    EXPECT_EQ(mistake(text, {{"seed", -7, "--set seed=-7"}}), "no error");
+}
+
 TEST(Recipe, EveryPresetCanBeMade) {
     ASSERT_FALSE(presets().empty());
     for (const auto& [name, text] : presets()) {

@@ -201,9 +201,16 @@ void Baker::fillRegion(const Region& region, const std::vector<Status>& status,
     for (std::size_t o = 0; o < status.size(); ++o) {
         if (status[o] != Status::Constant) continue;
         std::array<float, 3> value{};
+        bool finite = true;
         for (std::size_t c = 0; c < static_cast<std::size_t>(recipe_.outputs[o].channels); ++c) {
             value[c] = static_cast<float>(bounds[o][c].lower);
+            finite &= std::isfinite(value[c]);
             worker.outputs[o].addRange(value[c]);
+        }
+        if (!finite) {
+            const auto side = static_cast<std::uint64_t>(region.size);
+            worker.outputs[o].faulty.add(region.origin, side * side * side);
+            continue;
         }
         countAtBounds(region, nullptr, worker.outputs[o]);
         std::visit([&](auto& parts) { parts.add(region, value); }, worker.outputs[o].parts);

@@ -68,8 +68,12 @@ int NodeReader::integer(std::string_view key, int otherwise, int lower, int uppe
 }
 
 std::uint64_t NodeReader::seed() {
-    const double own = number("seed", 0);
-    return hashOf(static_cast<std::uint64_t>(static_cast<std::int64_t>(parameters_->at("seed"))),
+    constexpr NumberRange whole{-0x1p53, 0x1p53};  // what a double counts without gaps
+    const double recipes = parameters_->at("seed"), own = number("seed", 0, whole);
+    if (!whole.contains(recipes))
+        throw table_.error("cannot use the recipe's seed, {}: it {}", recipes,
+                           whole.demand(recipes));
+    return hashOf(static_cast<std::uint64_t>(static_cast<std::int64_t>(recipes)),
                   static_cast<std::int64_t>(own));
 }
 
