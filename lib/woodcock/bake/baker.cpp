@@ -1,103 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/bake/baker.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <mutex>
-#include <tuple>
 
-#include "woodcock/bake/openvdb_bake_parts.h"
-#include "woodcock/bake/program.h"
+#include "woodcock/bake/openvdb_baker.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_transform.h"
 
 namespace woodcock {
-
-namespace {
-
-/// What is known of an output in a region.
-enum class Status { Empty, Constant, Varying };
-
-struct Worker {
-    Program::Workspace work;
-    std::vector<OutputParts> outputs;
-    std::vector<Region> pieces;
-    std::array<std::array<double, 512>, 3> positions{};
-    std::uint64_t evaluatedLeaves = 0;
-};
-
-/// What a bake takes of a recipe; stages have been run.
-struct Plan {
-    Graph graph;
-    std::vector<RecipeOutput> outputs;
-    Box3d bounds;
-    std::string boundsPlace;
-};
-
-class Baker {
-public:
-    Baker(const Plan& recipe, const BakeSettings& settings, const BakeProgress& progress)
-        : recipe_(recipe), settings_(settings), progress_(progress), program_(makeProgram(recipe)) {
-        findIndexBox();
-    }
-
-    std::optional<Bake> run();
-
-private:
-    static Program makeProgram(const Plan& recipe) {
-        std::vector<int> roots;
-        for (const RecipeOutput& output : recipe.outputs) roots.push_back(output.entry);
-        return {recipe.graph, roots};
-    }
-
-    void findIndexBox();
-    std::vector<Region> rootRegions() const;
-    std::vector<Status> inspect(const Region& region, Worker& worker,
-                                std::vector<Bounds>& bounds) const;
-    template <class Visit>
-    void descend(const Region& region, int smallest, const Visit& visit);
-    void findPieces();
-    void checkAmount();
-    Error tooMuch(double voxels) const;
-    double guessVoxels();
-    void fillRegion(const Region& region, const std::vector<Status>& status,
-                    const std::vector<Bounds>& bounds, Worker& worker) const;
-    void bakeLeaf(const Region& region, const std::vector<Status>& status,
-                  const std::vector<Bounds>& bounds, Worker& worker);
-    void countAtBounds(const Region& region, const std::array<std::uint64_t, 8>* active,
-                       OutputParts& output) const;
-    void finishPiece();
-    Bake assemble();
-    void refuseFaulty(const std::vector<OutputParts>& outputs) const;
-    void refuseEmpty(const std::vector<OutputParts>& outputs, std::uint64_t evaluated) const;
-    Worker& worker() {
-        Worker& mine = workers_.local();
-        if (mine.outputs.empty())
-            for (const RecipeOutput& output : recipe_.outputs)
-                mine.outputs.emplace_back(output.channels);
-        return mine;
-    }
-
-    static constexpr int pieceSize = 64;
-
-    const Plan& recipe_;
-    const BakeSettings& settings_;
-    const BakeProgress& progress_;
-    Program program_;
-    Vec3i first_, last_;  ///< voxels inside the recipe's bounds, or around them where turned
-    bool aligned_ = true;
-    std::vector<Region> pieces_;  ///< where something varies
-    tbb::enumerable_thread_specific<Worker> workers_;
-    std::atomic<bool> stopped_{false};
-    std::atomic<std::uint64_t> donePieces_{0};
-    std::mutex progressMutex_;
-};
 
 void Baker::findIndexBox() {
     const Affine3d& world = settings_.worldFromIndex;
@@ -170,31 +84,6 @@ std::vector<Status> Baker::inspect(const Region& region, Worker& worker,
     return status;
 }
 
-bool any(const std::vector<Status>& status, Status wanted) {
-    return std::find(status.begin(), status.end(), wanted) != status.end();
-}
-
-/// Goes down from a region to those of the smallest size that vary, `visit`ing them.
-template <class Visit>
-void Baker::descend(const Region& region, int smallest, const Visit& visit) {
-    if (stopped_) return;
-    Worker& mine = worker();
-    std::vector<Bounds> bounds;
-    const std::vector<Status> status = inspect(region, mine, bounds);
-    if (!any(status, Status::Varying) || region.size == smallest) {
-        visit(region, status, bounds, mine);
-        return;
-    }
-    const int half = region.size / 2;
-    const auto child = [&](int i) {
-        descend({region.origin + Vec3i{i & 1, i >> 1 & 1, i >> 2} * half, half}, smallest, visit);
-    };
-    if (region.size > pieceSize)
-        tbb::parallel_for(0, 8, child);
-    else
-        for (int i = 0; i < 8; ++i) child(i);
-}
-
 /// Adds what a region without varying outputs is filled with.
 void Baker::fillRegion(const Region& region, const std::vector<Status>& status,
                        const std::vector<Bounds>& bounds, Worker& worker) const {
@@ -215,75 +104,6 @@ void Baker::fillRegion(const Region& region, const std::vector<Status>& status,
         countAtBounds(region, nullptr, worker.outputs[o]);
         std::visit([&](auto& parts) { parts.add(region, value); }, worker.outputs[o].parts);
     }
-}
-
-Error Baker::tooMuch(double voxels) const {
-    // What varies grows with surfaces: a factor of two in size is one of four in voxels.
-    const double factor = std::max(std::sqrt(voxels / settings_.mostVoxels), 1.1);
-    return inputError(
-        "the recipe would be evaluated at about {:.2g} voxels, and the limit is {:.2g}. Voxels "
-        "{:.2g} times as large would do; or raise the limit with --max-voxels",
-        voxels, settings_.mostVoxels, factor);
-}
-
-/// About how many voxels vary, from the number of regions of a size that is coarse enough to count:
-/// a surface crosses (size / 8)^2 leaves of each.
-double Baker::guessVoxels() {
-    constexpr std::uint64_t affordable = 20'000;
-    const std::vector<Region> roots = rootRegions();
-    for (int size = 2 * pieceSize;; size *= 2) {
-        std::atomic<std::uint64_t> count{0};
-        stopped_ = false;
-        const auto visit = [&](const Region&, const std::vector<Status>& status,
-                               const std::vector<Bounds>&, Worker&) {
-            if (any(status, Status::Varying) && ++count > affordable) stopped_ = true;
-        };
-        tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) {
-            descend(roots[i], std::min(size, roots[i].size), visit);
-        });
-        if (!stopped_ || size >= roots.front().size)
-            return 512.0 * static_cast<double>(count) * std::pow(size / 8.0, 2);
-    }
-}
-
-/// Fills what is constant on a coarse scale, and notes what is not.
-void Baker::findPieces() {
-    constexpr std::size_t most = 300'000;
-    std::atomic<std::size_t> count{0};
-    const std::vector<Region> roots = rootRegions();
-    const auto visit = [&](const Region& region, const std::vector<Status>& status,
-                           const std::vector<Bounds>& bounds, Worker& mine) {
-        if (!any(status, Status::Varying)) return fillRegion(region, status, bounds, mine);
-        mine.pieces.push_back(region);
-        if (++count > most) stopped_ = true;
-    };
-    tbb::parallel_for(std::size_t{0}, roots.size(),
-                      [&](std::size_t i) { descend(roots[i], pieceSize, visit); });
-    if (stopped_) throw tooMuch(std::max(guessVoxels(), settings_.mostVoxels));
-    for (Worker& worker : workers_)
-        pieces_.insert(pieces_.end(), worker.pieces.begin(), worker.pieces.end());
-    std::sort(pieces_.begin(), pieces_.end(), [](const Region& a, const Region& b) {
-        return std::tie(a.origin.x, a.origin.y, a.origin.z) <
-               std::tie(b.origin.x, b.origin.y, b.origin.z);
-    });
-}
-
-/// Counts the leaves of some of the pieces, to know about how many there are in all.
-void Baker::checkAmount() {
-    if (static_cast<double>(pieces_.size()) * std::pow(pieceSize, 3) <= settings_.mostVoxels)
-        return;
-    const std::size_t step = std::max<std::size_t>(1, pieces_.size() / 200);
-    const std::size_t samples = (pieces_.size() + step - 1) / step;
-    std::atomic<std::uint64_t> leaves{0};
-    const auto visit = [&](const Region&, const std::vector<Status>& status,
-                           const std::vector<Bounds>&, Worker&) {
-        if (any(status, Status::Varying)) ++leaves;
-    };
-    tbb::parallel_for(std::size_t{0}, samples,
-                      [&](std::size_t i) { descend(pieces_[i * step], 8, visit); });
-    const double voxels = 512 * static_cast<double>(leaves) * static_cast<double>(pieces_.size()) /
-                          static_cast<double>(samples);
-    if (voxels > settings_.mostVoxels) throw tooMuch(voxels);
 }
 
 void Baker::finishPiece() {
@@ -490,6 +310,8 @@ std::optional<Bake> Baker::run() {
     bake.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return bake;
 }
+
+namespace {
 
 /// Runs the stages of a graph, in their order, and puts the nodes that they make in their places.
 /// Returns false when it was ended by `progress`.
