@@ -7,7 +7,7 @@ packages=(
     cmake ninja-build g++ ccache pkgconf
     libopenvdb-dev libopenvdb-ax-dev libboost-iostreams-dev zlib1g-dev
     libopenimageio-dev libopencolorio-dev
-    libassimp-dev libnanovdb-dev libblosc-dev
+    libembree-dev libassimp-dev libnanovdb-dev libblosc-dev
     libtbb-dev libfmt-dev libspdlog-dev
     libtomlplusplus-dev libmuparser-dev nlohmann-json3-dev libcli11-dev
     libgtest-dev

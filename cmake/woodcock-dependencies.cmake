@@ -29,6 +29,15 @@ find_package(tomlplusplus REQUIRED)
 find_package(muparser REQUIRED)
 find_package(ZLIB REQUIRED)
 
+# Surfaces: either version of Embree. EMBREE_VERSION tells which.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+    find_package(embree 3.12 QUIET)
+endif()
+if(NOT embree_FOUND)
+    message(FATAL_ERROR "Embree 3.12 or newer, or 4, is missing (Debian: libembree-dev)")
+endif()
+
 # Without it the library still builds, and says so where a mesh other than PLY is to be read.
 pkg_check_modules(Assimp QUIET IMPORTED_TARGET assimp>=5.2)
 

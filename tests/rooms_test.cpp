@@ -22,22 +22,29 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"grid", {"base"}},
     {"medium", {"grid", "base"}},
     {"light", {"medium", "base"}},
-    {"surface", {"medium", "base"}},
+    {"mesh", {"grid", "base"}},
+    {"surface", {"mesh", "light", "medium", "base"}},
     {"camera", {"medium", "base"}},
     {"image", {"base"}},
-    {"render", {"medium", "light", "surface", "camera", "image", "grid", "base"}},
-    {"convert", {"image", "grid", "base"}},
-    {"bake", {"convert", "image", "grid", "base"}},
+    {"render", {"medium", "light", "surface", "mesh", "camera", "image", "grid", "base"}},
+    {"convert", {"mesh", "image", "grid", "base"}},
+    {"bake", {"convert", "mesh", "image", "grid", "base"}},
     {"compare", {"image", "base"}},
     {"scene",
-     {"compare", "bake", "convert", "render", "image", "light", "surface", "camera", "medium", "grid",
-      "base"}}};
+     {"compare", "bake", "convert", "render", "image", "light", "surface", "camera", "medium",
+      "mesh", "grid", "base"}}};
 
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
 /// that bear the library's name, which only .cpp files and each other include.
 const std::map<std::string, std::set<std::string>> roomsOfLibrary{
-    {"openvdb", {"grid", "convert", "bake"}},   {"openvdb_ax", {"bake"}},   {"nanovdb", {"convert"}},
-    {"assimp", {"convert"}}, {"OpenImageIO", {"image"}}, {"OpenColorIO", {"image"}}};
+    {"openvdb", {"grid", "mesh", "convert", "bake"}},
+    {"openvdb_ax", {"bake"}},
+    {"nanovdb", {"convert"}},
+    {"assimp", {"mesh"}},
+    {"embree3", {"surface"}},
+    {"embree4", {"surface"}},
+    {"OpenImageIO", {"image"}},
+    {"OpenColorIO", {"image"}}};
 bool bearsName(const fs::path& header) {
     return header.filename().string().starts_with("openvdb_");
 }

@@ -6,7 +6,7 @@
 #include "woodcock/convert/level_set_to_fog.h"
 #include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/convert/openvdb_convert_source.h"
-#include "woodcock/convert/ply_file.h"
+#include "woodcock/mesh/ply_file.h"
 #include "woodcock/convert/points_to_density.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/openvdb_transform.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "woodcock/convert/triangle_mesh.h"
+#include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "woodcock/convert/input_file.h"
-#include "woodcock/convert/ply_file.h"
+#include "woodcock/grid/input_file.h"
+#include "woodcock/mesh/ply_file.h"
 #include "woodcock/convert/points_to_density.h"
 #include "woodcock/base/error.h"
 

@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
+#include <memory>
+#include <vector>
 
 #include "woodcock/camera/camera.h"
 #include "woodcock/light/light_set.h"
 #include "woodcock/medium/medium.h"
+#include "woodcock/surface/surface_set.h"
 
 namespace woodcock {
 
 /// Everything that light meets: what scene/ builds and the render session draws. Immutable while
 /// rendering and shared by all threads.
 struct Scene {
-    Medium medium;
+    Medium medium;  ///< outside of all surfaces
     LightSet lights;
-    Camera camera;
+    Camera camera = {};
+    std::shared_ptr<const SurfaceSet> surfaces = {};  ///< null: none
+    std::vector<Medium> interiors =
+        {};  ///< what surfaces hold: SurfaceObject::medium - 1 is the index
 };
 
 }  // namespace woodcock

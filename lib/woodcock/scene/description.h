@@ -64,6 +64,7 @@ struct VolumeDescription {
     std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
     float g = 0;               ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     Affine3d worldFromObject;  ///< applied after the grid's own transform
+    std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all
     Storage storage = Storage::Auto;
     bool repair = false;  ///< NaN, infinite and negative voxels become zero instead of an error
     bool operator==(const VolumeDescription&) const = default;
@@ -102,6 +103,102 @@ struct LightDescription {
     bool operator==(const LightDescription&) const = default;
 };
 
+/// A colour, or an image times one.
+struct TextureDescription {
+    Rgb colour{1.0f};
+    std::filesystem::path image = {};
+    std::string colourSpace = {};  ///< of OpenColorIO; empty: sRGB for 8 and 16 bit, else linear
+    bool operator==(const TextureDescription&) const = default;
+};
+struct DiffuseDescription {
+    TextureDescription colour{Rgb(0.8f)};
+    bool operator==(const DiffuseDescription&) const = default;
+};
+struct ConductorDescription {
+    TextureDescription colour{Rgb(0.9f)};  ///< reflectance at normal incidence, without eta and k
+    std::optional<std::pair<Rgb, Rgb>> etaK;
+    double roughness = 0;
+    bool operator==(const ConductorDescription&) const = default;
+};
+struct DielectricDescription {
+    double ior = 1.5, roughness = 0;
+    bool operator==(const DielectricDescription&) const = default;
+};
+struct InterfaceDescription {
+    bool operator==(const InterfaceDescription&) const = default;
+};
+struct EmissiveDescription {
+    TextureDescription radiance{Rgb(1.0f)};
+    bool bothSides = false;
+    bool operator==(const EmissiveDescription&) const = default;
+};
+struct MixDescription {
+    std::string first, second;  ///< names of materials
+    TextureDescription weight{Rgb(0.5f)};
+    bool operator==(const MixDescription&) const = default;
+};
+struct MaterialDescription {
+    std::string name;
+    std::variant<DiffuseDescription, ConductorDescription, DielectricDescription,
+                 InterfaceDescription, EmissiveDescription, MixDescription>
+        material;
+    bool operator==(const MaterialDescription&) const = default;
+};
+
+/// A mesh file; or, of a VDB file, the surface of a level set.
+struct MeshShape {
+    std::filesystem::path file;
+    std::string levelSet;  ///< grid of a VDB file; empty: its only level set
+    bool operator==(const MeshShape&) const = default;
+};
+struct SphereShape {
+    Vec3d centre;
+    double radius = 1;
+    bool operator==(const SphereShape&) const = default;
+};
+struct BoxShape {
+    Box3d box;
+    bool operator==(const BoxShape&) const = default;
+};
+/// In y = 0, facing +y.
+struct DiskShape {
+    double radius = 1;
+    bool operator==(const DiskShape&) const = default;
+};
+/// y = 0, facing +y; without a size infinite, and what is below is inside.
+struct PlaneShape {
+    std::optional<std::array<double, 2>> size;  ///< along x and z
+    bool operator==(const PlaneShape&) const = default;
+};
+/// See latheMesh().
+struct LatheShape {
+    std::vector<std::array<double, 2>> profile;  ///< radius, height
+    int segments = 96;
+    bool operator==(const LatheShape&) const = default;
+};
+
+/// What a closed surface of glass, or an interface, holds.
+struct InteriorDescription {
+    Rgb sigmaA{0.0f}, sigmaS{0.0f};  ///< per world unit
+    float g = 0;
+    bool operator==(const InteriorDescription&) const = default;
+};
+
+struct SurfaceDescription {
+    std::string name;  ///< may be empty
+    std::variant<MeshShape, SphereShape, BoxShape, DiskShape, PlaneShape, LatheShape> shape;
+    std::string material;          ///< name; empty: diffuse grey of 0.8
+    std::optional<double> smooth;  ///< degrees: edges less sharp are smoothed; absent: as the file
+    Affine3d worldFromObject;
+    /// Each places the surface once more, before worldFromObject; empty: once.
+    std::vector<Affine3d> instances;
+    std::filesystem::path instanceFile;  ///< further ones, a line each
+    std::optional<InteriorDescription> interior;
+    int priority = 0;
+    bool holdout = false, shadowCatcher = false, matte = false, cameraVisible = true;
+    bool operator==(const SurfaceDescription&) const = default;
+};
+
 /// A camera at `eye` that looks at `target`, with `up` upwards in the picture.
 struct LookAt {
     Vec3d eye, target;
@@ -133,15 +230,18 @@ struct RenderDescription {
     int spp = 64;
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
-    double timeLimit = 0;               ///< seconds; 0: none
-    double noise = 0;                   ///< mean relative standard error to stop at; 0: none
-    double majorantScale = 1;           ///< 1 to 1000; loosens the majorants: for experiments
+    std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
+    /// Biased: shadow rays go straight through dielectrics, dimmed by Fresnel's transmittance.
+    bool transparentShadows = false;
+    double timeLimit = 0;      ///< seconds; 0: none
+    double noise = 0;          ///< mean relative standard error to stop at; 0: none
+    double majorantScale = 1;  ///< 1 to 1000; loosens the majorants: for experiments
     bool operator==(const RenderDescription&) const = default;
 };
 
 struct OutputDescription {
     std::vector<std::filesystem::path> files;  ///< by extension: exr, png, jpg
-    std::vector<std::string> layers;           ///< depth, transmittance, samples, error
+    std::vector<std::string> layers;           ///< depth, normal, transmittance, samples, error
     bool half = false;                         ///< EXR colour in half instead of float
     std::string display, view, look;           ///< OpenColorIO names; empty: the config's default
     double exposure = 0;                       ///< stops, before the display transform
@@ -153,6 +253,8 @@ struct OutputDescription {
 struct SceneDescription {
     std::vector<VolumeDescription> volumes;
     std::vector<LightDescription> lights;
+    std::vector<MaterialDescription> materials;
+    std::vector<SurfaceDescription> surfaces;
     CameraDescription camera;
     RenderDescription render;
     OutputDescription output;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "woodcock/convert/polygon.h"
+#include "woodcock/mesh/polygon.h"
 
 namespace woodcock::test {
 namespace {

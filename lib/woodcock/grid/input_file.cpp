@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/input_file.h"
+#include "woodcock/grid/input_file.h"
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/ply_mesh.h"
+#include "woodcock/mesh/ply_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "woodcock/convert/ply_file.h"
-#include "woodcock/convert/polygon.h"
+#include "woodcock/mesh/ply_file.h"
+#include "woodcock/mesh/polygon.h"
 #include "woodcock/base/error.h"
 
 namespace woodcock {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "woodcock/convert/triangle_mesh.h"
+#include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock {
 

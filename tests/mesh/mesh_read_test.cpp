@@ -9,7 +9,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_dir.h"
-#include "woodcock/convert/triangle_mesh.h"
+#include "woodcock/mesh/triangle_mesh.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/polygon.h"
+#include "woodcock/mesh/polygon.h"
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/ply_file.h"
+#include "woodcock/mesh/ply_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "woodcock/convert/input_file.h"
+#include "woodcock/grid/input_file.h"
 #include "woodcock/base/error.h"
 
 namespace woodcock {

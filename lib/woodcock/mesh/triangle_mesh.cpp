@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/triangle_mesh.h"
+#include "woodcock/mesh/triangle_mesh.h"
 
 #include <algorithm>
 #include <bit>

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "woodcock/convert/ply_mesh.h"
-#include "woodcock/convert/polygon.h"
-#include "woodcock/convert/triangle_mesh.h"
+#include "woodcock/mesh/ply_mesh.h"
+#include "woodcock/mesh/polygon.h"
+#include "woodcock/mesh/triangle_mesh.h"
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"

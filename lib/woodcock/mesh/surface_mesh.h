@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "woodcock/mesh/triangle_mesh.h"
+
+namespace woodcock {
+
+struct Vec2f {
+    float u = 0, v = 0;
+    bool operator==(const Vec2f&) const = default;
+};
+
+/// A mesh as light sees it: its triangles, counter-clockwise from outside, with what is
+/// interpolated over them. Corners are in the order of mesh.triangles.
+struct SurfaceMesh {
+    TriangleMesh mesh;
+    std::vector<std::array<Vec3f, 3>> normals;  ///< at corners; empty: flat
+    std::vector<std::array<Vec2f, 3>> uvs;      ///< at corners; empty: none
+};
+
+/// Reads a mesh with its normals and texture coordinates where the file has them (OBJ, PLY, STL,
+/// glTF). Errors: Input, naming the file and what is wrong with it: NaN, zero-area triangles with
+/// their number and the first one's place.
+SurfaceMesh readSurfaceMesh(const std::filesystem::path& file);
+
+/// Normals that are smooth over edges at which two triangles meet at less than `angle` degrees: by
+/// area and corner. Replaces those of the mesh.
+void smoothNormals(SurfaceMesh& mesh, double angle);
+
+/// Whether a mesh encloses something: each edge belongs to two triangles that run along it in
+/// opposite ways, and the enclosed volume is positive. Otherwise `problem` says what is wrong, and
+/// where.
+struct Closedness {
+    bool closed = false;
+    bool inwards = false;  ///< closed, but its triangles face inwards
+    std::string problem;   ///< "12 open edges, the first one at (1, 2, 3)"
+};
+Closedness checkClosed(const TriangleMesh& mesh);
+
+/// Turns all triangles (and normals) over.
+void flip(SurfaceMesh& mesh);
+
+// Meshes from numbers, closed and facing outwards.
+
+/// The box from lower to upper: 12 triangles.
+SurfaceMesh boxMesh(const Box3d& box);
+/// A flat rectangle in y = 0 that faces +y, centred at the origin; open. uv from its -x, +z corner.
+SurfaceMesh rectangleMesh(double width, double depth);
+/// A body of revolution about y: `profile` is radius and height from one point of it to the next,
+/// counter-clockwise in the half-plane (radius to the right, height upwards), so that its outside
+/// lies to the right of the way; closed where it starts and ends on the axis, or where it starts.
+/// `smoothAngle` as of smoothNormals(). Errors: Usage on fewer than 3 segments or 2 points, on a
+/// negative radius.
+SurfaceMesh latheMesh(std::span<const std::array<double, 2>> profile, int segments,
+                      double smoothAngle);
+
+/// The surface of a level set (its zero), in world space, by OpenVDB's volumeToMesh. `grid`: its
+/// name; empty: the only level set of the file. Adaptivity 0 to 1 makes flat parts coarser. Errors:
+/// Input where there is no level set, with what exists.
+SurfaceMesh levelSetMesh(const std::filesystem::path& file, const std::string& grid,
+                         double adaptivity);
+
+}  // namespace woodcock

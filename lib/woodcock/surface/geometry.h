@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/mesh/surface_mesh.h"
+
+namespace woodcock {
+
+/// Shapes in object space, all facing outwards. A plane is infinite, y = 0, and faces +y: what is
+/// below is inside. A disk of radius 1 lies in it, and encloses nothing.
+struct UnitSphere {};
+struct UnitDisk {};
+struct InfinitePlane {};
+using Shape = std::variant<UnitSphere, UnitDisk, InfinitePlane, std::shared_ptr<const SurfaceMesh>>;
+
+/// A shape somewhere. A transform of negative determinant turns nothing inside out.
+struct ShapeInstance {
+    std::uint32_t shape = 0;
+    std::uint32_t object = 0;  ///< whatever it means to the caller; comes back with hits
+    Affine3d worldFromObject;
+};
+
+/// Where a ray meets a surface. All vectors are of unit length and in world space.
+struct SurfaceHit {
+    double t = 0;         ///< along the ray
+    Vec3d position;       ///< the point on the surface
+    Vec3d normal;         ///< the surface's own, outwards
+    Vec3d shadingNormal;  ///< interpolated, on the same side; the same where there is none
+    double u = 0, v = 0;  ///< texture coordinates; sphere: longitude, latitude from below
+    std::uint32_t object = 0, instance = 0, primitive = 0;
+};
+
+/// All surfaces of a scene. Rays are found by Embree in floats, relative to the middle of the
+/// scene, and then worked out in doubles on what was found. Immutable; shared by threads.
+class Geometry {
+public:
+    /// Throws Error{Input} on transforms that are not finite or flatten their shape, naming the
+    /// instance; Error{Failure} where Embree has no memory.
+    Geometry(std::vector<Shape> shapes, std::vector<ShapeInstance> instances);
+    ~Geometry();
+    Geometry(Geometry&&) noexcept;
+    Geometry& operator=(Geometry&&) noexcept;
+
+    const std::vector<Shape>& shapes() const;
+    const std::vector<ShapeInstance>& instances() const;
+
+    /// The nearest hit with 0 < t < tMax. `left`: the hit at whose position the ray starts, null in
+    /// free space; a ray does not meet again the place that it leaves.
+    bool intersect(Vec3d origin, Vec3d direction, double tMax, const SurfaceHit* left,
+                   SurfaceHit& hit) const;
+
+    /// The instances that enclose a point, in order; only of those for which `closed` (by object)
+    /// is true. Counts what a ray from the point leaves and enters.
+    std::vector<std::uint32_t> enclosing(Vec3d point, const std::vector<bool>& closed) const;
+
+    /// World box of all finite shapes; empty where there are none.
+    Box3d bounds() const;
+    std::size_t memoryBytes() const;  ///< of Embree's own structures and ours
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace woodcock

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "woodcock/base/spectrum.h"
+
+namespace woodcock {
+
+/// Scene-linear colours over the unit square, repeated; row by row from the top left, v upwards.
+class TextureImage {
+public:
+    TextureImage(int width, int height, std::vector<float> rgb);
+    Rgb at(double u, double v) const;  ///< bilinear between the centres of texels
+    Rgb maximum() const;               ///< over all texels
+    Rgb mean() const;
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+private:
+    int width_, height_;
+    std::vector<float> rgb_;
+};
+
+/// A colour, or an image times one.
+struct Texture {
+    Rgb colour{1.0f};
+    std::shared_ptr<const TextureImage> image;
+
+    Texture() = default;
+    Texture(Rgb c) : colour(c) {}
+    Texture(Rgb c, std::shared_ptr<const TextureImage> i) : colour(c), image(std::move(i)) {}
+    Rgb at(double u, double v) const { return image ? colour * image->at(u, v) : colour; }
+    Rgb maximum() const { return image ? colour * image->maximum() : colour; }
+};
+
+}  // namespace woodcock
