@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/surface/geometry_solve.h"
+
+namespace woodcock {
+
+namespace {
+
+/// Distances of each corner from the opposite edge.
+std::array<double, 3> heights(const Triangle& triangle) {
+    const auto& p = triangle.corner;
+    const double twiceArea = length(triangle.normal);
+    return {twiceArea / length(p[2] - p[1]), twiceArea / length(p[0] - p[2]),
+            twiceArea / length(p[1] - p[0])};
+}
+
+}  // namespace
+
+RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterval within) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double lower = box.lower[axis] - margin - ray.origin[axis];
+        const double upper = box.upper[axis] + margin - ray.origin[axis];
+        const double d = ray.direction[axis];
+        if (d == 0) {
+            if (lower > 0 || upper < 0) return {1, 0};
+            continue;
+        }
+        within.from = std::max(within.from, (d > 0 ? lower : upper) / d);
+        within.to = std::min(within.to, (d > 0 ? upper : lower) / d);
+    }
+    return within;
+}
+
+std::optional<double> meetSphere(const LocalRay& ray, double tMax) {
+    // From the point of the ray that is closest to the centre, which loses no digits to a far
+    // origin where the difference of squares would.
+    const double a = dot(ray.direction, ray.direction);
+    const double closest = -dot(ray.origin, ray.direction) / a;
+    const Vec3d p = ray.at(closest);
+    const double square = (1 - dot(p, p)) / a;
+    if (!(square >= 0)) return std::nullopt;
+    const double half = std::sqrt(square);
+    for (const double t : {closest - half, closest + half})
+        if (t > 0) return t < tMax ? std::optional(t) : std::nullopt;
+    return std::nullopt;
+}
+
+double crossSphere(const LocalRay& ray) {
+    const double t = -2 * dot(ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+    // A ray that grazes has no length inside; it still has to come out.
+    return std::max(t, std::numeric_limits<double>::min());
+}
+
+std::optional<double> meetPlane(const LocalRay& ray, double tMax) {
+    const double t = -ray.origin.y / ray.direction.y;
+    return t > 0 && t < tMax ? std::optional(t) : std::nullopt;
+}
+
+std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle) {
+    const double slope = dot(ray.direction, triangle.normal);
+    const double twiceArea = length(triangle.normal);
+    if (slope == 0 || !(twiceArea > 0)) return std::nullopt;
+    TrianglePoint point;
+    point.t = dot(triangle.corner[0] - ray.origin, triangle.normal) / slope;
+    const Vec3d p = ray.at(point.t);
+    const double scale = 1 / (twiceArea * twiceArea);
+    const auto& c = triangle.corner;
+    auto& w = point.weights;
+    w[1] = dot(cross(p - c[0], c[2] - c[0]), triangle.normal) * scale;
+    w[2] = dot(cross(c[1] - c[0], p - c[0]), triangle.normal) * scale;
+    w[0] = 1 - w[1] - w[2];
+
+    const double cosine = std::abs(slope) / (length(ray.direction) * twiceArea);
+    point.tolerance = floatError / cosine;
+    const std::array<double, 3> height = heights(triangle);
+    point.edge = std::min({w[0] * height[0], w[1] * height[1], w[2] * height[2]});
+    if (!(point.edge >= -point.tolerance)) return std::nullopt;
+    if (point.edge < 0) {
+        w = awayFromEdges(triangle, w, 0);
+        point.t =
+            dot(triangle.at(w) - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
+    }
+    return point;
+}
+
+std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
+                                    double margin) {
+    const std::array<double, 3> height = heights(triangle);
+    std::array<double, 3> least;
+    double room = 1, slack = 0;
+    bool inside = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+        least[i] = std::min(margin / height[i], 1.0 / 3);
+        inside = inside && weights[i] >= least[i];
+        weights[i] = std::max(weights[i], least[i]);
+        room -= least[i];
+        slack += weights[i] - least[i];
+    }
+    if (inside) return weights;
+    const double share = slack > 0 ? std::max(room, 0.0) / slack : 0;
+    for (std::size_t i = 0; i < 3; ++i) weights[i] = least[i] + (weights[i] - least[i]) * share;
+    return weights;
+}
+
+}  // namespace woodcock

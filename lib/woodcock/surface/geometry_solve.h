@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+/// A ray in a shape's own frame; its parameter t is that of the ray in the world.
+struct LocalRay {
+    Vec3d origin, direction;
+    Vec3d at(double t) const { return origin + direction * t; }
+};
+
+/// The part of a ray within a box that is `margin` larger on all sides, from `from` to `to`.
+struct RayInterval {
+    double from = 0, to = 0;
+    bool empty() const { return !(from <= to); }
+};
+RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterval within);
+
+/// How far what Embree finds in floats may lie beside the ray, in a frame of about unit size.
+inline constexpr double floatError = 0x1p-21;
+
+/// The unit sphere's nearest point in (0, tMax).
+std::optional<double> meetSphere(const LocalRay& ray, double tMax);
+/// The same for a ray that starts on the sphere, inwards: its other end.
+double crossSphere(const LocalRay& ray);
+/// y = 0 in (0, tMax).
+std::optional<double> meetPlane(const LocalRay& ray, double tMax);
+
+struct Triangle {
+    std::array<Vec3d, 3> corner;
+    Vec3d normal;  ///< not of unit length: twice the area
+
+    explicit Triangle(const std::array<Vec3d, 3>& c)
+        : corner(c), normal(cross(c[1] - c[0], c[2] - c[0])) {}
+    Vec3d at(const std::array<double, 3>& weights) const {
+        return corner[0] * weights[0] + corner[1] * weights[1] + corner[2] * weights[2];
+    }
+};
+
+struct TrianglePoint {
+    double t = 0;
+    std::array<double, 3> weights{};  ///< barycentric, none negative
+    double edge = 0;       ///< distance of the ray from the nearest edge; negative: outside
+    double tolerance = 0;  ///< what an error beside the ray makes along the triangle
+};
+/// Where a ray meets a triangle that was found in floats. A ray that passes it by no more than
+/// these could tell meets it at its edge, so that there are no cracks. Nothing where it surely
+/// passes, or is parallel.
+std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle);
+
+/// Weights moved inwards so far that their point has `margin` from all edges, or is the middle.
+std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
+                                    double margin);
+
+}  // namespace woodcock
