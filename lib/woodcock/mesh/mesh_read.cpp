@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "woodcock/mesh/ply_mesh.h"
-#include "woodcock/mesh/polygon.h"
-#include "woodcock/mesh/triangle_mesh.h"
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/mesh/ply_mesh.h"
+#include "woodcock/mesh/polygon.h"
+#include "woodcock/mesh/surface_mesh.h"
 
 #ifdef WOODCOCK_WITH_ASSIMP
 #include <assimp/DefaultIOSystem.h>
@@ -56,7 +56,7 @@ std::string requireReadable(const fs::path& file) {
 
 #ifdef WOODCOCK_WITH_ASSIMP
 
-constexpr double bytesPerTriangle = 100;  ///< of a TriangleMesh while it is welded
+constexpr double bytesPerTriangle = 160;  ///< of a SurfaceMesh while it is welded
 
 /// Ends reading that goes on at the end of a file: some of Assimp's readers never would.
 class EndingStream : public Assimp::IOStream {
@@ -108,7 +108,7 @@ class Joiner {
 public:
     Joiner(const fs::path& file, const aiScene& scene) : file_(file), scene_(scene) {}
 
-    TriangleMesh join() {
+    SurfaceMesh join() {
         struct Placed {
             const aiNode* node;
             Affine3d parent;
@@ -131,12 +131,15 @@ public:
         if (faulty_ > 0)
             throw inputError("{} has {} points that are not finite, the first is {} of part '{}'",
                              file_.string(), faulty_, firstFaulty_, firstFaultyPart_);
-        return std::move(mesh_);
+        if (!anyNormals_) surface_.normals.clear();
+        if (!anyUvs_) surface_.uvs.clear();
+        return std::move(surface_);
     }
 
 private:
     void add(const aiMesh& part, const Affine3d& world) {
         requireRoom(part);
+        const bool mirrored = world.determinant() < 0;
         const auto first = static_cast<std::uint32_t>(mesh_.points.size());
         for (unsigned i = 0; i < part.mNumVertices; ++i) {
             const aiVector3D& v = part.mVertices[i];
@@ -155,9 +158,36 @@ private:
                                      file_.string(), i, face.mIndices[j], part.mNumVertices);
                 corners.push_back(mesh_.points[first + face.mIndices[j]].as<double>());
             }
-            for (const auto& [a, b, c] : triangulate(corners))
-                mesh_.triangles.push_back(
-                    {first + face.mIndices[a], first + face.mIndices[b], first + face.mIndices[c]});
+            for (auto [a, b, c] : triangulate(corners)) {
+                if (mirrored) std::swap(b, c);  // faces outwards still
+                addTriangle(part, world, first,
+                            {face.mIndices[a], face.mIndices[b], face.mIndices[c]});
+            }
+        }
+    }
+
+    void addTriangle(const aiMesh& part, const Affine3d& world, std::uint32_t first,
+                     const std::array<std::uint32_t, 3>& corners) {
+        mesh_.triangles.push_back({first + corners[0], first + corners[1], first + corners[2]});
+        auto& normals = surface_.normals.emplace_back();
+        auto& uvs = surface_.uvs.emplace_back();
+        if (part.mNormals) {
+            anyNormals_ = true;
+            const std::array<Vec3d, 3>& m = world.column;
+            // The inverse's transpose but for its scale, which does not matter; the sign does.
+            const double side = world.determinant() < 0 ? -1 : 1;
+            const std::array<Vec3d, 3> cofactors{cross(m[1], m[2]) * side, cross(m[2], m[0]) * side,
+                                                 cross(m[0], m[1]) * side};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const aiVector3D& n = part.mNormals[corners[i]];
+                normals[i] =
+                    (cofactors[0] * n.x + cofactors[1] * n.y + cofactors[2] * n.z).as<float>();
+            }
+        }
+        if (const aiVector3D* places = part.mTextureCoords[0]) {
+            anyUvs_ = true;
+            for (std::size_t i = 0; i < 3; ++i)
+                uvs[i] = {places[corners[i]].x, places[corners[i]].y};
         }
     }
 
@@ -176,27 +206,29 @@ private:
 
     const fs::path& file_;
     const aiScene& scene_;
-    TriangleMesh mesh_;
+    SurfaceMesh surface_;
+    TriangleMesh& mesh_ = surface_.mesh;
+    bool anyNormals_ = false, anyUvs_ = false;
     std::size_t faulty_ = 0;
     unsigned firstFaulty_ = 0;
     std::string firstFaultyPart_;
 };
 
-TriangleMesh readByAssimp(const fs::path& file) {
+SurfaceMesh readByAssimp(const fs::path& file) {
     Assimp::Importer importer;
     importer.SetIOHandler(new RegularFiles);  // which the importer deletes
     // Without any of Assimp's steps of processing: they abort where a face is not as they expect.
     const aiScene* scene = importer.ReadFile(file.string(), 0);
     if (!scene)
         throw inputError("cannot read mesh '{}': {}", file.string(), importer.GetErrorString());
-    return weld(Joiner(file, *scene).join());
+    return Joiner(file, *scene).join();
 }
 
 constexpr bool hasAssimp = true;
 
 #else
 
-TriangleMesh readByAssimp(const fs::path& file) {
+SurfaceMesh readByAssimp(const fs::path& file) {
     throw failure("cannot read mesh '{}': this build has no Assimp", file.string());
 }
 
@@ -204,15 +236,61 @@ constexpr bool hasAssimp = false;
 
 #endif
 
+/// As it stands in the file: points not welded, normals of any length.
+SurfaceMesh readAny(const fs::path& file) {
+    const std::string extension = requireReadable(file);
+    // Assimp's reader of PLY does not end where some files are damaged.
+    SurfaceMesh surface = extension == ".ply" ? readPlyMesh(file) : readByAssimp(file);
+    if (extension == ".stl") surface.normals.clear();  // one of each triangle, or none at all
+    return surface;
+}
+
+/// Leaves out triangles of no area, and makes normals unit vectors.
+void clean(SurfaceMesh& surface) {
+    TriangleMesh& mesh = surface.mesh;
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        const Vec3d p = mesh.points[a].as<double>();
+        const Vec3d area = cross(mesh.points[b].as<double>() - p, mesh.points[c].as<double>() - p);
+        if (!(length(area) > 0)) continue;
+        mesh.triangles[kept] = mesh.triangles[t];
+        if (!surface.uvs.empty()) surface.uvs[kept] = surface.uvs[t];
+        if (!surface.normals.empty()) {
+            surface.normals[kept] = surface.normals[t];
+            for (Vec3f& n : surface.normals[kept]) {
+                const Vec3d unit = normalize(n.as<double>());
+                n = (isFinite(unit) ? unit : normalize(area)).as<float>();
+            }
+        }
+        ++kept;
+    }
+    surface.droppedTriangles = mesh.triangles.size() - kept;
+    mesh.triangles.resize(kept);
+    if (!surface.uvs.empty()) surface.uvs.resize(kept);
+    if (!surface.normals.empty()) surface.normals.resize(kept);
+}
+
 }  // namespace
 
 bool canReadMeshes() { return hasAssimp; }
 
 TriangleMesh readMesh(const fs::path& file) {
-    // Assimp's reader of PLY does not end where some files are damaged.
-    TriangleMesh mesh = requireReadable(file) == ".ply" ? readPlyMesh(file) : readByAssimp(file);
+    TriangleMesh mesh = weld(readAny(file).mesh);
     if (mesh.triangles.empty()) throw inputError("{} holds no triangles", file.string());
     return mesh;
+}
+
+SurfaceMesh readSurfaceMesh(const fs::path& file) {
+    SurfaceMesh surface = readAny(file);
+    clean(surface);
+    if (surface.mesh.triangles.empty())
+        throw inputError("{} holds no triangles{}", file.string(),
+                         surface.droppedTriangles > 0
+                             ? fmt::format(" but {} of no area", surface.droppedTriangles)
+                             : "");
+    surface.mesh = weld(surface.mesh);
+    return surface;
 }
 
 }  // namespace woodcock

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "woodcock/grid/input_file.h"
 #include "woodcock/base/error.h"
+#include "woodcock/grid/input_file.h"
 
 namespace woodcock {
 

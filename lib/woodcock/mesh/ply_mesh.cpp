@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "woodcock/base/error.h"
 #include "woodcock/mesh/ply_file.h"
 #include "woodcock/mesh/polygon.h"
-#include "woodcock/base/error.h"
 
 namespace woodcock {
 
@@ -52,12 +52,43 @@ std::vector<Vec3f> readPlyVertices(const fs::path& file, const PlyElement& verti
     return points;
 }
 
+/// A number of each vertex; null where the file has none of these names.
+const std::vector<double>* numbers(const PlyElement& vertices,
+                                   std::initializer_list<std::string_view> names) {
+    const PlyElement::Property* found = vertices.find(names);
+    return found && !found->isList ? &found->values : nullptr;
+}
+
+void addAttributes(const PlyElement& vertices, SurfaceMesh& surface) {
+    const auto *x = numbers(vertices, {"nx"}), *y = numbers(vertices, {"ny"}),
+               *z = numbers(vertices, {"nz"});
+    const auto *u = numbers(vertices, {"u", "s", "texture_u"}),
+               *v = numbers(vertices, {"v", "t", "texture_v"});
+    for (const auto& triangle : surface.mesh.triangles) {
+        if (x && y && z) {
+            const auto normal = [&](std::uint32_t i) {
+                return Vec3d{(*x)[i], (*y)[i], (*z)[i]}.as<float>();
+            };
+            surface.normals.push_back(
+                {normal(triangle[0]), normal(triangle[1]), normal(triangle[2])});
+        }
+        if (u && v) {
+            const auto uv = [&](std::uint32_t i) {
+                return Vec2f{static_cast<float>((*u)[i]), static_cast<float>((*v)[i])};
+            };
+            surface.uvs.push_back({uv(triangle[0]), uv(triangle[1]), uv(triangle[2])});
+        }
+    }
+}
+
 }  // namespace
 
-TriangleMesh readPlyMesh(const fs::path& file) {
+SurfaceMesh readPlyMesh(const fs::path& file) {
     const std::vector<PlyElement> elements = readPly(file);
-    TriangleMesh mesh;
-    mesh.points = readPlyVertices(file, require(file, elements, "vertex"));
+    SurfaceMesh surface;
+    TriangleMesh& mesh = surface.mesh;
+    const PlyElement& vertices = require(file, elements, "vertex");
+    mesh.points = readPlyVertices(file, vertices);
     const PlyElement& faces = require(file, elements, "face");
     const PlyElement::Property& corners =
         require(file, faces, {"vertex_indices", "vertex_index"}, true);
@@ -77,7 +108,8 @@ TriangleMesh readPlyMesh(const fs::path& file) {
                                       static_cast<std::uint32_t>(face[b]),
                                       static_cast<std::uint32_t>(face[c])});
     }
-    return weld(mesh);
+    addAttributes(vertices, surface);
+    return surface;
 }
 
 }  // namespace woodcock

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "woodcock/mesh/triangle_mesh.h"
+#include "woodcock/mesh/surface_mesh.h"
 
 namespace woodcock {
 
-/// The faces of a PLY file, cut into triangles; points of one place are one. Errors: Input.
-TriangleMesh readPlyMesh(const std::filesystem::path& file);
+/// The faces of a PLY file, cut into triangles, of the points as the file has them; with what is
+/// known of its vertices' normals and texture coordinates. Errors: Input.
+SurfaceMesh readPlyMesh(const std::filesystem::path& file);
 
 }  // namespace woodcock

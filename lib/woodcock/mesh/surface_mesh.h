@@ -23,15 +23,16 @@ struct SurfaceMesh {
     TriangleMesh mesh;
     std::vector<std::array<Vec3f, 3>> normals;  ///< at corners; empty: flat
     std::vector<std::array<Vec2f, 3>> uvs;      ///< at corners; empty: none
+    std::size_t droppedTriangles = 0;           ///< of no area, left out while it was read
 };
 
 /// Reads a mesh with its normals and texture coordinates where the file has them (OBJ, PLY, STL,
-/// glTF). Errors: Input, naming the file and what is wrong with it: NaN, zero-area triangles with
-/// their number and the first one's place.
+/// glTF). Triangles of no area are left out and counted. Errors: as of readMesh(), and Input where
+/// no triangle has an area.
 SurfaceMesh readSurfaceMesh(const std::filesystem::path& file);
 
-/// Normals that are smooth over edges at which two triangles meet at less than `angle` degrees: by
-/// area and corner. Replaces those of the mesh.
+/// Normals that are the mean, by area and corner, of the triangles at a point that face by less
+/// than `angle` degrees apart. Replaces those of the mesh.
 void smoothNormals(SurfaceMesh& mesh, double angle);
 
 /// Whether a mesh encloses something: each edge belongs to two triangles that run along it in

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "woodcock/base/error.h"
+#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb_file.h"
+#include "woodcock/grid/vdb_grids_read.h"
+#include "woodcock/mesh/surface_mesh.h"
+
+namespace woodcock {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const GridListing& chooseLevelSet(const VdbFile& file, const std::string& name) {
+    const GridListing* found = nullptr;
+    for (const GridListing& grid : file.grids) {
+        const bool named = grid.uniqueName == name || grid.name == name;
+        if (name.empty() ? grid.gridClass != GridClass::LevelSet : !named) continue;
+        if (found && name.empty())
+            throw inputError("{} holds several level sets: {}; name one of them",
+                             file.path.string(), describeGrids(file));
+        if (!found) found = &grid;
+    }
+    if (!found)
+        throw inputError("{} in {}; it has: {}",
+                         name.empty() ? "no level set" : fmt::format("no grid '{}'", name),
+                         file.path.string(), describeGrids(file));
+    if (found->gridClass != GridClass::LevelSet)
+        throw inputError("grid '{}' of {} is no level set: its class is '{}'", found->uniqueName,
+                         file.path.string(), gridClassName(found->gridClass));
+    if (!isReadable(*found) || found->channels != 1)
+        throw inputError("level set '{}' of {} cannot be read: it holds {}", found->uniqueName,
+                         file.path.string(), found->valueType);
+    return *found;
+}
+
+template <class GridT>
+SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& place) {
+    for (auto it = grid.cbeginValueAll(); it; ++it)
+        if (std::isnan(*it))
+            throw inputError("{} holds a NaN at [{}, {}, {}]", place, it.getCoord().x(),
+                             it.getCoord().y(), it.getCoord().z());
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(grid, points, triangles, quads, 0.0, adaptivity);
+    SurfaceMesh surface;
+    TriangleMesh mesh;
+    for (const openvdb::Vec3s& p : points) mesh.points.push_back({p[0], p[1], p[2]});
+    // OpenVDB's polygons are clockwise from outside.
+    for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[2], t[1]});
+    for (const openvdb::Vec4I& q : quads) {
+        mesh.triangles.push_back({q[0], q[2], q[1]});
+        mesh.triangles.push_back({q[0], q[3], q[2]});
+    }
+    surface.mesh = weld(mesh);
+    if (surface.mesh.triangles.empty()) throw inputError("{} has no surface", place);
+    return surface;
+}
+
+}  // namespace
+
+SurfaceMesh levelSetMesh(const fs::path& path, const std::string& name, double adaptivity) {
+    if (!(adaptivity >= 0 && adaptivity <= 1))
+        throw usageError("an adaptivity of {}; it must be from 0 to 1", adaptivity);
+    const VdbFile file = listGrids(path);
+    const GridListing& listing = chooseLevelSet(file, name);
+    const openvdb::GridBase::Ptr grid = readVdbGrids(file, {listing.uniqueName}).grids.front();
+    const std::string place =
+        fmt::format("level set '{}' of {}", listing.uniqueName, path.string());
+    if (grid->isType<openvdb::FloatGrid>())
+        return meshOf(static_cast<const openvdb::FloatGrid&>(*grid), adaptivity, place);
+    if (grid->isType<openvdb::DoubleGrid>())
+        return meshOf(static_cast<const openvdb::DoubleGrid&>(*grid), adaptivity, place);
+    throw inputError("{} holds {} where float or double is expected", place, grid->valueType());
+}
+
+}  // namespace woodcock
