@@ -9,8 +9,8 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_dir.h"
-#include "woodcock/mesh/triangle_mesh.h"
 #include "woodcock/base/random.h"
+#include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock::test {
 namespace {

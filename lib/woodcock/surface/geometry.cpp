@@ -165,9 +165,10 @@ bool acceptNearest(MeshQuery& base, std::uint32_t primitive) {
     if (!point) return false;
     const double t = query.from + point->t;
     if (!(t > 0) || !(t < query.tMax)) return false;
-    // Beside the edge that the ray starts at, only the neighbour's side can tell a hit from what
-    // rounding makes of none: who starts inside can only leave, and the other way round.
-    if (query.starts && t * query.speed < 4 * point->tolerance &&
+    // Beside the edge that the ray starts at, and where it passes one, only the side can tell a hit
+    // from what rounding makes of none: who starts inside can only leave, and the other way round.
+    const bool doubtful = point->edge < 0 || t * query.speed < 4 * point->tolerance;
+    if (query.starts && doubtful &&
         dot(query.ray.direction, triangle.normal) * query.leftSide > 0)
         return false;
     query.tMax = t;
@@ -400,6 +401,7 @@ void Geometry::Impl::traverseInstances(Query& query) const {
     const RayInterval part = clip(query.ray, bounds, margin / frame.scale, {0, query.tMax});
     if (part.empty()) return;
     const double speed = length(query.ray.direction);
+    if (!(speed > 0)) return;
     query.from = part.from;
     query.perUnit = speed * frame.scale;
     RTCRayHit ray =
@@ -446,6 +448,7 @@ void Geometry::Impl::nearestOfMesh(NearestQuery& query, std::uint32_t i,
     inner.from = part.from;
     inner.tMax = query.tMax;
     inner.speed = length(ray.direction);
+    if (!(inner.speed > 0)) return;
     if (query.left && query.left->instance == i) {
         inner.starts = true;
         inner.left = query.left->primitive;
@@ -570,6 +573,7 @@ Box3d Geometry::bounds() const { return impl_->bounds; }
 
 bool Geometry::intersect(Vec3d origin, Vec3d direction, double tMax, const SurfaceHit* left,
                          SurfaceHit& hit) const {
+    if (!isFinite(origin) || !isFinite(direction)) return false;
     NearestQuery query;
     query.impl = impl_.get();
     query.ray = {origin, direction};
@@ -587,6 +591,7 @@ bool Geometry::intersect(Vec3d origin, Vec3d direction, double tMax, const Surfa
 
 std::vector<std::uint32_t> Geometry::enclosing(Vec3d point, const std::vector<bool>& closed) const {
     std::vector<std::uint32_t> found;
+    if (!isFinite(point)) return found;
     EnclosingQuery query;
     query.impl = impl_.get();
     query.ray = {point, {0, 0, 1}};
