@@ -168,8 +168,7 @@ bool acceptNearest(MeshQuery& base, std::uint32_t primitive) {
     // Beside the edge that the ray starts at, and where it passes one, only the side can tell a hit
     // from what rounding makes of none: who starts inside can only leave, and the other way round.
     const bool doubtful = point->edge < 0 || t * query.speed < 4 * point->tolerance;
-    if (query.starts && doubtful &&
-        dot(query.ray.direction, triangle.normal) * query.leftSide > 0)
+    if (query.starts && doubtful && dot(query.ray.direction, triangle.normal) * query.leftSide > 0)
         return false;
     query.tMax = t;
     query.found = true;
