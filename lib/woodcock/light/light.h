@@ -7,6 +7,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/light/environment_map.h"
+#include "woodcock/light/mesh_light.h"
 
 namespace woodcock {
 
@@ -82,6 +83,6 @@ struct SphereLight {
     double hit(Vec3d origin, Vec3d direction) const;
 };
 
-using Light = std::variant<Sun, Environment, PointLight, SphereLight>;
+using Light = std::variant<Sun, Environment, PointLight, SphereLight, MeshLight>;
 
 }  // namespace woodcock

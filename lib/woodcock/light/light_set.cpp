@@ -34,6 +34,12 @@ double promise(const Light& light, const ScatterPoint& at) {
                        // reaches directions that its centre does not.
                        const double p = distance > l.radius ? phase(d / distance) : 0;
                        return l.radiance.mean() * area * (0.5 * p + 0.5 / (4 * pi));
+                   },
+                   [&](const MeshLight& l) {
+                       const Vec3d d = l.centre() - at.position;
+                       const double distance = length(d);
+                       const double p = distance > 0 ? phase(d / distance) : 0;
+                       return l.promise(at.position) * (0.5 * p + 0.5 / (4 * pi));
                    }},
         light);
 }
@@ -48,7 +54,12 @@ LightSet::LightSet(std::vector<Light> lights) : lights_(std::move(lights)) {
         if (std::holds_alternative<PointLight>(lights_[i]) ||
             std::holds_alternative<SphereLight>(lights_[i]))
             local_.push_back(static_cast<int>(i));
+        if (std::holds_alternative<MeshLight>(lights_[i])) mesh_ = static_cast<int>(i);
     }
+}
+
+const MeshLight* LightSet::mesh() const {
+    return mesh_ < 0 ? nullptr : &std::get<MeshLight>(lights_[static_cast<std::size_t>(mesh_)]);
 }
 
 void LightSet::pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const {
@@ -69,7 +80,11 @@ LightSample LightSet::sample(int light, Vec3d from, double u0, double u1) const 
     return std::visit(Overloaded{[&](const Sun& l) { return l.sample(u0, u1); },
                                  [&](const Environment& l) { return l.sample(u0, u1); },
                                  [&](const PointLight& l) { return l.sample(from); },
-                                 [&](const SphereLight& l) { return l.sample(from, u0, u1); }},
+                                 [&](const SphereLight& l) { return l.sample(from, u0, u1); },
+                                 [&](const MeshLight& l) {
+                                     std::uint32_t triangle = 0;
+                                     return l.sample(from, u0, u1, triangle);
+                                 }},
                       lights_[static_cast<std::size_t>(light)]);
 }
 
@@ -77,7 +92,8 @@ double LightSet::pdf(int light, Vec3d from, Vec3d direction) const {
     return std::visit(Overloaded{[&](const Sun& l) { return l.pdf(direction); },
                                  [&](const Environment& l) { return l.pdf(direction); },
                                  [&](const PointLight&) { return 0.0; },
-                                 [&](const SphereLight& l) { return l.pdf(from, direction); }},
+                                 [&](const SphereLight& l) { return l.pdf(from, direction); },
+                                 [&](const MeshLight&) { return 0.0; }},
                       lights_[static_cast<std::size_t>(light)]);
 }
 
@@ -105,7 +121,8 @@ float LightSet::typicalRadiance(const Box3d& bounds) const {
                        [&](const PointLight& l) { return far(l.position, l.intensity.maximum()); },
                        [&](const SphereLight& l) {
                            return far(l.position, l.radiance.maximum() * pi * l.radius * l.radius);
-                       }},
+                       },
+                       [&](const MeshLight& l) { return far(l.centre(), l.power() / (4 * pi)); }},
             light);
     }
     return static_cast<float>(sum);

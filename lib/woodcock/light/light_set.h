@@ -28,12 +28,16 @@ public:
     std::span<const int> sampled() const { return sampled_; }
     /// Those that stand somewhere (point, sphere).
     std::span<const int> local() const { return local_; }
+    /// Index of the emissive surfaces, of which a set has at most one; -1: none.
+    int meshIndex() const { return mesh_; }
+    const MeshLight* mesh() const;  ///< null: none
 
     /// Probabilities, one for each of sampled(), in proportion to what each light would send
     /// through the phase function if nothing stood between. Sums to 1 unless all are zero.
     void pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const;
 
     LightSample sample(int light, Vec3d from, double u0, double u1) const;
+    /// 0 for emissive surfaces: a direction does not say which triangle it meets. Ask mesh().
     double pdf(int light, Vec3d from, Vec3d direction) const;
 
     /// Radiance that an infinitely far light (environment, a sun's disc) sends from a direction; 0
@@ -47,6 +51,7 @@ public:
 private:
     std::vector<Light> lights_;
     std::vector<int> sampled_, local_;
+    int mesh_ = -1;
 };
 
 }  // namespace woodcock

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "woodcock/base/vec.h"
+
+namespace woodcock {
+
+/// What is known of some emitters together. Each radiates by Lambert's law around its normal.
+struct EmitterBounds {
+    Box3d box;
+    Vec3d axis;         ///< unit
+    double spread = 0;  ///< largest angle between a normal and the axis; pi: all directions
+    double power = 0;   ///< radiance times area
+
+    double cost() const;  ///< Conty Estevez and Kulla 2018, eq. 1 and 2
+};
+EmitterBounds together(const EmitterBounds& a, const EmitterBounds& b);
+
+/// A binary tree over emitters, by Conty Estevez and Kulla 2018, "Importance Sampling of Many
+/// Lights with Adaptive Tree Splitting".
+struct LightTree {
+    struct Node {
+        Vec3d centre;
+        double radius;  ///< of the sphere that holds all
+        Vec3d axis;
+        double cosSpread;  ///< -1: all directions
+        double power;
+        std::uint32_t second = 0;   ///< the second child, the first is the next node; 0: a leaf
+        std::uint32_t emitter = 0;  ///< of a leaf
+
+        bool leaf() const { return second == 0; }
+        /// Bound of what it could send to a point, roughly: irradiance perpendicular to the light.
+        /// 0 only where all of it is turned away.
+        double importance(Vec3d from) const;
+    };
+    std::vector<Node> nodes;  ///< none where there are no emitters
+    /// Of each emitter: which child is to be taken at each level, the root's in the lowest bit.
+    std::vector<std::uint64_t> paths;
+
+    LightTree() = default;
+    /// Emitters of no power are left out; their paths mean nothing.
+    explicit LightTree(std::span<const EmitterBounds> emitters);
+};
+
+}  // namespace woodcock

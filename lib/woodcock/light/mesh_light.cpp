@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/light/mesh_light.h"
+
+#include <cmath>
+#include <limits>
+
+#include "woodcock/light/light.h"
+#include "woodcock/light/spherical_triangle.h"
+
+namespace woodcock {
+
+namespace {
+
+// Smaller triangles are sampled evenly by area: directions into them would differ in their last
+// digits alone. Larger ones are all but a half-space, so near to their plane that they have no
+// shape beyond rounding; there all directions of the hemisphere are sampled, and a few miss.
+constexpr double smallest = 1e-8, largest = 2 * pi - 1e-6;
+
+/// Twice the area long, towards the side that emits.
+Vec3d wideNormal(const MeshLight::Triangle& t) {
+    return cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+}
+
+/// 0 from the side that is dark.
+double litSolidAngle(const MeshLight::Triangle& t, const SphericalTriangle& seen) {
+    return t.bothSides || seen.front() ? seen.solidAngle() : 0;
+}
+
+/// Of sampleDirection(), per steradian. `distance` is that of the point on the triangle.
+double density(const MeshLight::Triangle& t, Vec3d from, double solidAngle, double distance) {
+    if (solidAngle > largest) return 1 / (2 * pi);
+    if (solidAngle >= smallest) return 1 / solidAngle;
+    const double height = std::abs(dot(wideNormal(t), t.corner[0] - from));
+    return 2 * distance * distance * distance / height;  // distance^2 / (area cosine)
+}
+
+/// `distance` becomes that of the point on the triangle; not a positive number where there is none.
+Vec3d sampleDirection(const MeshLight::Triangle& t, const SphericalTriangle& seen, Vec3d from,
+                      double u0, double u1, double& distance) {
+    if (seen.solidAngle() < smallest) {
+        const double root = std::sqrt(u0);
+        const Vec3d d = (t.corner[0] - from) + (t.corner[1] - t.corner[0]) * (root * (1 - u1)) +
+                        (t.corner[2] - t.corner[0]) * (root * u1);
+        distance = length(d);
+        return d / distance;
+    }
+    const Vec3d normal = wideNormal(t);
+    const double height = dot(normal, t.corner[0] - from);
+    Vec3d direction;
+    if (seen.solidAngle() <= largest) {
+        direction = seen.sample(u0, u1);
+    } else {
+        const double up = 1 - u0, out = std::sqrt(u0 * (2 - u0)), phi = 2 * pi * u1;
+        const Vec3d axis = normalize(height > 0 ? normal : -normal);
+        Vec3d x, y;
+        orthonormalBasis(axis, x, y);
+        direction = normalize(x * (out * std::cos(phi)) + y * (out * std::sin(phi)) + axis * up);
+        if (!seen.contains(direction)) {
+            distance = 0;
+            return direction;
+        }
+    }
+    distance = height / dot(normal, direction);
+    return direction;
+}
+
+EmitterBounds boundsOf(const MeshLight::Triangle& t) {
+    EmitterBounds bounds;
+    for (const Vec3d& corner : t.corner) bounds.box.add(corner);
+    const Vec3d normal = wideNormal(t);
+    const double power = t.radiance.mean() * length(normal) / 2;
+    if (!(power > 0 && std::isfinite(power))) return bounds;
+    bounds.axis = normalize(normal);
+    bounds.spread = t.bothSides ? pi : 0;
+    bounds.power = power;
+    return bounds;
+}
+
+}  // namespace
+
+MeshLight::MeshLight(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+    std::vector<EmitterBounds> bounds;
+    bounds.reserve(triangles_.size());
+    std::array<double, 3> power{};
+    double weights = 0;
+    for (const Triangle& t : triangles_) {
+        const EmitterBounds& b = bounds.emplace_back(boundsOf(t));
+        if (!(b.power > 0)) continue;
+        const double area = length(wideNormal(t)) / 2, sides = t.bothSides ? 2 : 1;
+        for (int i = 0; i < 3; ++i)
+            power[static_cast<std::size_t>(i)] += double{t.radiance[i]} * area * sides * pi;
+        weights += b.power;
+        centre_ += (t.corner[0] + t.corner[1] + t.corner[2]) * (b.power / 3);
+    }
+    if (weights > 0) centre_ = centre_ / weights;
+    power_ = *std::max_element(power.begin(), power.end());
+    tree_ = LightTree(bounds);
+}
+
+double MeshLight::importance(std::uint32_t node, Vec3d from) const {
+    const LightTree::Node& n = tree_.nodes[node];
+    if (!n.leaf()) return n.importance(from);
+    const Triangle& t = triangles_[n.emitter];
+    return t.radiance.mean() * litSolidAngle(t, SphericalTriangle(t.corner, from));
+}
+
+/// Of a node's two children: the probability of the first. Not a number where neither is seen.
+double MeshLight::firstShare(std::uint32_t node, Vec3d from) const {
+    const double first = importance(node + 1, from);
+    const double second = importance(tree_.nodes[node].second, from);
+    return first / (first + second);
+}
+
+LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& triangle) const {
+    LightSample s;
+    if (tree_.nodes.empty()) return s;
+    std::uint32_t node = 0;
+    double picked = 1;
+    while (!tree_.nodes[node].leaf()) {
+        const double share = firstShare(node, from);
+        if (std::isnan(share)) return s;
+        const bool first = u0 < share;
+        u0 = first ? u0 / share : (u0 - share) / (1 - share);
+        u0 = std::min(u0, 1 - std::numeric_limits<double>::epsilon() / 2);
+        picked *= first ? share : 1 - share;
+        node = first ? node + 1 : tree_.nodes[node].second;
+    }
+    const Triangle& t = triangles_[tree_.nodes[node].emitter];
+    const SphericalTriangle seen(t.corner, from);
+    const double solidAngle = litSolidAngle(t, seen);
+    if (!(solidAngle > 0)) return s;
+    triangle = tree_.nodes[node].emitter;
+    double distance = 0;
+    s.direction = sampleDirection(t, seen, from, u0, u1, distance);
+    if (!(distance > 0 && std::isfinite(distance))) return s;
+    s.distance = distance;
+    s.pdf = picked * density(t, from, solidAngle, distance);
+    s.weight = t.radiance * static_cast<float>(1 / s.pdf);
+    return s;
+}
+
+double MeshLight::pdf(Vec3d from, std::uint32_t triangle, Vec3d position) const {
+    const Triangle& t = triangles_[triangle];
+    const double solidAngle = litSolidAngle(t, SphericalTriangle(t.corner, from));
+    if (!(solidAngle > 0) || !(boundsOf(t).power > 0)) return 0;
+    double picked = 1;
+    std::uint64_t path = tree_.paths[triangle];
+    for (std::uint32_t node = 0; !tree_.nodes[node].leaf(); path >>= 1) {
+        const double share = firstShare(node, from);
+        const bool first = (path & 1) == 0;
+        picked *= first ? share : 1 - share;
+        node = first ? node + 1 : tree_.nodes[node].second;
+    }
+    return picked * density(t, from, solidAngle, length(position - from));
+}
+
+double MeshLight::promise(Vec3d from) const {
+    return tree_.nodes.empty() ? 0 : importance(0, from);
+}
+
+}  // namespace woodcock
