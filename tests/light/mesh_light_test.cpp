@@ -54,7 +54,7 @@ std::size_t partOf(const Triangle& t, int n, Vec3d p) {
 /// Samples fall onto the parts of all triangles as the integral of pdf() says: chi-square. What is
 /// left to 1 are samples that end at a group of triangles which all turn out to be dark.
 void expectDensity(const Triangles& triangles, Vec3d from) {
-    constexpr int side = 4, fine = 24, samples = 60000;
+    constexpr int side = 4, fine = 16, samples = 60000;
     const MeshLight light(triangles);
     std::vector<double> expected;
     for (std::uint32_t k = 0; k < triangles.size(); ++k)
@@ -247,6 +247,29 @@ TEST(MeshLight, LeavesOutWhatCannotShine) {
 
 TEST(MeshLight, TellsTrianglesInOnePlaceApart) {
     expectDensity(Triangles(50, someTriangle), {0.3, 0.3, 1});
+}
+
+TEST(MeshLight, ReachesTrianglesThatShrinkTowardsAPoint) {
+    Triangles triangles;  // each split by place alone would cut off only a few
+    for (double size = 1; size > 1e-60; size /= 2)
+        triangles.push_back({moved({someTriangle}, size, {})[0].corner,
+                             Rgb(static_cast<float>(std::min(1 / (size * size), 1e36)))});
+    const MeshLight light(triangles);
+    const Vec3d from{0.3, -0.3, 1};
+    for (std::uint32_t k = 0; k < triangles.size(); ++k)
+        EXPECT_GT(light.pdf(from, k, triangles[k].corner[1]), 0) << k;
+    std::vector<int> found(triangles.size());
+    RandomStream random(2);
+    for (int i = 0; i < 40000; ++i) {
+        const Sample s = draw(light, from, random);
+        ASSERT_GT(s.light.pdf, 0);
+        const Vec3d position = from + s.light.direction * s.light.distance;
+        ASSERT_NEAR(light.pdf(from, s.triangle, position) / s.light.pdf, 1, 1e-6);
+        ++found[s.triangle];
+    }
+    // As bright as each other, but for the largest and those whose radiance was cut
+    for (std::size_t i = 6; i < 55; ++i)
+        EXPECT_NEAR(found[i], found[30], 6 * std::sqrt(2.0 * found[30])) << i;
 }
 
 TEST(MeshLight, PowerAndCentre) {
