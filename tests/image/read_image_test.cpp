@@ -41,6 +41,10 @@ TEST_F(ReadImage, GreyFillsAllChannels) {
 TEST_F(ReadImage, IgnoresAlpha) {
     test::writeFloats(dir_ / "a.exr", 1, 1, 4, {4, 5, 6, -1});
     EXPECT_EQ(readImage(dir_ / "a.exr").at(0, 0), Rgb(4, 5, 6));
+    // OpenImageIO takes colours that are multiplied by alpha; PNG holds them as they were before.
+    test::writeFloats(dir_ / "a.png", 1, 1, 4, {0.2f, 0.1f, 0, 0.2f});
+    EXPECT_EQ(readImage(dir_ / "a.png").at(0, 0)[0], 1);
+    EXPECT_NEAR(readImage(dir_ / "a.png").at(0, 0)[1], 0.5, 0.01);
 }
 
 TEST_F(ReadImage, NamesCountAndPlaceOfWhatIsNoLight) {

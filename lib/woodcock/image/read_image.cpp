@@ -19,7 +19,9 @@ Input open(const std::filesystem::path& file) {
         throw inputError("cannot read image '{}': there is no such file", file.string());
     if (std::filesystem::is_directory(file, ignored))
         throw inputError("cannot read image '{}': it is a directory", file.string());
-    Input input = OIIO::ImageInput::open(file.string());
+    OIIO::ImageSpec asItIs;  // else colours come multiplied by alpha, in the file's own space
+    asItIs.attribute("oiio:UnassociatedAlpha", 1);
+    Input input = OIIO::ImageInput::open(file.string(), &asItIs);
     if (!input) throw inputError("cannot read image '{}': {}", file.string(), OIIO::geterror());
     return input;
 }
