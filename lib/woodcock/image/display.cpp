@@ -112,6 +112,13 @@ std::vector<std::string> lookNames(const OCIO::Config& config) {
     return names;
 }
 
+std::vector<std::string> spaceNames(const OCIO::Config& config) {
+    std::vector<std::string> names;
+    for (int i = 0; i < config.getNumColorSpaces(); ++i)
+        names.emplace_back(config.getColorSpaceNameByIndex(i));
+    return names;
+}
+
 std::string notAvailable(const std::vector<std::string>& styles) {
     if (styles.empty()) return {};
     return fmt::format("; views that need the built-in transform '{}'{} do not work",
@@ -266,6 +273,31 @@ DisplayTransform ColorConfig::displayTransform(const DisplaySettings& settings) 
     } catch (const OCIO::Exception& e) {
         throw impl_->cannotShow(chosen, e.what());
     }
+}
+
+void ColorConfig::toSceneLinear(std::span<float> rgb, const std::string& space) const {
+    const OCIO::Config& config = *impl_->config;
+    if (!config.getColorSpace(space.c_str()))
+        throw inputError("colour space '{}' not found in the OpenColorIO config {}; it has: {}",
+                         space, impl_->origin, joinNames(spaceNames(config)));
+    try {
+        const auto cpu =
+            config.getProcessor(space.c_str(), OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor();
+        OCIO::PackedImageDesc pixels(rgb.data(), static_cast<long>(rgb.size() / 3), 1, 3);
+        if (!rgb.empty()) cpu->apply(pixels);
+    } catch (const OCIO::Exception& e) {
+        throw inputError("the OpenColorIO config {} cannot convert from colour space '{}': {}",
+                         impl_->origin, space, e.what());
+    }
+}
+
+std::string ColorConfig::pictureSpace() const {
+    // Woodcock's own config, ACES 1.3 and later (its alias and its name), ACES 1.2 and before,
+    // later OpenColorIO's built-in ones, Blender.
+    for (const char* name : {"sRGB texture", "srgb_tx", "sRGB - Texture",
+                             "Utility - sRGB - Texture", "sRGB Encoded Rec.709 (sRGB)", "sRGB"})
+        if (const auto space = impl_->config->getColorSpace(name)) return space->getName();
+    return {};
 }
 
 }  // namespace woodcock

@@ -50,6 +50,13 @@ public:
     /// Throws Error{Usage} on names that the config does not have, and lists those that it has.
     DisplayTransform displayTransform(const DisplaySettings& settings) const;
 
+    /// Turns colours of the named space, three floats each, into scene_linear in place. Throws
+    /// Error{Input} on names that the config does not have, and lists those that it has.
+    void toSceneLinear(std::span<float> rgb, const std::string& space) const;
+    /// What the config calls the space of ordinary pictures, the sRGB curve over Rec.709 primaries;
+    /// empty where no name that is known for it is found.
+    std::string pictureSpace() const;
+
 private:
     struct Impl;
     static std::shared_ptr<const Impl> load(const std::filesystem::path& file);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "woodcock/image/display.h"
+#include "woodcock/image/read_image.h"
+
+namespace woodcock {
+
+/// Reads an image as readImage() does, and turns it from the named colour space of the config into
+/// scene-linear colours. "linear", "raw" and "data" leave the numbers as they are. Empty: integers
+/// are ordinary pictures (ColorConfig::pictureSpace), floats scene-linear. What lies outside the
+/// gamut of scene_linear, and would be negative there, becomes 0. Throws Error{Input} on names
+/// that the config does not have, and lists those that it has.
+Image readTexture(const std::filesystem::path& file, const std::string& colourSpace,
+                  const ColorConfig& config);
+
+}  // namespace woodcock
