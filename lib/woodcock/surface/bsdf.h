@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "woodcock/base/vec.h"
@@ -27,47 +28,82 @@ struct BsdfSample {
     bool transmitted = false;
 };
 
+struct BsdfValue {
+    Rgb value;       ///< f |cos(in)|
+    double pdf = 0;  ///< with which sample() draws `in`, per steradian
+};
+
 /// The scattering of one point of a surface: for paths that come from the camera, so that crossing
 /// into another index of refraction scales radiance by (n_from / n_to)^2 (Veach 1997, eq. 5.16).
+/// What is rough scatters once, and loses light that would meet a second facet: of light along the
+/// normal, white metal of roughness 0.2, 0.3, 0.5, 0.7 and 1 loses 0.2, 1, 9, 31 and 70 %; glass
+/// that it enters 0, 0.1, 0.8, 3 and 11 %.
 class Bsdf {
 public:
     /// What `materials[index]` does at a point. A dielectric between equal indices, and an
-    /// interface, let light pass unchanged.
+    /// interface, let light pass unchanged; a mix within a mix is black.
     Bsdf(std::span<const Material> materials, std::uint32_t index, const BsdfPoint& point);
 
     /// Nothing but light passing unchanged.
     bool passes() const;
     /// Has a part that next-event estimation can light: anything that is not delta.
     bool smooth() const;
-    /// Some of it is a dielectric: shadow rays may be let through by a biased choice.
+    /// Some of it is a dielectric, or lets light pass: shadow rays may be let through by a biased
+    /// choice.
     bool transmits() const;
 
     /// `out`: towards where the path came from; u: three numbers in [0, 1).
     BsdfSample sample(Vec3d out, std::array<double, 3> u) const;
-    /// f |cos(in)| of all parts that are not delta, and the density with which sample() draws `in`
-    /// by them, per steradian.
-    Rgb evaluate(Vec3d out, Vec3d in) const;
-    double pdf(Vec3d out, Vec3d in) const;
+    /// Of all parts that are not delta.
+    BsdfValue scatter(Vec3d out, Vec3d in) const;
+    Rgb evaluate(Vec3d out, Vec3d in) const { return scatter(out, in).value; }
+    double pdf(Vec3d out, Vec3d in) const { return scatter(out, in).pdf; }
 
     /// Radiance that the point sends out by itself.
     Rgb emitted(Vec3d out) const;
     /// Share of light that goes straight on through the dielectric for the biased choice of
-    /// transparent shadows: the smooth Fresnel transmittance of a ray in this direction.
+    /// transparent shadows: the smooth Fresnel transmittance, of a ray in this direction on the
+    /// side of the lower index. So a plate lets through what it does with the true, bent rays.
     Rgb straightTransmittance(Vec3d direction) const;
-    /// Reflectance for layers: the diffuse colour, a metal's colour, one for glass.
+    /// Reflectance for layers: the diffuse colour, a metal's colour at normal incidence, one for
+    /// what transmits.
     Rgb albedo() const;
 
+    /// Facets below this roughness are taken for a plane.
+    static constexpr double leastRoughness = 0.02;
+
 private:
-    // Up to two lobes of different kinds, with weights that sum to at most one.
+    /// Up to two lobes of different kinds, with weights that sum to at most one.
     struct Lobe {
-        enum class Kind { Diffuse, Conductor, Dielectric, Pass, Emissive } kind;
+        enum class Kind { Diffuse, Conductor, Dielectric, Pass, Emissive } kind = Kind::Pass;
         double weight = 1;
-        Rgb colour, eta, k;
+        Rgb colour{1.0f}, eta, k;  ///< reflectance, or radiance
         bool schlick = false, bothSides = false;
-        double alpha = 0;
+        double alpha = 0;  ///< of GGX; 0: smooth
+
+        bool scatters() const { return kind != Kind::Emissive; }
+        bool delta() const {
+            return kind == Kind::Pass ||
+                   ((kind == Kind::Conductor || kind == Kind::Dielectric) && alpha == 0);
+        }
     };
+    struct View;
+    struct Density;
+
+    void add(const Material& material, double weight);
+    std::span<const Lobe> lobes() const {
+        return {lobes_.data(), static_cast<std::size_t>(count_)};
+    }
+    View viewFrom(Vec3d out) const;
+    static Rgb fresnel(const Lobe& lobe, double cosine, double ior);
+    static Density density(const Lobe& lobe, const View& view, Vec3d in);
+    static Density diffuse(const Lobe& lobe, const View& view, Vec3d in);
+    static Density conductor(const Lobe& lobe, const View& view, Vec3d in);
+    static Density dielectric(const Lobe& lobe, const View& view, Vec3d in);
+
     std::array<Lobe, 2> lobes_;
     int count_ = 0;
+    double scattering_ = 0;  ///< sum of the weights of lobes that scatter
     BsdfPoint point_;
 };
 

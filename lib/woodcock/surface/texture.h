@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "woodcock/base/spectrum.h"
@@ -11,6 +13,7 @@ namespace woodcock {
 /// Scene-linear colours over the unit square, repeated; row by row from the top left, v upwards.
 class TextureImage {
 public:
+    /// Throws Error{Failure} where `rgb` does not hold width x height colours, or none.
     TextureImage(int width, int height, std::vector<float> rgb);
     Rgb at(double u, double v) const;  ///< bilinear between the centres of texels
     Rgb maximum() const;               ///< over all texels
@@ -19,6 +22,8 @@ public:
     int height() const { return height_; }
 
 private:
+    Rgb texel(int x, int y) const;
+
     int width_, height_;
     std::vector<float> rgb_;
 };

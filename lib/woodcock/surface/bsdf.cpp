@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/surface/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "woodcock/surface/fresnel.h"
+#include "woodcock/surface/microfacet.h"
+
+namespace woodcock {
+
+/// The point as it is seen from `out`: all normals on that side.
+struct Bsdf::View {
+    Vec3d out;
+    Vec3d normal, shading;        ///< the surface's own, and the interpolated one
+    Vec3d facing;                 ///< what facets stand around: `shading`, or bent towards `out`
+    Vec3d s, t;                   ///< complete `facing` to a frame
+    double cosine = 0;            ///< of `out` to `normal`; at most 0: nothing is seen
+    double iorHere = 1, eta = 1;  ///< the index on this side; the other side's over it
+
+    Vec3d toFacets(Vec3d v) const { return {dot(v, s), dot(v, t), dot(v, facing)}; }
+    Vec3d fromFacets(Vec3d v) const { return s * v.x + t * v.y + facing * v.z; }
+    /// On the side of `out`, or the other one, of the surface itself and of its shading normal;
+    /// where the two disagree, light would leak.
+    bool reflects(Vec3d in) const { return dot(in, normal) > 0 && dot(in, facing) > 0; }
+    bool transmits(Vec3d in) const { return dot(in, normal) < 0 && dot(in, facing) < 0; }
+};
+
+/// f |cos| = pdf x ratio, where no ratio exceeds one (but for the squared index of refraction): so
+/// no lobe can create energy, and none divides by a small density.
+struct Bsdf::Density {
+    double pdf = 0;
+    Rgb ratio;
+};
+
+namespace {
+
+Vec3d mirrored(Vec3d v, Vec3d normal) { return normal * (2 * dot(v, normal)) - v; }
+
+/// The shading normal, bent as little as makes the mirrored `out` stay above the surface:
+/// silhouettes of coarse meshes would be black. Keller et al. 2017, "The Iray Light Transport
+/// Simulation and Rendering System", appendix A.3. `cosine`: of `out` to the surface's own normal.
+Vec3d bent(Vec3d out, Vec3d normal, Vec3d shading, double cosine) {
+    const double least = std::min(0.9 * cosine, 0.01);
+    const Vec3d mirror = mirrored(out, shading);
+    const double above = dot(mirror, normal);
+    if (above >= least) return shading;
+    const Vec3d along = mirror - normal * above;
+    if (!(length(along) > 1e-6)) return normal;
+    return normalize(out + normal * least + normalize(along) * std::sqrt(1 - least * least));
+}
+
+Vec3d refracted(Vec3d out, Vec3d normal, double cosine, double cosineBeyond, double eta) {
+    return normalize(normal * (cosine / eta - cosineBeyond) - out / eta);
+}
+
+/// Alpha is the square of what artists call roughness (Burley 2012).
+double alphaOf(double roughness) {
+    return roughness < Bsdf::leastRoughness ? 0 : roughness * roughness;
+}
+
+}  // namespace
+
+Bsdf::Bsdf(std::span<const Material> materials, std::uint32_t index, const BsdfPoint& point)
+    : point_(point) {
+    if (!(dot(point.shadingNormal, point.normal) > 0)) point_.shadingNormal = point.normal;
+    if (const auto* mix = std::get_if<MixMaterial>(&materials[index])) {
+        const double second = std::clamp(double{mix->weight.at(point.u, point.v).mean()}, 0.0, 1.0);
+        add(materials[mix->first], 1 - second);
+        add(materials[mix->second], second);
+    } else {
+        add(materials[index], 1);
+    }
+}
+
+void Bsdf::add(const Material& material, double weight) {
+    if (!(weight > 0) || std::holds_alternative<MixMaterial>(material)) return;
+    Lobe& lobe = lobes_[static_cast<std::size_t>(count_++)];
+    lobe.weight = weight;
+    if (const auto* diffuse = std::get_if<DiffuseMaterial>(&material)) {
+        lobe.kind = Lobe::Kind::Diffuse;
+        lobe.colour = diffuse->colour.at(point_.u, point_.v);
+    } else if (const auto* metal = std::get_if<ConductorMaterial>(&material)) {
+        lobe.kind = Lobe::Kind::Conductor;
+        lobe.schlick = metal->schlick;
+        if (metal->schlick) lobe.colour = metal->fresnelColour.at(point_.u, point_.v);
+        lobe.eta = metal->eta, lobe.k = metal->k;
+        lobe.alpha = alphaOf(metal->roughness);
+    } else if (const auto* glass = std::get_if<DielectricMaterial>(&material)) {
+        const double change = std::abs(point_.iorInside / point_.iorOutside - 1);
+        if (change > 0) lobe.kind = Lobe::Kind::Dielectric;
+        // So little is bent that the density of what is transmitted would outgrow a float.
+        if (change > 1e-5) lobe.alpha = alphaOf(glass->roughness);
+    } else if (const auto* light = std::get_if<EmissiveMaterial>(&material)) {
+        lobe.kind = Lobe::Kind::Emissive;
+        lobe.colour = light->radiance.at(point_.u, point_.v);
+        lobe.bothSides = light->bothSides;
+    }
+    if (lobe.scatters()) scattering_ += weight;
+}
+
+bool Bsdf::passes() const {
+    return count_ > 0 && std::all_of(lobes().begin(), lobes().end(), [](const Lobe& lobe) {
+               return lobe.kind == Lobe::Kind::Pass;
+           });
+}
+
+bool Bsdf::smooth() const {
+    return std::any_of(lobes().begin(), lobes().end(),
+                       [](const Lobe& lobe) { return lobe.scatters() && !lobe.delta(); });
+}
+
+bool Bsdf::transmits() const {
+    return std::any_of(lobes().begin(), lobes().end(), [](const Lobe& lobe) {
+        return lobe.kind == Lobe::Kind::Dielectric || lobe.kind == Lobe::Kind::Pass;
+    });
+}
+
+Bsdf::View Bsdf::viewFrom(Vec3d out) const {
+    View view;
+    const bool outside = dot(out, point_.normal) > 0;
+    view.out = out;
+    view.normal = outside ? point_.normal : -point_.normal;
+    view.shading = outside ? point_.shadingNormal : -point_.shadingNormal;
+    view.cosine = dot(out, view.normal);
+    view.iorHere = outside ? point_.iorOutside : point_.iorInside;
+    view.eta = (outside ? point_.iorInside : point_.iorOutside) / view.iorHere;
+    if (!(view.cosine > 0)) return view;
+    view.facing = bent(out, view.normal, view.shading, view.cosine);
+    orthonormalBasis(view.facing, view.s, view.t);
+    return view;
+}
+
+Rgb Bsdf::fresnel(const Lobe& lobe, double cosine, double ior) {
+    if (lobe.schlick) return schlickReflectance(cosine, lobe.colour);
+    return Rgb::map([&](int c) {
+        return static_cast<float>(
+            conductorReflectance(cosine, double{lobe.eta[c]} / ior, double{lobe.k[c]} / ior));
+    });
+}
+
+Bsdf::Density Bsdf::diffuse(const Lobe& lobe, const View& view, Vec3d in) {
+    const double cosine = dot(in, view.shading);
+    if (!(cosine > 0) || !(dot(in, view.normal) > 0)) return {};
+    return {cosine / pi, lobe.colour};
+}
+
+Bsdf::Density Bsdf::conductor(const Lobe& lobe, const View& view, Vec3d in) {
+    if (lobe.alpha == 0 || !view.reflects(in)) return {};
+    const Ggx facets(lobe.alpha);
+    const Vec3d o = view.toFacets(view.out), i = view.toFacets(in), h = normalize(o + i);
+    const auto shadowing = static_cast<float>(facets.shadowing(o, i));
+    return {facets.visible(o, h) / 4, fresnel(lobe, dot(o, h), view.iorHere) * shadowing};
+}
+
+// Walter et al. 2007, eq. 13 to 21, with the density of visible normals.
+Bsdf::Density Bsdf::dielectric(const Lobe& lobe, const View& view, Vec3d in) {
+    if (lobe.alpha == 0) return {};
+    const Ggx facets(lobe.alpha);
+    const Vec3d o = view.toFacets(view.out), i = view.toFacets(in);
+    if (view.reflects(in)) {
+        const Vec3d h = normalize(o + i);
+        const double share = refraction(dot(o, h), view.eta).reflectance;
+        return {share * facets.visible(o, h) / 4, Rgb(static_cast<float>(facets.shadowing(o, i)))};
+    }
+    if (!view.transmits(in)) return {};
+    const double eta = view.eta;
+    const Vec3d sum = o + i * eta;
+    const Vec3d h = normalize(sum.z < 0 ? -sum : sum);
+    const double cosine = dot(o, h), beyond = -dot(i, h);
+    if (!(cosine > 0) || !(beyond > 0)) return {};
+    const double share = 1 - refraction(cosine, eta).reflectance;
+    return {share * facets.visible(o, h) * cosine * eta * eta * beyond / dot(sum, sum),
+            Rgb(static_cast<float>(facets.shadowing(o, i) / (eta * eta)))};
+}
+
+Bsdf::Density Bsdf::density(const Lobe& lobe, const View& view, Vec3d in) {
+    switch (lobe.kind) {
+        case Lobe::Kind::Diffuse:
+            return diffuse(lobe, view, in);
+        case Lobe::Kind::Conductor:
+            return conductor(lobe, view, in);
+        case Lobe::Kind::Dielectric:
+            return dielectric(lobe, view, in);
+        case Lobe::Kind::Pass:
+        case Lobe::Kind::Emissive:
+            break;
+    }
+    return {};
+}
+
+BsdfValue Bsdf::scatter(Vec3d out, Vec3d in) const {
+    const View view = viewFrom(out);
+    BsdfValue sum;
+    if (!(view.cosine > 0)) return sum;
+    for (const Lobe& lobe : lobes()) {
+        const Density d = density(lobe, view, in);
+        sum.value += d.ratio * static_cast<float>(lobe.weight * d.pdf);
+        sum.pdf += lobe.weight / scattering_ * d.pdf;
+    }
+    return sum;
+}
+
+BsdfSample Bsdf::sample(Vec3d out, std::array<double, 3> u) const {
+    const View view = viewFrom(out);
+    if (!(view.cosine > 0) || !(scattering_ > 0)) return {};
+
+    // One number chooses the lobe, and what is left of it between reflection and transmission.
+    const Lobe* chosen = nullptr;
+    double choice = u[0] * scattering_, before = 0;
+    for (const Lobe& lobe : lobes()) {
+        if (!lobe.scatters()) continue;
+        if (chosen) before += chosen->weight;
+        chosen = &lobe;
+        if (choice < before + lobe.weight) break;
+    }
+    choice = std::clamp((choice - before) / chosen->weight, 0.0, 1 - 0x1p-53);
+
+    BsdfSample drawn;
+    drawn.weight = Rgb(static_cast<float>(scattering_));
+    drawn.delta = chosen->delta();
+    if (chosen->kind == Lobe::Kind::Pass) {
+        drawn.direction = -out;
+        drawn.transmitted = true;
+        return drawn;
+    }
+    if (chosen->kind == Lobe::Kind::Diffuse) {
+        const double sine = std::sqrt(u[1]), phi = 2 * pi * u[2];
+        Vec3d s, t;
+        orthonormalBasis(view.shading, s, t);
+        drawn.direction = normalize(s * (sine * std::cos(phi)) + t * (sine * std::sin(phi)) +
+                                    view.shading * std::sqrt(1 - u[1]));
+    } else {
+        const Vec3d o = view.toFacets(out);
+        const Vec3d facet =
+            drawn.delta ? Vec3d{0, 0, 1} : Ggx(chosen->alpha).sampleVisible(o, u[1], u[2]);
+        const double cosine = dot(o, facet);
+        if (!(cosine > 0)) return {};
+        if (chosen->kind == Lobe::Kind::Conductor) {
+            drawn.weight *= fresnel(*chosen, cosine, view.iorHere);
+            drawn.direction = view.fromFacets(mirrored(o, facet));
+        } else {
+            const Refraction split = refraction(cosine, view.eta);
+            drawn.transmitted = choice >= split.reflectance;
+            if (drawn.transmitted) {
+                drawn.weight *= static_cast<float>(1 / (view.eta * view.eta));
+                drawn.direction =
+                    view.fromFacets(refracted(o, facet, cosine, split.cosine, view.eta));
+            } else {
+                drawn.direction = view.fromFacets(mirrored(o, facet));
+            }
+        }
+        drawn.direction = normalize(drawn.direction);
+        if (!(drawn.transmitted ? view.transmits(drawn.direction) : view.reflects(drawn.direction)))
+            return {};
+    }
+    if (drawn.delta) return drawn;
+    const BsdfValue all = scatter(out, drawn.direction);
+    if (!(all.pdf > 0)) return {};
+    drawn.pdf = all.pdf;
+    drawn.weight = all.value * static_cast<float>(1 / all.pdf);
+    return drawn;
+}
+
+Rgb Bsdf::emitted(Vec3d out) const {
+    Rgb sum;
+    for (const Lobe& lobe : lobes())
+        if (lobe.kind == Lobe::Kind::Emissive && (lobe.bothSides || dot(out, point_.normal) > 0))
+            sum += lobe.colour * static_cast<float>(lobe.weight);
+    return sum;
+}
+
+Rgb Bsdf::straightTransmittance(Vec3d direction) const {
+    const double low = std::min(point_.iorOutside, point_.iorInside),
+                 high = std::max(point_.iorOutside, point_.iorInside);
+    const double cosine = std::min(1.0, std::abs(dot(direction, point_.shadingNormal)));
+    double share = 0;
+    for (const Lobe& lobe : lobes()) {
+        if (lobe.kind == Lobe::Kind::Pass) share += lobe.weight;
+        if (lobe.kind == Lobe::Kind::Dielectric && cosine > 0)
+            share += lobe.weight * (1 - refraction(cosine, high / low).reflectance);
+    }
+    return Rgb(static_cast<float>(share));
+}
+
+Rgb Bsdf::albedo() const {
+    Rgb sum;
+    for (const Lobe& lobe : lobes()) {
+        const auto weight = static_cast<float>(lobe.weight);
+        switch (lobe.kind) {
+            case Lobe::Kind::Diffuse:
+                sum += lobe.colour * weight;
+                break;
+            case Lobe::Kind::Conductor:
+                sum += fresnel(lobe, 1, point_.iorOutside) * weight;
+                break;
+            case Lobe::Kind::Dielectric:
+            case Lobe::Kind::Pass:
+                sum += Rgb(weight);
+                break;
+            case Lobe::Kind::Emissive:
+                break;
+        }
+    }
+    return sum;
+}
+
+}  // namespace woodcock

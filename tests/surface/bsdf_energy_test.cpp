@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// White furnaces: what leaves a point is what came, or less where rough facets scatter once.
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_mean.h"
+#include "tests/surface/one_bsdf.h"
+#include "woodcock/base/statistics.h"
+#include "woodcock/surface/fresnel.h"
+
+namespace woodcock {
+namespace {
+
+using test::at;
+using test::bsdfOf;
+using test::flatPoint;
+
+constexpr double cosines[] = {1, 0.9, 0.5, 0.1, 0.01, 1.745e-4, 1e-8};  // 1.745e-4: 89.99 degrees
+
+/// Reflectance and transmittance of light from all around: weights without the change of radiance
+/// that comes with the index of refraction.
+struct Shares {
+    Moments reflected, transmitted, all;
+};
+
+Shares sharesOf(const Bsdf& bsdf, Vec3d out, double squeeze, int n, std::uint64_t seed) {
+    RandomStream random(seed);
+    Shares shares;
+    for (int i = 0; i < n; ++i) {
+        const BsdfSample s = bsdf.sample(out, test::three(random));
+        const double weight = double{s.weight[0]} * (s.transmitted ? squeeze : 1);
+        EXPECT_TRUE(weight >= 0 && weight <= 1 + 1e-5) << weight;
+        shares.reflected.add(s.transmitted ? 0 : weight);
+        shares.transmitted.add(s.transmitted ? weight : 0);
+        shares.all.add(weight);
+    }
+    return shares;
+}
+
+TEST(BsdfEnergy, WhiteDiffuseAndMirrorsLoseNothing) {
+    for (const double cosine : cosines)
+        for (const Material& material : {test::diffuse(1), test::whiteMetal(0)}) {
+            RandomStream random(1);
+            for (int i = 0; i < 1000; ++i) {
+                const BsdfSample s = bsdfOf(material).sample(at(cosine, 1), test::three(random));
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(s.weight[c], 1, 2e-7);
+            }
+        }
+}
+
+TEST(BsdfEnergy, SmoothGlassLosesNothingAndSplitsByFresnel) {
+    for (const double eta : {1.0001, 1.33, 1.5, 3.0, 1 / 1.5, 1 / 3.0})
+        for (const double cosine : cosines) {
+            const Bsdf bsdf = bsdfOf(test::glass(0), flatPoint(1, eta));
+            const double reflectance = refraction(cosine, eta).reflectance;
+            int reflected = 0;
+            constexpr int n = 1000;
+            for (int i = 0; i < n; ++i) {
+                const BsdfSample s = bsdf.sample(at(cosine, 1), {(i + 0.5) / n, 0.5, 0.5});
+                const double squeeze = s.transmitted ? eta * eta : 1;
+                ASSERT_TRUE(s.delta);
+                EXPECT_NEAR(double{s.weight[0]} * squeeze, 1, 2e-7);
+                EXPECT_EQ(s.direction.z < 0, s.transmitted);
+                reflected += !s.transmitted;
+            }
+            EXPECT_NEAR(reflected, reflectance * n, 0.5001) << eta << " " << cosine;
+        }
+}
+
+TEST(BsdfEnergy, TotalReflectionIsExact) {
+    for (const double ior : {1.0001, 1.33, 1.5, 3.0})
+        for (const double roughness : {0.0, 0.01}) {
+            const Bsdf bsdf = bsdfOf(test::glass(roughness), flatPoint(1, ior));
+            const double critical = std::sqrt(1 - 1 / (ior * ior));
+            for (const double u : {0.0, 0.5, 1 - 0x1p-53}) {
+                const BsdfSample s = bsdf.sample(-at(critical * (1 - 1e-9), 1), {u, 0.5, 0.5});
+                EXPECT_FALSE(s.transmitted);
+                EXPECT_EQ(s.weight, Rgb(1.0f));
+                EXPECT_LT(s.direction.z, 0);
+            }
+            EXPECT_TRUE(
+                bsdf.sample(-at(critical * (1 + 1e-4), 1), {1 - 0x1p-53, 0.5, 0.5}).transmitted);
+        }
+}
+
+TEST(BsdfEnergy, RoughFacetsCreateNone) {
+    for (const double roughness : {0.03, 0.1, 0.3, 0.5, 0.7, 1.0})
+        for (const double cosine : cosines) {
+            const Shares metal =
+                sharesOf(bsdfOf(test::whiteMetal(roughness)), at(cosine, 1), 1, 2000, 1);
+            EXPECT_LE(metal.all.mean(), 1 + 1e-6) << roughness << " " << cosine;
+            for (const double eta : {1.0001, 1.5, 3.0, 1 / 1.5, 1 / 3.0}) {
+                const Shares shares = sharesOf(bsdfOf(test::glass(roughness), flatPoint(1, eta)),
+                                               at(cosine, 1), eta * eta, 2000, 2);
+                EXPECT_LE(shares.all.mean(), 1 + 1e-6) << roughness << " " << cosine << " " << eta;
+            }
+        }
+}
+
+/// With D = 1 / pi (alpha = 1) and light along the normal, c^2 of facets is even and what leaves
+/// unhidden is 2 - 1 / c^2 of it from c^2 = 1/2 on, where it leaves at all: 1 - ln 2 in all.
+TEST(BsdfEnergy, OfTheRoughestMetalIsKnown) {
+    const Shares shares = sharesOf(bsdfOf(test::whiteMetal(1)), {0, 0, 1}, 1, 400000, 3);
+    test::expectMean(shares.all, 1 - std::log(2.0), 1e-3, "roughness 1");
+}
+
+TEST(BsdfEnergy, OfBarelyRoughMatterIsThatOfSmooth) {
+    for (const double eta : {1.5, 1 / 1.5})
+        for (const double cosine : {1.0, 0.8}) {
+            const Shares shares = sharesOf(bsdfOf(test::glass(0.03), flatPoint(1, eta)),
+                                           at(cosine, 1), eta * eta, 100000, 4);
+            const double reflectance = refraction(cosine, eta).reflectance;
+            EXPECT_NEAR(shares.reflected.mean(), reflectance,
+                        4 * shares.reflected.standardError() + 1e-4);
+            EXPECT_NEAR(shares.transmitted.mean(), 1 - reflectance,
+                        4 * shares.transmitted.standardError() + 1e-4);
+        }
+}
+
+/// What single scattering loses, in per cent, of light along the normal and from all around. The
+/// numbers are measured; the test says that no more is lost.
+TEST(BsdfEnergy, LosesNoMoreThanIsStated) {
+    struct Loss {
+        double along, around;
+    };
+    struct Row {
+        double roughness;
+        Loss metal, glassFromOutside, glassFromInside;
+    };
+    const auto expectLoss = [](const Material& material, double eta, double cosine, double stated) {
+        const Bsdf bsdf = bsdfOf(material, flatPoint(1, eta));
+        RandomStream random(6);
+        Moments lost;
+        for (int i = 0; i < 100000; ++i) {
+            const double from = cosine > 0 ? cosine : std::sqrt(random.uniformOpenLow());
+            const BsdfSample s = bsdf.sample(at(from, 1), test::three(random));
+            lost.add(100 - 100 * double{s.weight[0]} * (s.transmitted ? eta * eta : 1));
+        }
+        EXPECT_LE(lost.mean(), stated + 4 * lost.standardError());
+    };
+    for (const Row& row :
+         {Row{0.1, {0.01, 0.05}, {0.01, 0.03}, {0.01, 0.06}},
+          Row{0.2, {0.17, 0.59}, {0.01, 0.25}, {0.17, 0.72}},
+          Row{0.3, {0.95, 2.4}, {0.1, 0.77}, {0.9, 2.9}}, Row{0.5, {8.5, 12}, {0.8, 3}, {7.2, 14}},
+          Row{0.7, {31, 30}, {3.2, 7.7}, {24, 31}}, Row{1.0, {70, 60}, {11, 20}, {59, 52}}}) {
+        const Material metal = test::whiteMetal(row.roughness), glass = test::glass(row.roughness);
+        expectLoss(metal, 1, 1, row.metal.along);
+        expectLoss(metal, 1, 0, row.metal.around);
+        expectLoss(glass, 1.5, 1, row.glassFromOutside.along);
+        expectLoss(glass, 1.5, 0, row.glassFromOutside.around);
+        expectLoss(glass, 1 / 1.5, 1, row.glassFromInside.along);
+        expectLoss(glass, 1 / 1.5, 0, row.glassFromInside.around);
+    }
+}
+
+}  // namespace
+}  // namespace woodcock

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "woodcock/base/random.h"
+#include "woodcock/surface/bsdf.h"
+
+namespace woodcock::test {
+
+/// A point whose normal is +z.
+inline BsdfPoint flatPoint(double iorOutside = 1, double iorInside = 1) {
+    return {{0, 0, 1}, {0, 0, 1}, 0, 0, iorOutside, iorInside};
+}
+
+inline Bsdf bsdfOf(const Material& material, const BsdfPoint& point = flatPoint()) {
+    return Bsdf(std::vector<Material>{material}, 0, point);
+}
+
+inline Material diffuse(float albedo) { return DiffuseMaterial{Rgb(albedo)}; }
+inline Material whiteMetal(double roughness) {
+    ConductorMaterial metal;
+    metal.fresnelColour = Rgb(1.0f);
+    metal.roughness = roughness;
+    return metal;
+}
+inline Material glass(double roughness) { return DielectricMaterial{1.5, roughness}; }
+
+/// A unit vector at this cosine to +z.
+inline Vec3d at(double cosine, double phi) {
+    const double sine = std::sqrt((1 - cosine) * (1 + cosine));
+    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
+}
+
+inline std::array<double, 3> three(RandomStream& random) {
+    return {random.uniform(), random.uniform(), random.uniform()};
+}
+
+}  // namespace woodcock::test
