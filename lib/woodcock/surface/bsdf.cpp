@@ -15,6 +15,7 @@ struct Bsdf::View {
     Vec3d normal, shading;        ///< the surface's own, and the interpolated one
     Vec3d facing;                 ///< what facets stand around: `shading`, or bent towards `out`
     Vec3d s, t;                   ///< complete `facing` to a frame
+    Vec3d local;                  ///< `out` in that frame, above its horizon
     double cosine = 0;            ///< of `out` to `normal`; at most 0: nothing is seen
     double iorHere = 1, eta = 1;  ///< the index on this side; the other side's over it
 
@@ -52,6 +53,15 @@ Vec3d bent(Vec3d out, Vec3d normal, Vec3d shading, double cosine) {
 
 Vec3d refracted(Vec3d out, Vec3d normal, double cosine, double cosineBeyond, double eta) {
     return normalize(normal * (cosine / eta - cosineBeyond) - out / eta);
+}
+
+/// In proportion to the cosine to the normal.
+Vec3d aroundNormal(Vec3d normal, double u0, double u1) {
+    const double sine = std::sqrt(u0), phi = 2 * pi * u1;
+    Vec3d s, t;
+    orthonormalBasis(normal, s, t);
+    return normalize(s * (sine * std::cos(phi)) + t * (sine * std::sin(phi)) +
+                     normal * std::sqrt(1 - u0));
 }
 
 /// Alpha is the square of what artists call roughness (Burley 2012).
@@ -128,6 +138,8 @@ Bsdf::View Bsdf::viewFrom(Vec3d out) const {
     if (!(view.cosine > 0)) return view;
     view.facing = bent(out, view.normal, view.shading, view.cosine);
     orthonormalBasis(view.facing, view.s, view.t);
+    view.local = view.toFacets(out);
+    view.local.z = std::max(view.local.z, 1e-300);  // rounding may take it below
     return view;
 }
 
@@ -148,7 +160,7 @@ Bsdf::Density Bsdf::diffuse(const Lobe& lobe, const View& view, Vec3d in) {
 Bsdf::Density Bsdf::conductor(const Lobe& lobe, const View& view, Vec3d in) {
     if (lobe.alpha == 0 || !view.reflects(in)) return {};
     const Ggx facets(lobe.alpha);
-    const Vec3d o = view.toFacets(view.out), i = view.toFacets(in), h = normalize(o + i);
+    const Vec3d o = view.local, i = view.toFacets(in), h = normalize(o + i);
     const auto shadowing = static_cast<float>(facets.shadowing(o, i));
     return {facets.visible(o, h) / 4, fresnel(lobe, dot(o, h), view.iorHere) * shadowing};
 }
@@ -157,7 +169,7 @@ Bsdf::Density Bsdf::conductor(const Lobe& lobe, const View& view, Vec3d in) {
 Bsdf::Density Bsdf::dielectric(const Lobe& lobe, const View& view, Vec3d in) {
     if (lobe.alpha == 0) return {};
     const Ggx facets(lobe.alpha);
-    const Vec3d o = view.toFacets(view.out), i = view.toFacets(in);
+    const Vec3d o = view.local, i = view.toFacets(in);
     if (view.reflects(in)) {
         const Vec3d h = normalize(o + i);
         const double share = refraction(dot(o, h), view.eta).reflectance;
@@ -189,10 +201,8 @@ Bsdf::Density Bsdf::density(const Lobe& lobe, const View& view, Vec3d in) {
     return {};
 }
 
-BsdfValue Bsdf::scatter(Vec3d out, Vec3d in) const {
-    const View view = viewFrom(out);
+BsdfValue Bsdf::scatter(const View& view, Vec3d in) const {
     BsdfValue sum;
-    if (!(view.cosine > 0)) return sum;
     for (const Lobe& lobe : lobes()) {
         const Density d = density(lobe, view, in);
         sum.value += d.ratio * static_cast<float>(lobe.weight * d.pdf);
@@ -201,61 +211,78 @@ BsdfValue Bsdf::scatter(Vec3d out, Vec3d in) const {
     return sum;
 }
 
-BsdfSample Bsdf::sample(Vec3d out, std::array<double, 3> u) const {
+BsdfValue Bsdf::scatter(Vec3d out, Vec3d in) const {
     const View view = viewFrom(out);
-    if (!(view.cosine > 0) || !(scattering_ > 0)) return {};
+    return view.cosine > 0 ? scatter(view, in) : BsdfValue{};
+}
 
-    // One number chooses the lobe, and what is left of it between reflection and transmission.
+const Bsdf::Lobe& Bsdf::choose(double& u) const {
+    const double place = u * scattering_;
     const Lobe* chosen = nullptr;
-    double choice = u[0] * scattering_, before = 0;
+    double before = 0;
     for (const Lobe& lobe : lobes()) {
         if (!lobe.scatters()) continue;
         if (chosen) before += chosen->weight;
         chosen = &lobe;
-        if (choice < before + lobe.weight) break;
+        if (place < before + lobe.weight) break;
     }
-    choice = std::clamp((choice - before) / chosen->weight, 0.0, 1 - 0x1p-53);
+    u = std::clamp((place - before) / chosen->weight, 0.0, 1 - 0x1p-53);
+    return *chosen;
+}
 
+/// Both a plane's answer and where a rough lobe's facet sends the ray.
+BsdfSample Bsdf::sampleFacet(const Lobe& lobe, const View& view, std::array<double, 3> u) {
+    const Vec3d o = view.local;
+    const Vec3d facet =
+        lobe.alpha == 0 ? Vec3d{0, 0, 1} : Ggx(lobe.alpha).sampleVisible(o, u[1], u[2]);
+    const double cosine = dot(o, facet);
+    if (!(cosine > 0)) return {};
     BsdfSample drawn;
-    drawn.weight = Rgb(static_cast<float>(scattering_));
-    drawn.delta = chosen->delta();
-    if (chosen->kind == Lobe::Kind::Pass) {
-        drawn.direction = -out;
-        drawn.transmitted = true;
+    Vec3d in = mirrored(o, facet);
+    if (lobe.kind == Lobe::Kind::Conductor) {
+        drawn.weight = fresnel(lobe, cosine, view.iorHere);
+    } else {
+        const Refraction split = refraction(cosine, view.eta);
+        drawn.transmitted = u[0] >= split.reflectance;
+        drawn.weight =
+            Rgb(drawn.transmitted ? static_cast<float>(1 / (view.eta * view.eta)) : 1.0f);
+        if (drawn.transmitted) in = refracted(o, facet, cosine, split.cosine, view.eta);
+    }
+    drawn.direction = normalize(view.fromFacets(in));
+    const bool leaks =
+        drawn.transmitted ? !view.transmits(drawn.direction) : !view.reflects(drawn.direction);
+    return leaks ? BsdfSample{} : drawn;
+}
+
+BsdfSample Bsdf::sample(Vec3d out, std::array<double, 3> u) const {
+    const View view = viewFrom(out);
+    if (!(view.cosine > 0) || !(scattering_ > 0)) return {};
+    const Lobe& lobe = choose(u[0]);  // what is left of it: between reflection and transmission
+    BsdfSample drawn;
+    switch (lobe.kind) {
+        case Lobe::Kind::Pass:
+            drawn.direction = -out;
+            drawn.weight = Rgb(1.0f);
+            drawn.transmitted = true;
+            break;
+        case Lobe::Kind::Diffuse:
+            drawn.direction = aroundNormal(view.shading, u[1], u[2]);
+            if (!(dot(drawn.direction, view.normal) > 0)) return {};
+            break;
+        case Lobe::Kind::Conductor:
+        case Lobe::Kind::Dielectric:
+            drawn = sampleFacet(lobe, view, u);
+            if (!(drawn.weight.maximum() > 0)) return {};
+            break;
+        case Lobe::Kind::Emissive:
+            break;
+    }
+    if (lobe.delta()) {
+        drawn.delta = true;
+        drawn.weight *= static_cast<float>(scattering_);
         return drawn;
     }
-    if (chosen->kind == Lobe::Kind::Diffuse) {
-        const double sine = std::sqrt(u[1]), phi = 2 * pi * u[2];
-        Vec3d s, t;
-        orthonormalBasis(view.shading, s, t);
-        drawn.direction = normalize(s * (sine * std::cos(phi)) + t * (sine * std::sin(phi)) +
-                                    view.shading * std::sqrt(1 - u[1]));
-    } else {
-        const Vec3d o = view.toFacets(out);
-        const Vec3d facet =
-            drawn.delta ? Vec3d{0, 0, 1} : Ggx(chosen->alpha).sampleVisible(o, u[1], u[2]);
-        const double cosine = dot(o, facet);
-        if (!(cosine > 0)) return {};
-        if (chosen->kind == Lobe::Kind::Conductor) {
-            drawn.weight *= fresnel(*chosen, cosine, view.iorHere);
-            drawn.direction = view.fromFacets(mirrored(o, facet));
-        } else {
-            const Refraction split = refraction(cosine, view.eta);
-            drawn.transmitted = choice >= split.reflectance;
-            if (drawn.transmitted) {
-                drawn.weight *= static_cast<float>(1 / (view.eta * view.eta));
-                drawn.direction =
-                    view.fromFacets(refracted(o, facet, cosine, split.cosine, view.eta));
-            } else {
-                drawn.direction = view.fromFacets(mirrored(o, facet));
-            }
-        }
-        drawn.direction = normalize(drawn.direction);
-        if (!(drawn.transmitted ? view.transmits(drawn.direction) : view.reflects(drawn.direction)))
-            return {};
-    }
-    if (drawn.delta) return drawn;
-    const BsdfValue all = scatter(out, drawn.direction);
+    const BsdfValue all = scatter(view, drawn.direction);
     if (!(all.pdf > 0)) return {};
     drawn.pdf = all.pdf;
     drawn.weight = all.value * static_cast<float>(1 / all.pdf);

@@ -96,6 +96,10 @@ private:
     }
     View viewFrom(Vec3d out) const;
     static Rgb fresnel(const Lobe& lobe, double cosine, double ior);
+    BsdfValue scatter(const View& view, Vec3d in) const;
+    /// By weight, among lobes that scatter; `u` becomes the rest, in [0, 1) again.
+    const Lobe& choose(double& u) const;
+    static BsdfSample sampleFacet(const Lobe& lobe, const View& view, std::array<double, 3> u);
     static Density density(const Lobe& lobe, const View& view, Vec3d in);
     static Density diffuse(const Lobe& lobe, const View& view, Vec3d in);
     static Density conductor(const Lobe& lobe, const View& view, Vec3d in);
