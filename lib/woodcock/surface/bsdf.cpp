@@ -201,19 +201,24 @@ Bsdf::Density Bsdf::density(const Lobe& lobe, const View& view, Vec3d in) {
     return {};
 }
 
-BsdfValue Bsdf::scatter(const View& view, Vec3d in) const {
-    BsdfValue sum;
-    for (const Lobe& lobe : lobes()) {
-        const Density d = density(lobe, view, in);
-        sum.value += d.ratio * static_cast<float>(lobe.weight * d.pdf);
-        sum.pdf += lobe.weight / scattering_ * d.pdf;
+Bsdf::Density Bsdf::density(const View& view, Vec3d in) const {
+    std::array<Density, 2> parts;
+    Density all;
+    for (std::size_t i = 0; i < lobes().size(); ++i) {
+        parts[i] = density(lobes_[i], view, in);
+        all.pdf += lobes_[i].weight / scattering_ * parts[i].pdf;
     }
-    return sum;
+    if (!(all.pdf > 0)) return {};
+    for (std::size_t i = 0; i < lobes().size(); ++i)
+        all.ratio += parts[i].ratio * static_cast<float>(lobes_[i].weight * parts[i].pdf / all.pdf);
+    return all;
 }
 
 BsdfValue Bsdf::scatter(Vec3d out, Vec3d in) const {
     const View view = viewFrom(out);
-    return view.cosine > 0 ? scatter(view, in) : BsdfValue{};
+    if (!(view.cosine > 0)) return {};
+    const Density all = density(view, in);
+    return {all.ratio * static_cast<float>(all.pdf), all.pdf};
 }
 
 const Bsdf::Lobe& Bsdf::choose(double& u) const {
@@ -282,10 +287,10 @@ BsdfSample Bsdf::sample(Vec3d out, std::array<double, 3> u) const {
         drawn.weight *= static_cast<float>(scattering_);
         return drawn;
     }
-    const BsdfValue all = scatter(view, drawn.direction);
+    const Density all = density(view, drawn.direction);
     if (!(all.pdf > 0)) return {};
     drawn.pdf = all.pdf;
-    drawn.weight = all.value * static_cast<float>(1 / all.pdf);
+    drawn.weight = all.ratio;
     return drawn;
 }
 

@@ -96,7 +96,7 @@ private:
     }
     View viewFrom(Vec3d out) const;
     static Rgb fresnel(const Lobe& lobe, double cosine, double ior);
-    BsdfValue scatter(const View& view, Vec3d in) const;
+    Density density(const View& view, Vec3d in) const;  ///< of all lobes that are not delta
     /// By weight, among lobes that scatter; `u` becomes the rest, in [0, 1) again.
     const Lobe& choose(double& u) const;
     static BsdfSample sampleFacet(const Lobe& lobe, const View& view, std::array<double, 3> u);

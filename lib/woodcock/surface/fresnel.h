@@ -44,7 +44,7 @@ inline double conductorReflectance(double cosine, double eta, double k) {
 inline Rgb schlickReflectance(double cosine, Rgb normal) {
     const double m = 1 - std::min(1.0, cosine), m2 = m * m;
     const auto f = static_cast<float>(m2 * m2 * m);
-    return normal * (1 - f) + Rgb(f);
+    return normal + (Rgb(1.0f) - normal) * f;
 }
 
 }  // namespace woodcock
