@@ -192,7 +192,7 @@ TEST(Defaults, RefuseAnEyeThatCannotLookAtTheVolumes) {
             ADD_FAILURE() << eye;
         } catch (const Error& e) {
             EXPECT_EQ(std::string(e.what()),
-                      "scene.toml:5:7: camera.eye looks at the volumes' centre, [2, 1, 0.5], "
+                      "scene.toml:5:7: camera.eye looks at the scene's centre, [2, 1, 0.5], "
                       "along up, [0, 1, 0], or stands in it; give a look_at or another up");
         }
     }

@@ -46,11 +46,11 @@ TEST(ParseErrors, NameTheNearestKnownKey) {
     EXPECT_EQ(volumeMistake("albdo = 1"),
               "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
               "keys: file, box, density, scale, albedo, albedo_grid, sigma_a, sigma_s, g, "
-              "transform, matrix, storage, repair");
+              "transform, matrix, inside, storage, repair");
     EXPECT_EQ(
         sectionMistake("[rendr]\nspp = 1"),
         "scene.toml:3:2: unknown key 'rendr' in the scene; did you mean 'render'? known keys: "
-        "volume, light, camera, render, output, ocio");
+        "volume, material, surface, light, camera, render, output, ocio");
     EXPECT_EQ(
         lightMistake("type = \"point\"\nposition = [0, 0, 0]\nradius = 1"),
         "scene.toml:6:1: unknown key 'radius' in a [[light]] of type point; known keys: type, "
@@ -99,7 +99,7 @@ TEST(ParseErrors, OfTypes) {
 
 TEST(ParseErrors, OfVolumes) {
     EXPECT_EQ(mistakeIn(""),
-              "scene.toml: the scene has no [[volume]]; the least is\n"
+              "scene.toml: the scene has no [[volume]] and no [[surface]]; the least is\n"
               "[[volume]]\nfile = \"smoke.vdb\"");
     EXPECT_EQ(
         mistakeIn("[[volume]]\ng = 0"),
@@ -137,7 +137,7 @@ TEST(ParseErrors, OfBoxes) {
               "scene.toml:1:1: volume[0] is a box of nothing; give sigma_a and "
               "sigma_s, or scale and albedo");
     EXPECT_EQ(mistakeIn(box + "albedo = 1"),
-              "scene.toml:3:10: volume[0].albedo needs a scale: sigma_t = scale in a box");
+              "scene.toml:3:10: volume[0].albedo needs a scale: here sigma_t = scale");
     EXPECT_EQ(mistakeIn(box + "scale = 1\ndensity = \"d\""),
               "scene.toml:4:11: volume[0].density needs a file: a box holds constant coefficients "
               "and no grids");
@@ -293,7 +293,8 @@ TEST(ParseErrors, OfOutputs) {
     EXPECT_EQ(sectionMistake("[output]\nfiles = [\"a.exr\", \"b.tga\"]").substr(0, 48),
               "scene.toml:4:19: output.files[1]: cannot write '");
     EXPECT_EQ(sectionMistake("[output]\nlayers = [\"deep\"]"),
-              "scene.toml:4:11: unknown layer 'deep'; known: depth, transmittance, samples, error");
+              "scene.toml:4:11: unknown layer 'deep'; known: depth, normal, transmittance, "
+              "samples, error");
     EXPECT_EQ(sectionMistake("[output]\nlayers = [\"depth\", \"depth\"]"),
               "scene.toml:4:20: output.layers[1] repeats the layer 'depth'");
     EXPECT_EQ(sectionMistake("[output]\nexposure = inf"),

@@ -26,6 +26,51 @@ VolumeDescription fileVolume(
     return volume;
 }
 
+void addSurfaces(SceneDescription& scene) {
+    const TextureDescription image{Rgb(0.1f, 0.2f, 0.3f), "dir/wood \"1\" $5.png", "srgb"};
+    scene.materials = {
+        {"red \"1\"", DiffuseDescription{image}},
+        {"plain", DiffuseDescription{{Rgb(0.1f, 0.2f, 1.0f / 3), {}, {}}}},
+        {"metal", ConductorDescription{{Rgb(1), "metal.exr", {}}, {}, 1.0 / 3}},
+        {"gold", ConductorDescription{{Rgb(0.9f), {}, {}}, {{Rgb(0.1f), Rgb(3, 2, 1)}}, 0}},
+        {"glass", DielectricDescription{4.0 / 3, 0.1}},
+        {"bubble", DielectricDescription{0.75, 0}},
+        {"air", InterfaceDescription{}},
+        {"lamp", EmissiveDescription{image, true}},
+        {"rust", MixDescription{"gold", "plain", image}},
+    };
+    SurfaceDescription ball;
+    ball.name = "ball \"1\"";
+    ball.shape = SphereShape{{1.0 / 3, -1e7, 0}, 1.0 / 7};
+    ball.material = "glass";
+    ball.interior = {Rgb(0.1f, 1e-12f, 3e12f), Rgb(0.7f), 0.1f};
+    ball.priority = -5;
+    SurfaceDescription mesh;
+    mesh.shape = MeshShape{"dir/a $5.obj", {}};
+    mesh.material = "rust";
+    mesh.smooth = 100.0 / 3;
+    mesh.worldFromObject = Affine3d::translate({1, 2, 1.0 / 3}) * Affine3d::rotate(0, 21);
+    mesh.instances = {Affine3d::rotate(1, 33), Affine3d(), Affine3d::scale({1e-7, 2, 3})};
+    mesh.matte = true;
+    SurfaceDescription levelSet;
+    levelSet.shape = MeshShape{"a.vdb", "ls"};
+    levelSet.smooth = 0;
+    levelSet.instanceFile = "dir/places.txt";
+    levelSet.cameraVisible = false;
+    SurfaceDescription box;
+    box.shape = BoxShape{{{-1.0 / 3, 0, 0}, {1, 2, 3}}};
+    box.holdout = true;
+    SurfaceDescription disk;
+    disk.shape = DiskShape{1.0 / 3};
+    disk.shadowCatcher = true;
+    SurfaceDescription plane, rectangle, lathe;
+    plane.shape = PlaneShape{};
+    rectangle.shape = PlaneShape{{{1.0 / 3, 2}}};
+    lathe.shape = LatheShape{{{0, 0}, {1.0 / 3, 1e-7}, {0, 2}}, 7};
+    scene.surfaces = {ball, mesh, levelSet, box, disk, plane, rectangle, lathe};
+    scene.volumes.at(0).inside = ball.name;
+}
+
 /// Every field away from its default, with numbers that need all their digits.
 SceneDescription fullScene() {
     SceneDescription scene;
@@ -58,7 +103,8 @@ SceneDescription fullScene() {
                     LookAt{{1.0 / 3, 2, 3}, {0, 0.1, 0}, {0, 0, 1}},
                     33.3,
                     {}};
-    scene.render = {321, 123, 7, 42, 0, 1.5, 0.01, 2.5};
+    addSurfaces(scene);
+    scene.render = {321, 123, 7, 42, 0, 9, true, 1.5, 0.01, 2.5};
     scene.output = {{"a.exr", "b.png"}, {"error", "depth"}, true, "d", "v\\w", "l\n", -0.5};
     return scene;
 }
@@ -112,6 +158,13 @@ TEST(WriteScene, PathsFollowTheDirectoryOfTheText) {
     EXPECT_EQ(read.volumes[1].file, "/abs/b.vdb");
 }
 
+TEST(WriteScene, PathsOfSurfacesFollowTheDirectoryOfTheText) {
+    SceneDescription scene = fullScene();
+    const auto read = parseSceneText(writeScene(scene, "scenes/new"), "x.toml", "scenes/new");
+    EXPECT_EQ(read.materials, scene.materials);
+    EXPECT_EQ(read.surfaces, scene.surfaces);
+}
+
 TEST(WriteScene, RefusesASeedThatTomlCannotHold) {
     SceneDescription scene = fullScene();
     scene.render.seed = std::uint64_t{1} << 63;
@@ -140,6 +193,15 @@ TEST(SceneDigest, ChangesWithAllThatTheImageShows) {
     EXPECT_TRUE(changed([](S s) { s.volumes[1].repair = true; }));
     EXPECT_TRUE(changed([](S s) { std::get<SunDescription>(s.lights[0].light).visible = false; }));
     EXPECT_TRUE(changed([](S s) { s.lights.pop_back(); }));
+    EXPECT_TRUE(changed([](S s) { s.volumes[0].inside.clear(); }));
+    EXPECT_TRUE(changed([](S s) { s.materials.back().name = "other"; }));
+    EXPECT_TRUE(changed(
+        [](S s) { std::get<DiffuseDescription>(s.materials[0].material).colour.image = "x"; }));
+    EXPECT_TRUE(changed([](S s) { s.surfaces[0].priority = 4; }));
+    EXPECT_TRUE(changed([](S s) { s.surfaces[0].interior->g = 0.2f; }));
+    EXPECT_TRUE(changed([](S s) { s.surfaces[2].instanceFile = "x"; }));
+    EXPECT_TRUE(changed([](S s) { s.render.maxBounces = 10; }));
+    EXPECT_TRUE(changed([](S s) { s.render.transparentShadows = false; }));
     EXPECT_TRUE(changed([](S s) { s.camera.fovY = 30; }));
     EXPECT_TRUE(changed([](S s) { s.render.width = 1; }));
     EXPECT_TRUE(changed([](S s) { s.render.maxScatterings.reset(); }));

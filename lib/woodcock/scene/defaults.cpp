@@ -9,6 +9,7 @@
 #include "woodcock/base/path_variables.h"
 #include "woodcock/base/toml_text.h"
 #include "woodcock/scene/build.h"
+#include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/outline.h"
 #include "woodcock/scene/write.h"
 
@@ -161,7 +162,7 @@ LookAt lookAtFrom(const SceneDescription& scene, Vec3d target, Vec3d up) {
     if (!(across > 1e-9))
         inPlace(findPlace(scene.places, "camera.eye"), [&] {
             throw inputError(
-                "camera.eye looks at the volumes' centre, [{:.6g}, {:.6g}, {:.6g}], along up, "
+                "camera.eye looks at the scene's centre, [{:.6g}, {:.6g}, {:.6g}], along up, "
                 "[{}, {}, {}], or stands in it; give a look_at or another up",
                 target.x, target.y, target.z, up.x, up.y, up.z);
         });
@@ -224,15 +225,22 @@ std::optional<std::string> chooseCamera(SceneDescription& scene, const std::vect
     if (!camera.pose) camera.pose = chooseView(scene, points, up);
     camera.given = {};
     if (!fits) camera.height = chooseHeight(scene, points);
-    return fmt::format("chosen to frame the volumes{}:\n{}",
+    return fmt::format("chosen to frame the {}{}:\n{}",
+                       scene.surfaces.empty() ? "volumes" : "scene",
                        !upIsOpen         ? ""
                        : up == UpAxis::Z ? " (up is +z, as in Blender, which wrote them)"
                                          : " (up is +y)",
                        writeCamera(camera));
 }
 
+bool anySurfaceEmits(const SceneDescription& scene) {
+    for (size_t i = 0; i < scene.surfaces.size(); ++i)
+        if (natureOf(scene, i).emits) return true;
+    return false;
+}
+
 std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up) {
-    if (!scene.lights.empty()) return std::nullopt;
+    if (!scene.lights.empty() || anySurfaceEmits(scene)) return std::nullopt;
     // From the camera's left: light from the side shows form.
     const Vec3d above = withUp({0, 1, 0}, up);
     Vec3d side = -worldFromCamera(*scene.camera.pose).column[0];

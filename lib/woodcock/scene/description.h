@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -187,8 +189,10 @@ struct InteriorDescription {
 struct SurfaceDescription {
     std::string name;  ///< may be empty
     std::variant<MeshShape, SphereShape, BoxShape, DiskShape, PlaneShape, LatheShape> shape;
-    std::string material;          ///< name; empty: diffuse grey of 0.8
-    std::optional<double> smooth;  ///< degrees: edges less sharp are smoothed; absent: as the file
+    std::string material;  ///< name; empty: diffuse grey of 0.8
+    /// Degrees: edges less sharp are smooth, so 0 is flat. Absent: as a mesh file says; a lathe's
+    /// and a level set's at 60.
+    std::optional<double> smooth;
     Affine3d worldFromObject;
     /// Each places the surface once more, before worldFromObject; empty: once.
     std::vector<Affine3d> instances;

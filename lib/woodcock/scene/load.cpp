@@ -10,6 +10,7 @@
 #include "woodcock/grid/vdb_load.h"
 #include "woodcock/image/read_image.h"
 #include "woodcock/scene/load_albedo.h"
+#include "woodcock/scene/load_textures.h"
 
 namespace woodcock {
 namespace {
@@ -122,6 +123,8 @@ LoadedScene loadScene(const SceneDescription& scene) {
             inPlace(findPlace(scene.places, fmt::format("light[{}].image", i)),
                     [&] { return loadMap(scene.lights[i]); }));
     loaded.notes = loader.takeNotes();
+    loaded.surfaces = loadSurfaces(scene, loaded.notes);
+    loaded.textures = loadTextures(scene);
     return loaded;
 }
 

@@ -9,6 +9,8 @@
 #include "woodcock/grid/field.h"
 #include "woodcock/light/environment_map.h"
 #include "woodcock/scene/description.h"
+#include "woodcock/scene/load_surfaces.h"
+#include "woodcock/surface/texture.h"
 
 namespace woodcock {
 
@@ -32,11 +34,13 @@ struct LoadedVolume {
 struct LoadedScene {
     std::vector<LoadedVolume> volumes;            ///< one for each volume of the description
     std::vector<EnvironmentMap> environmentMaps;  ///< one for each light; empty for most
-    std::vector<std::string> notes;               ///< what the user should know
+    std::vector<LoadedSurface> surfaces;          ///< one for each surface
+    std::vector<std::shared_ptr<const TextureImage>> textures;  ///< one for each material, or null
+    std::vector<std::string> notes;                             ///< what the user should know
 };
 
-/// Reads the grids that the scene uses, each once, and its images. Throws Error{Input} that names
-/// the place in the scene, the file and the grid.
+/// Reads the grids and meshes that the scene uses, each once, and its images. Throws Error{Input}
+/// that names the place in the scene, the file and the grid.
 LoadedScene loadScene(const SceneDescription& scene);
 
 }  // namespace woodcock

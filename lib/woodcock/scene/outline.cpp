@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "woodcock/grid/block_ranges.h"
+#include "woodcock/scene/unit_shapes.h"
 
 namespace woodcock {
 namespace {
 
 constexpr float wisp = 0.01f;
-constexpr double mostBlocks = 1 << 24;  // in a field whose blocks are looked at one by one
+constexpr std::size_t mostPoints = 1 << 20;  // of a surface of which each point is looked at
+constexpr double mostBlocks = 1 << 24;       // in a field whose blocks are looked at one by one
 
 void addCorners(const Box3d& box, const Affine3d& toWorld, std::vector<Vec3d>& points) {
     for (int i = 0; i < 8; ++i) points.push_back(toWorld.point(box.corner(i)));
@@ -48,6 +50,36 @@ void addField(const Field& field, const Affine3d& worldFromIndex, std::vector<Ve
         }
 }
 
+/// In the space of its mesh; none for an infinite plane.
+std::vector<Vec3d> pointsOf(const SurfaceDescription& surface, const LoadedSurface& loaded) {
+    std::vector<Vec3d> points;
+    const auto add = [&](const SurfaceMesh& mesh) {
+        for (const Vec3f& p : mesh.mesh.points) points.push_back(p.as<double>());
+    };
+    if (loaded.mesh)
+        add(*loaded.mesh);
+    else if (std::holds_alternative<SphereShape>(surface.shape))
+        add(sphereMesh(12));
+    else if (std::holds_alternative<DiskShape>(surface.shape))
+        add(diskMesh(24));
+    return points;
+}
+
+void addSurface(const SurfaceDescription& surface, const LoadedSurface& loaded,
+                std::vector<Vec3d>& outline) {
+    std::vector<Vec3d> points = pointsOf(surface, loaded);
+    if (points.size() * loaded.instances.size() > mostPoints) {
+        Box3d box;
+        for (const Vec3d& p : points) box.add(p);
+        points.clear();
+        addCorners(box, {}, points);
+    }
+    for (const Affine3d& instance : loaded.instances) {
+        const Affine3d toWorld = surface.worldFromObject * instance * loaded.objectFromMesh;
+        for (const Vec3d& p : points) outline.push_back(toWorld.point(p));
+    }
+}
+
 }  // namespace
 
 std::vector<Vec3d> sceneOutline(const SceneDescription& description, const LoadedScene& loaded) {
@@ -61,6 +93,8 @@ std::vector<Vec3d> sceneOutline(const SceneDescription& description, const Loade
             if (*grid)
                 addField(*grid->field, volume.worldFromObject * grid->objectFromIndex, points);
     }
+    for (size_t i = 0; i < description.surfaces.size(); ++i)
+        addSurface(description.surfaces[i], loaded.surfaces[i], points);
     if (points.empty()) addCorners({{0, 0, 0}, {1, 1, 1}}, {}, points);
     return points;
 }

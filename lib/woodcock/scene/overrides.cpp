@@ -113,8 +113,9 @@ private:
 
     /// `name` is a list too short for the index that was asked for.
     Error missing(const std::string& name, size_t size) const {
-        if (name != "volume" && name != "light")
-            return inputError("{}: {} has {} elements", place_, name, size);
+        const bool section =
+            name == "volume" || name == "light" || name == "material" || name == "surface";
+        if (!section) return inputError("{}: {} has {} elements", place_, name, size);
         if (size == 0)
             return inputError(
                 "{}: the scene has no {}{}", place_, name,

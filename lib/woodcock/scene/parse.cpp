@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/scene/parse.h"
 
+#include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/parse_sections.h"
 
@@ -34,13 +35,19 @@ void collectPlaces(const toml::node& node, const std::string& name, Places& plac
 
 SceneDescription readScene(const TomlTable& table, const std::string& name,
                            const std::filesystem::path& base) {
-    table.allowOnly({"volume", "light", "camera", "render", "output", "ocio"}, "the scene");
+    table.allowOnly(
+        {"volume", "material", "surface", "light", "camera", "render", "output", "ocio"},
+        "the scene");
     SceneDescription scene;
     for (const TomlTable& volume : tablesOf(table, "volume"))
         scene.volumes.push_back(parseVolume(volume, base));
-    if (scene.volumes.empty())
+    for (const TomlTable& material : tablesOf(table, "material"))
+        scene.materials.push_back(parseMaterial(material, base));
+    for (const TomlTable& surface : tablesOf(table, "surface"))
+        scene.surfaces.push_back(parseSurface(surface, base));
+    if (scene.volumes.empty() && scene.surfaces.empty())
         throw inputError(
-            "{}: the scene has no [[volume]]; the least is\n"
+            "{}: the scene has no [[volume]] and no [[surface]]; the least is\n"
             "[[volume]]\nfile = \"smoke.vdb\"",
             name);
     for (const TomlTable& light : tablesOf(table, "light"))
@@ -64,6 +71,7 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
     SceneDescription scene = readScene(TomlTable(table, ""), name, baseDirectory);
     for (const auto& [key, value] : table)
         collectPlaces(value, std::string(key.str()), scene.places);
+    checkSurfaces(scene);
     return scene;
 }
 

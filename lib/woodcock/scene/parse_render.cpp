@@ -22,7 +22,7 @@ auto readText(const TomlValue& value, Read read) {
 }
 
 std::vector<std::string> parseLayers(const TomlValue& value) {
-    const std::array<std::string, 4> known{"depth", "transmittance", "samples", "error"};
+    const std::array<std::string, 5> known{"depth", "normal", "transmittance", "samples", "error"};
     std::vector<std::string> layers;
     for (const TomlValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
         const std::string& layer = known[element.choice("layer", known)];
@@ -41,9 +41,9 @@ std::filesystem::path parseOutputFile(const TomlValue& value, const std::filesys
 }  // namespace
 
 RenderDescription parseRender(const TomlTable& table) {
-    table.allowOnly(
-        {"resolution", "spp", "seed", "max_scatterings", "time_limit", "noise", "majorant_scale"},
-        "[render]");
+    table.allowOnly({"resolution", "spp", "seed", "max_scatterings", "max_bounces",
+                     "transparent_shadows", "time_limit", "noise", "majorant_scale"},
+                    "[render]");
     RenderDescription render;
     if (const auto v = table.find("resolution")) {
         const auto sides = v->elements("[width, height]", 2);
@@ -54,6 +54,8 @@ RenderDescription parseRender(const TomlTable& table) {
     if (const auto v = table.find("seed")) render.seed = v->count();
     if (const auto v = table.find("max_scatterings"))
         render.maxScatterings = v->integer(0, largestCount);
+    if (const auto v = table.find("max_bounces")) render.maxBounces = v->integer(0, largestCount);
+    if (const auto v = table.find("transparent_shadows")) render.transparentShadows = v->flag();
     if (const auto v = table.find("time_limit"))
         render.timeLimit = v->isText() ? readText(*v, parseDuration) : v->number(notNegative);
     if (const auto v = table.find("noise"))

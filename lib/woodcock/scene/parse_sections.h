@@ -11,6 +11,8 @@ namespace woodcock {
 // The sections of a scene file, one function each. Of scene/ only; all throw Error{Input}.
 
 VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::path& base);
+MaterialDescription parseMaterial(const TomlTable& table, const std::filesystem::path& base);
+SurfaceDescription parseSurface(const TomlTable& table, const std::filesystem::path& base);
 LightDescription parseLight(const TomlTable& table, const std::filesystem::path& base);
 /// `aspect` is the image's width over its height: a sensor's width needs it.
 CameraDescription parseCamera(const TomlTable& table, double aspect);

@@ -1,25 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
+#include <tuple>
 
 #include "woodcock/scene/parse_sections.h"
+#include "woodcock/scene/parse_values.h"
 
 namespace woodcock {
 namespace {
-
-constexpr NumberRange zeroToOne{0, 1};
-/// Beyond this |g| the phase function's peak is finer than a float's cosine can tell.
-constexpr double largestG = 0.9999;
-
-const std::string mixedUp =
-    "sigma_a and sigma_s say what scale and albedo say (sigma_t = scale x density, "
-    "sigma_s = albedo x sigma_t)";
-
-double parseG(const TomlValue& value) {
-    const double g = value.number({-1, 1, true});
-    if (std::abs(g) > largestG)
-        throw value.error("is {}; it must lie between {} and {}", g, -largestG, largestG);
-    return g;
-}
 
 GridCoefficient parseGridCoefficient(const TomlValue& value, const std::string& density) {
     if (!value.isTable()) return {density, value.colour(notNegative)};
@@ -47,66 +33,27 @@ SeparateCoefficients parseSeparate(const TomlTable& table, const std::string& de
     return c;
 }
 
-Box3d parseBounds(const TomlValue& value) {
-    const TomlTable table = value.table();
-    table.allowOnly({"min", "max"}, value.name());
-    Box3d box;
-    box.lower = table.need("min", "min = [0, 0, 0]").vector();
-    const TomlValue upper = table.need("max", "max = [1, 1, 1]");
-    box.upper = upper.vector();
-    for (int i = 0; i < 3; ++i)
-        if (!(box.lower[i] < box.upper[i]))
-            throw upper.element(static_cast<size_t>(i))
-                .error("is {}; it must exceed min[{}], which is {}", box.upper[i], i, box.lower[i]);
-    return box;
-}
-
 HomogeneousBox parseBox(const TomlTable& table, const TomlValue& box) {
     for (const char* key : {"density", "albedo_grid", "storage", "repair"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
     HomogeneousBox c;
     c.box = parseBounds(box);
-    if (const auto scale = table.find("scale")) {
-        const auto albedo = table.find("albedo");
-        std::tie(c.sigmaA, c.sigmaS) = splitByAlbedo(
-            scale->colour(notNegative), albedo ? albedo->exactColour(zeroToOne) : Vec3d{1, 1, 1});
-    } else if (table.has("albedo")) {
-        throw table.need("albedo", "").error("needs a scale: sigma_t = scale in a box");
-    } else if (!table.has("sigma_a") && !table.has("sigma_s")) {
+    if (!table.has("scale") && !table.has("albedo") && !table.has("sigma_a") &&
+        !table.has("sigma_s"))
         throw table.error("is a box of nothing; give sigma_a and sigma_s, or scale and albedo");
-    }
-    if (const auto v = table.find("sigma_a")) c.sigmaA = v->colour(notNegative);
-    if (const auto v = table.find("sigma_s")) c.sigmaS = v->colour(notNegative);
+    std::tie(c.sigmaA, c.sigmaS) = parseCoefficients(table);
     return c;
-}
-
-Affine3d parseTransform(const TomlValue& value) {
-    const TomlTable table = value.table();
-    table.allowOnly({"translate", "rotate", "scale"}, value.name());
-    Vec3d translate, rotate, scale{1, 1, 1};
-    if (const auto v = table.find("translate")) translate = v->vector();
-    if (const auto v = table.find("rotate")) rotate = v->vector();
-    if (const auto v = table.find("scale")) {
-        scale = v->isArray() ? v->vector() : Vec3d{1, 1, 1} * v->number();
-        for (int i = 0; i < 3; ++i)
-            if (scale[i] == 0) throw v->error("is zero; it would flatten the volume");
-    }
-    return Affine3d::translate(translate) * Affine3d::rotate(2, rotate.z) *
-           Affine3d::rotate(1, rotate.y) * Affine3d::rotate(0, rotate.x) * Affine3d::scale(scale);
 }
 
 }  // namespace
 
 VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::path& base) {
     table.allowOnly({"file", "box", "density", "scale", "albedo", "albedo_grid", "sigma_a",
-                     "sigma_s", "g", "transform", "matrix", "storage", "repair"},
+                     "sigma_s", "g", "transform", "matrix", "inside", "storage", "repair"},
                     "[[volume]]");
-    for (const char* sigma : {"sigma_a", "sigma_s"})
-        for (const char* other : {"scale", "albedo", "albedo_grid"})
-            table.exclude(sigma, other, mixedUp);
+    checkCoefficientKeys(table);
     table.exclude("box", "file", "a volume is either read from a file or a homogeneous box");
-    table.exclude("transform", "matrix", "both place the volume");
 
     VolumeDescription volume;
     if (const auto box = table.find("box")) {
@@ -125,9 +72,9 @@ VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::pat
         else
             volume.coefficients = parseDensity(table, name);
     }
-    if (const auto v = table.find("g")) volume.g = static_cast<float>(parseG(*v));
-    if (const auto v = table.find("transform")) volume.worldFromObject = parseTransform(*v);
-    if (const auto v = table.find("matrix")) volume.worldFromObject = v->affine();
+    if (const auto v = table.find("g")) volume.g = parseG(*v);
+    volume.worldFromObject = parsePlacement(table, "volume");
+    if (const auto v = table.find("inside")) volume.inside = v->text();
     if (const auto v = table.find("storage"))
         volume.storage = std::array{Storage::Auto, Storage::Half, Storage::Float}[v->choice(
             "storage", std::array<std::string, 3>{"auto", "half", "float"})];

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "woodcock/scene/load.h"
+#include "woodcock/surface/material.h"
+
+namespace woodcock {
+
+/// The materials in the order of the description, and after them the one of surfaces that name
+/// none.
+std::vector<Material> buildMaterials(const SceneDescription& description,
+                                     const LoadedScene& loaded);
+
+/// Of that list; the empty name is the default's.
+std::uint32_t materialIndex(const SceneDescription& description, std::string_view name);
+
+/// What a triangle sends out.
+struct Emission {
+    Rgb radiance{0.0f};
+    bool bothSides = false;
+};
+
+/// Of each triangle of a mesh of this material, textures averaged over it; empty where all are
+/// dark.
+std::vector<Emission> meanEmission(const std::vector<Material>& materials, std::uint32_t material,
+                                   const SurfaceMesh& mesh);
+
+}  // namespace woodcock

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/build_medium.h"
+
+#include <tuple>
+
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+namespace {
+
+using Part = MediumPart::Description;
+
+Part fieldPart(const VolumeDescription& volume, const LoadedField& loaded) {
+    Part part;
+    part.field = loaded.field;
+    part.worldFromIndex = volume.worldFromObject * loaded.objectFromIndex;
+    return part;
+}
+
+std::vector<Part> parts(const VolumeDescription& volume, const DensityCoefficients& c,
+                        const LoadedVolume& loaded) {
+    if (!c.scale) throw usageError("a volume's scale has not been chosen yet");
+    Part part = fieldPart(volume, loaded.density);
+    std::tie(part.absorption, part.scattering) = splitByAlbedo(*c.scale, c.albedo);
+    if (loaded.albedo) {
+        part.albedo = loaded.albedo.field;
+        part.albedoWorldFromIndex = volume.worldFromObject * loaded.albedo.objectFromIndex;
+    }
+    return {part};
+}
+
+std::vector<Part> parts(const VolumeDescription& volume, const SeparateCoefficients& c,
+                        const LoadedVolume& loaded) {
+    std::vector<Part> all;
+    if (c.sigmaA) {
+        all.push_back(fieldPart(volume, loaded.sigmaA));
+        all.back().absorption = c.sigmaA->scale;
+        all.back().scattering = Rgb(0);
+    }
+    if (c.sigmaS) {
+        const bool sameGrid = c.sigmaA && loaded.sigmaA.field == loaded.sigmaS.field;
+        if (!sameGrid) all.push_back(fieldPart(volume, loaded.sigmaS));
+        all.back().scattering = c.sigmaS->scale;
+    }
+    return all;
+}
+
+std::vector<Part> parts(const VolumeDescription& volume, const HomogeneousBox& c,
+                        const LoadedVolume&) {
+    Part part;
+    part.box = c.box;
+    part.worldFromIndex = volume.worldFromObject;
+    part.absorption = c.sigmaA;
+    part.scattering = c.sigmaS;
+    return {part};
+}
+
+}  // namespace
+
+Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
+                   std::string_view inside) {
+    Medium medium;
+    for (size_t i = 0; i < description.volumes.size(); ++i) {
+        const VolumeDescription& volume = description.volumes[i];
+        if (volume.inside != inside) continue;
+        const auto all =
+            std::visit([&](const auto& c) { return parts(volume, c, loaded.volumes[i]); },
+                       volume.coefficients);
+        for (Part part : all) {
+            if ((part.absorption + part.scattering).maximum() == 0) continue;
+            part.g = volume.g;
+            part.majorantScale = description.render.majorantScale;
+            medium.parts.emplace_back(std::move(part));
+        }
+    }
+    return medium;
+}
+
+}  // namespace woodcock

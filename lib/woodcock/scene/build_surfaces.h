@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "woodcock/light/mesh_light.h"
+#include "woodcock/medium/medium.h"
+#include "woodcock/scene/load.h"
+#include "woodcock/surface/surface_set.h"
+
+namespace woodcock {
+
+struct BuiltSurfaces {
+    std::shared_ptr<const SurfaceSet> set;  ///< null: none
+    std::vector<Medium> interiors;          ///< as of Scene
+    std::vector<MeshLight::Triangle> emitters;
+};
+
+/// The surfaces of a scene, what they hold, and the triangles that emit light: those of all
+/// emissive instances, in the order of instances and of their triangles. Throws Error{Input} on
+/// transforms that flatten a surface, and where there are more emitters than can be counted.
+BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded);
+
+}  // namespace woodcock

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/load_surfaces.h"
+
+#include <map>
+#include <tuple>
+
+#include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/instance_file.h"
+#include "woodcock/scene/unit_shapes.h"
+
+namespace woodcock {
+namespace {
+
+using Mesh = std::shared_ptr<const SurfaceMesh>;
+
+constexpr double defaultSmooth = 60;  // degrees, where a shape brings no normals of its own
+constexpr int emitterRings = 48, emitterSectors = 256;
+
+SurfaceMesh readShape(const MeshShape& shape, std::optional<double> smooth) {
+    if (shape.file.extension() != ".vdb") {
+        SurfaceMesh mesh = readSurfaceMesh(shape.file);
+        if (smooth) smoothNormals(mesh, *smooth);
+        return mesh;
+    }
+    SurfaceMesh mesh = levelSetMesh(shape.file, shape.levelSet, 0);
+    smoothNormals(mesh, smooth.value_or(defaultSmooth));
+    return mesh;
+}
+
+/// Makes meshes, each once.
+class Loader {
+public:
+    Loader(const SceneDescription& scene, std::vector<std::string>& notes)
+        : scene_(scene), notes_(notes) {}
+
+    LoadedSurface load(size_t index) {
+        const SurfaceDescription& surface = scene_.surfaces[index];
+        const SurfaceNature nature = natureOf(scene_, index);
+        const auto placeOf = [&](const char* key) {
+            return findPlace(scene_.places, fmt::format("surface[{}].{}", index, key));
+        };
+        const bool file = std::holds_alternative<MeshShape>(surface.shape);
+        LoadedSurface loaded = inPlace(placeOf(file ? "file" : "lathe"), [&] {
+            return std::visit([&](const auto& shape) { return shaped(shape, surface, nature); },
+                              surface.shape);
+        });
+        loaded.instances = surface.instances;
+        if (!surface.instanceFile.empty()) {
+            const auto more = inPlace(placeOf("instances"),
+                                      [&] { return readInstanceFile(surface.instanceFile); });
+            loaded.instances.insert(loaded.instances.end(), more.begin(), more.end());
+        }
+        if (loaded.instances.empty()) loaded.instances.emplace_back();
+        return loaded;
+    }
+
+private:
+    LoadedSurface shaped(const MeshShape& shape, const SurfaceDescription& surface,
+                         const SurfaceNature& nature) {
+        const auto key =
+            std::tuple(shape.file, shape.levelSet, surface.smooth.value_or(-1), nature.encloses);
+        Mesh& mesh = files_[key];
+        if (!mesh) {
+            SurfaceMesh read = readShape(shape, surface.smooth);
+            if (nature.encloses) close(read, shape.file.string());
+            mesh = std::make_shared<SurfaceMesh>(std::move(read));
+        }
+        return {mesh, {}, {}};
+    }
+    LoadedSurface shaped(const LatheShape& shape, const SurfaceDescription& surface,
+                         const SurfaceNature& nature) {
+        SurfaceMesh mesh =
+            latheMesh(shape.profile, shape.segments, surface.smooth.value_or(defaultSmooth));
+        if (nature.encloses) close(mesh, "the lathe");
+        return {std::make_shared<SurfaceMesh>(std::move(mesh)), {}, {}};
+    }
+    LoadedSurface shaped(const BoxShape& shape, const SurfaceDescription&, const SurfaceNature&) {
+        if (!box_) box_ = std::make_shared<SurfaceMesh>(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+        return {box_, Affine3d::translate(shape.box.lower) * Affine3d::scale(shape.box.size()), {}};
+    }
+    LoadedSurface shaped(const SphereShape& shape, const SurfaceDescription&,
+                         const SurfaceNature& nature) {
+        if (nature.emits && !sphere_)
+            sphere_ = std::make_shared<SurfaceMesh>(sphereMesh(emitterRings));
+        const Vec3d scale = Vec3d{1, 1, 1} * shape.radius;
+        return {nature.emits ? sphere_ : nullptr,
+                Affine3d::translate(shape.centre) * Affine3d::scale(scale),
+                {}};
+    }
+    LoadedSurface shaped(const DiskShape& shape, const SurfaceDescription&,
+                         const SurfaceNature& nature) {
+        if (nature.emits && !disk_) disk_ = std::make_shared<SurfaceMesh>(diskMesh(emitterSectors));
+        return {nature.emits ? disk_ : nullptr, Affine3d::scale(Vec3d{1, 1, 1} * shape.radius), {}};
+    }
+    LoadedSurface shaped(const PlaneShape& shape, const SurfaceDescription&, const SurfaceNature&) {
+        if (!shape.size) return {};
+        if (!rectangle_) rectangle_ = std::make_shared<SurfaceMesh>(rectangleMesh(1, 1));
+        return {rectangle_, Affine3d::scale({(*shape.size)[0], 1, (*shape.size)[1]}), {}};
+    }
+
+    /// Sees to it that a mesh encloses something.
+    void close(SurfaceMesh& mesh, const std::string& name) {
+        const Closedness found = checkClosed(mesh.mesh);
+        if (found.inwards) {
+            flip(mesh);
+            notes_.push_back(fmt::format(
+                "{} faces inwards: turned over, as its material tells inside from outside", name));
+        } else if (!found.closed) {
+            throw inputError(
+                "{} is not closed ({}), and its material tells inside from outside; close it, or "
+                "give it a material that lets no light in",
+                name, found.problem);
+        }
+    }
+
+    const SceneDescription& scene_;
+    std::vector<std::string>& notes_;
+    std::map<std::tuple<std::filesystem::path, std::string, double, bool>, Mesh> files_;
+    Mesh box_, sphere_, disk_, rectangle_;
+};
+
+void checkFillings(const SceneDescription& scene, const std::vector<LoadedSurface>& loaded) {
+    for (size_t i = 0; i < scene.volumes.size(); ++i) {
+        const std::string& name = scene.volumes[i].inside;
+        const auto found = findNamed(scene.surfaces, name);
+        if (!found || loaded[*found].instances.size() == 1) continue;
+        inPlace(findPlace(scene.places, fmt::format("volume[{}].inside", i)), [&] {
+            throw inputError(
+                "'{}' stands in {} places; a volume fills a surface that stands in one", name,
+                loaded[*found].instances.size());
+        });
+    }
+}
+
+}  // namespace
+
+std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
+                                        std::vector<std::string>& notes) {
+    std::vector<LoadedSurface> loaded;
+    Loader loader(scene, notes);
+    for (size_t i = 0; i < scene.surfaces.size(); ++i) loaded.push_back(loader.load(i));
+    checkFillings(scene, loaded);
+    return loaded;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "woodcock/mesh/surface_mesh.h"
+#include "woodcock/scene/description.h"
+
+namespace woodcock {
+
+/// What a surface's description names, or says in numbers.
+struct LoadedSurface {
+    std::shared_ptr<const SurfaceMesh> mesh;  ///< null: a sphere, disk or plane without triangles
+    Affine3d objectFromMesh;                  ///< boxes, say, are all one mesh
+    std::vector<Affine3d> instances;          ///< of the description or its file; never empty
+};
+
+/// Reads meshes, each file once, and the places of instances. Meshes that have to enclose something
+/// are checked, and turned over where they face inwards, which a note tells. Throws Error{Input}
+/// with the place in the scene.
+std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
+                                        std::vector<std::string>& notes);
+
+}  // namespace woodcock

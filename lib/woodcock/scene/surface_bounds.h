@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/scene/load.h"
+
+namespace woodcock {
+
+/// World boxes of the instances of a surface, all together; empty for an infinite plane.
+Box3d surfaceBounds(const SurfaceDescription& surface, const LoadedSurface& loaded);
+
+/// A world box with room around all of a surface, for what it holds: the surface itself is what
+/// bounds that. Below an infinite plane it reaches 1e9 times as far as all there is in the scene.
+Box3d spaceAround(const SceneDescription& scene, const LoadedScene& loaded, size_t surface);
+
+}  // namespace woodcock
