@@ -208,11 +208,13 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
     settings.endSample = samples.end;
     settings.seed = render.seed;
     settings.maxScatterings = render.maxScatterings;
+    settings.maxBounces = render.maxBounces;
+    settings.transparentShadows = render.transparentShadows;
     settings.threads = options.threads.value_or(0);
     settings.timeLimit = render.timeLimit;
     settings.noise = render.noise;
     const ExrLayers layers = layersOf(scene);
-    settings.depthLayers = layers.depth || layers.transmittance;
+    settings.depthLayers = layers.depth || layers.normal || layers.transmittance;
     checkMemory(settings, scene);
     return settings;
 }

@@ -75,7 +75,19 @@ void Film::add(int x, int y, const DepthSample& sample) {
     for (int i = 0; i < 3; ++i) p.transmittance[i] += sample.transmittance[i];
     p.weightedDepth += sample.weightedDepth;
     p.depthWeight += sample.weight;
+    for (int i = 0; i < 3; ++i) p.weightedNormal[i] += sample.weightedNormal[i];
     ++p.depthSamples;
+}
+
+void Film::add(int x, int y, const CatcherSample& sample) {
+    Pixel& p = at(x, y);
+    if (!std::isfinite(sample.lit) || !std::isfinite(sample.unlit)) {
+        ++p.nonFinite;
+        return;
+    }
+    p.catcherLit += sample.lit;
+    p.catcherUnlit += sample.unlit;
+    p.catcherWeight += sample.weight;
 }
 
 void Film::merge(const Film& other) {
@@ -89,7 +101,11 @@ void Film::merge(const Film& other) {
             p.radiance[c] += q.radiance[c];
             p.radianceSquared[c] += q.radianceSquared[c];
             p.transmittance[c] += q.transmittance[c];
+            p.weightedNormal[c] += q.weightedNormal[c];
         }
+        p.catcherLit += q.catcherLit;
+        p.catcherUnlit += q.catcherUnlit;
+        p.catcherWeight += q.catcherWeight;
         p.alpha += q.alpha;
         p.weightedDepth += q.weightedDepth;
         p.depthWeight += q.depthWeight;
@@ -106,7 +122,11 @@ Rgb Film::radiance(int x, int y) const {
 
 float Film::alpha(int x, int y) const {
     const Pixel& p = at(x, y);
-    return p.samples == 0 ? 0.0f : static_cast<float>(p.alpha / static_cast<double>(p.samples));
+    if (p.samples == 0) return 0;
+    double alpha = p.alpha;
+    if (p.catcherUnlit > 0)
+        alpha += p.catcherWeight * std::max(0.0, 1 - p.catcherLit / p.catcherUnlit);
+    return static_cast<float>(alpha / static_cast<double>(p.samples));
 }
 
 Rgb Film::transmittance(int x, int y) const {
@@ -126,6 +146,12 @@ Rgb Film::standardError(int x, int y) const {
 float Film::depth(int x, int y) const {
     const Pixel& p = at(x, y);
     return p.depthWeight > 0 ? static_cast<float>(p.weightedDepth / p.depthWeight) : noDepth;
+}
+
+Vec3f Film::normal(int x, int y) const {
+    const Pixel& p = at(x, y);
+    const Rgb n = mean(p.weightedNormal, p.depthSamples);
+    return {n[0], n[1], n[2]};
 }
 
 std::uint64_t Film::nonFiniteCount() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "woodcock/base/spectrum.h"
+#include "woodcock/base/vec.h"
 
 namespace woodcock {
 
@@ -20,6 +21,13 @@ struct DepthSample {
     Rgb transmittance;
     float weightedDepth = 0;  ///< sum over absorbed-or-scattered weight x distance, world units
     float weight = 0;
+    Vec3f weightedNormal;  ///< world space, towards the camera; only where it meets a surface
+};
+
+/// Light on a shadow catcher that one camera path met: with what is in the scene, and without.
+struct CatcherSample {
+    float lit = 0, unlit = 0;  ///< means of the channels
+    float weight = 0;          ///< transmittance in front of it
 };
 
 /// Sums over samples, per pixel and in double, so that sample ranges merge: the sums of [0,n) and
@@ -31,6 +39,8 @@ public:
         double alpha = 0;
         double transmittance[3] = {};
         double weightedDepth = 0, depthWeight = 0;
+        double weightedNormal[3] = {};
+        double catcherLit = 0, catcherUnlit = 0, catcherWeight = 0;
         std::uint64_t samples = 0;       ///< of radiance and alpha
         std::uint64_t depthSamples = 0;  ///< of transmittance and depth
         std::uint64_t nonFinite = 0;     ///< samples dropped because they were NaN or infinite
@@ -59,11 +69,13 @@ public:
     /// A sample with anything NaN or infinite in it is dropped and counted.
     void add(int x, int y, const FilmSample& sample);
     void add(int x, int y, const DepthSample& sample);
+    void add(int x, int y, const CatcherSample& sample);
     /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other.
     void merge(const Film& other);
 
     /// Means over samples; zero where there is none.
     Rgb radiance(int x, int y) const;
+    /// A shadow catcher adds the share of its light that the scene takes away.
     float alpha(int x, int y) const;
     Rgb transmittance(int x, int y) const;
     /// Of the mean radiance, from the samples' variance; infinite, as unknown, below two
@@ -72,6 +84,9 @@ public:
     /// Mean distance to what the camera ray meets, world units; `noDepth` where it meets nothing.
     float depth(int x, int y) const;
     static constexpr float noDepth = 1e10f;
+    /// Mean world-space normal of the surfaces that camera rays meet, towards the camera, times the
+    /// part of the rays that meet one.
+    Vec3f normal(int x, int y) const;
 
     std::uint64_t nonFiniteCount() const;
     /// Of all pixels; above the fewest after a render was interrupted inside a pass.

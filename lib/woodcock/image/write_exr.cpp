@@ -43,6 +43,13 @@ std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& set
         groups.push_back({{"Z"}, PixelType::Float, [&film](int x, int y, float* to) {
                               *to = film.depth(x, y);
                           }});
+    if (layers.normal)
+        groups.push_back({{"normal.X", "normal.Y", "normal.Z"},
+                          PixelType::Float,
+                          [&film](int x, int y, float* to) {
+                              const Vec3f n = film.normal(x, y);
+                              to[0] = n.x, to[1] = n.y, to[2] = n.z;
+                          }});
     if (layers.transmittance)
         groups.push_back(
             {{"transmittance.R", "transmittance.G", "transmittance.B"},
@@ -93,16 +100,19 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
 }  // namespace
 
 ExrLayers layersFromNames(const std::vector<std::string>& names) {
-    static const std::vector<std::string> known{"depth", "transmittance", "samples", "error"};
+    static const std::vector<std::string> known{"depth", "normal", "transmittance", "samples",
+                                                "error"};
     ExrLayers layers;
     for (const std::string& name : names) {
         if (name == known[0])
             layers.depth = true;
         else if (name == known[1])
-            layers.transmittance = true;
+            layers.normal = true;
         else if (name == known[2])
-            layers.samples = true;
+            layers.transmittance = true;
         else if (name == known[3])
+            layers.samples = true;
+        else if (name == known[4])
             layers.error = true;
         else
             throw usageError("unknown layer '{}'{}", name,

@@ -24,13 +24,14 @@ struct RenderMetadata {
 /// Channels beyond R, G, B and A, always in float.
 struct ExrLayers {
     bool depth = false;          ///< Z: Film::depth(), world units
+    bool normal = false;         ///< normal.X, .Y, .Z: Film::normal()
     bool transmittance = false;  ///< transmittance.R, .G, .B along the camera ray
     bool samples = false;        ///< samples: how many make the pixel
     bool error = false;          ///< error.R, .G, .B: standard error of R, G, B
 };
 
-/// From the names that users write: depth, transmittance, samples, error. Throws Error{Usage} on
-/// any other.
+/// From the names that users write: depth, normal, transmittance, samples, error. Throws
+/// Error{Usage} on any other.
 ExrLayers layersFromNames(const std::vector<std::string>& names);
 
 struct ExrSettings {

@@ -7,13 +7,20 @@ namespace woodcock {
 
 Needs findNeeds(const Scene& scene) {
     Needs n;
-    for (const MediumPart& p : scene.medium.parts) {
-        n.chromatic |= p.chromatic();
-        n.scattering |= p.scatters();
-    }
-    n.overlap = scene.medium.parts.size() > 1;
-    n.lightSampling = n.scattering && !scene.lights.sampled().empty();
-    const Box3d bounds = scene.medium.worldBounds();
+    Box3d bounds;  // of what scatters
+    const auto look = [&](const Medium& medium) {
+        for (const MediumPart& p : medium.parts) {
+            n.chromatic |= p.chromatic();
+            n.scattering |= p.scatters();
+        }
+        n.overlap |= medium.parts.size() > 1;
+        const Box3d box = medium.worldBounds();
+        if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
+    };
+    look(scene.medium);
+    for (const Medium& medium : scene.interiors) look(medium);
+    n.surfaces = scene.surfaces != nullptr;
+    n.lightSampling = (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
         const Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];
@@ -36,6 +43,7 @@ std::string Needs::describe() const {
     tell(scattering, "scattering");
     tell(lightSampling, "light sampling");
     tell(localLights, "equiangular sampling");
+    tell(surfaces, "surfaces");
     return "needs " + (with.empty() ? std::string("absorption only") : with) +
            (without.empty() ? "" : "; left out: " + without);
 }

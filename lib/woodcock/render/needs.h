@@ -14,6 +14,7 @@ struct Needs {
     bool overlap = false;        ///< more than one medium component
     bool scattering = false;     ///< sigma_s > 0 somewhere: otherwise camera rays only
     bool lightSampling = false;  ///< a light that phase sampling alone would miss or sample badly
+    bool surfaces = false;       ///< rays look for surfaces, and media lie within them
     bool localLights = false;    ///< lights near or inside the medium: equiangular sampling
 
     /// One line: what the scene needs and what was left out.
@@ -27,6 +28,7 @@ struct RenderCounters {
     std::uint64_t paths = 0, scatterings = 0, shadowRays = 0;
     std::uint64_t distanceSegments = 0, distanceCollisions = 0;  ///< collisions include null ones
     std::uint64_t shadowSegments = 0, shadowCollisions = 0;
+    std::uint64_t surfaceRays = 0;  ///< that looked for the nearest surface
 };
 
 }  // namespace woodcock

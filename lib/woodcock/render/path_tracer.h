@@ -22,10 +22,12 @@ struct PathJob {
 /// What one camera path found.
 struct PathResult {
     FilmSample film;
-    DepthSample depth;  ///< only with depthLayers
+    DepthSample depth;      ///< only with depthLayers
+    CatcherSample catcher;  ///< where the camera sees a shadow catcher; its radiance is not film's
 };
 
-/// Traces camera paths through a scene in batches: spawn, walk, shade, shadow walk, resolve. One
+/// Traces camera paths through a scene in batches: spawn, look ahead, walk, shade, shadow walk,
+/// retire. One
 /// object serves one thread at a time. A job's result depends on the scene, the seed and the job
 /// alone, never on its neighbours in a batch.
 class PathTracer {
@@ -34,6 +36,8 @@ public:
         int width = 1, height = 1;  ///< of the image
         std::uint64_t seed = 0;
         std::optional<int> maxScatterings;
+        std::optional<int> maxBounces;
+        bool transparentShadows = false;
         bool depthLayers = false;
     };
 

@@ -20,6 +20,9 @@ struct Scene {
     std::shared_ptr<const SurfaceSet> surfaces = {};  ///< null: none
     std::vector<Medium> interiors =
         {};  ///< what surfaces hold: SurfaceObject::medium - 1 is the index
+
+    /// World box of all finite media and surfaces.
+    Box3d bounds() const;
 };
 
 }  // namespace woodcock

@@ -44,6 +44,7 @@ void add(RenderCounters& a, const RenderCounters& b) {
     a.paths += b.paths, a.scatterings += b.scatterings, a.shadowRays += b.shadowRays;
     a.distanceSegments += b.distanceSegments, a.distanceCollisions += b.distanceCollisions;
     a.shadowSegments += b.shadowSegments, a.shadowCollisions += b.shadowCollisions;
+    a.surfaceRays += b.surfaceRays;
 }
 
 /// Renders passes over all tiles into a film. Tiles own their pixels, and a pixel's samples are
@@ -190,13 +191,15 @@ private:
                 for (int s = first; s < end; ++s)
                     jobs.push_back({x, y, static_cast<std::uint32_t>(s)});
         std::vector<PathResult> results(jobs.size());
-        const auto tracer = PathTracer::make(scene_, needs_,
-                                             {settings_.width, settings_.height, settings_.seed,
-                                              settings_.maxScatterings, settings_.depthLayers});
+        const auto tracer = PathTracer::make(
+            scene_, needs_,
+            {settings_.width, settings_.height, settings_.seed, settings_.maxScatterings,
+             settings_.maxBounces, settings_.transparentShadows, settings_.depthLayers});
         if (!tracer->trace(jobs, results, stopping)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);
             if (settings_.depthLayers) film_.add(jobs[i].x, jobs[i].y, results[i].depth);
+            if (results[i].catcher.weight > 0) film_.add(jobs[i].x, jobs[i].y, results[i].catcher);
         }
         pathsDone_ += jobs.size();
         const std::lock_guard lock(countersMutex_);

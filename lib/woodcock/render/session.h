@@ -19,6 +19,8 @@ struct RenderSettings {
     int firstSample = 0, endSample = 64;  ///< the half-open range of sample indices to render
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
+    std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
+    bool transparentShadows = false;    ///< see RenderDescription
     int threads = 0;                    ///< 0: all cores
     double timeLimit = 0;               ///< seconds; 0: none. The first sample is always whole.
     double noise = 0;                   ///< stop once Film::noise() is below it; 0: never

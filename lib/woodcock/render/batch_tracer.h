@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "woodcock/medium/phase.h"
+#include "woodcock/medium/tracking.h"
+#include "woodcock/render/light_choice.h"
+#include "woodcock/render/path_state.h"
+
+namespace woodcock {
+
+/// N: tracked channels. Surfaces: the scene has some; else no trace of them is compiled.
+template <int N, bool Surfaces>
+class BatchTracer final : public PathTracer {
+public:
+    BatchTracer(const Scene& scene, const Needs& needs, const Options& options)
+        : scene_(scene),
+          needs_(needs),
+          options_(options),
+          typicalRadiance_(scene.lights.typicalRadiance(scene.bounds())),
+          choice_(scene.lights) {
+        media_.emplace_back(scene.medium);
+        if constexpr (Surfaces) {
+            for (const Medium& medium : scene.interiors) media_.emplace_back(medium);
+            interiors_.emplace(scene);
+            if (scene.camera.kind == Camera::Kind::Perspective)
+                aroundCamera_ = interiors_->at(scene.camera.worldFromCamera.translation);
+        }
+    }
+
+    const RenderCounters& counters() const override { return counters_; }
+
+    bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
+               const std::function<bool()>& stop) override {
+        paths_.clear(), walks_.clear();
+        std::size_t next = 0;
+        while (true) {
+            if (stop()) return false;
+            while (paths_.size() < batchSize && next < jobs.size()) {
+                spawn(jobs[next], results[next]);
+                ++next;
+            }
+            if (paths_.empty()) return true;
+            for (std::size_t i = 0; i < paths_.size(); ++i) lookAhead(i);
+            walk();
+            for (std::size_t i = 0; i < paths_.size(); ++i) shade(i);
+            shadowWalk();
+            retire();
+        }
+    }
+
+private:
+    static constexpr std::size_t batchSize = 256;
+
+    using Path = PathState<N, Surfaces>;
+
+    // ---- stages -------------------------------------------------------------------------------
+
+    void spawn(const PathJob& job, PathResult& result) {
+        result = {};
+        Path p{.result = &result,
+               .sequence = SampleSequence(options_.seed, job.x, job.y, job.sample),
+               .random = RandomStream(hashOf(options_.seed, 0x70617468, job.x, job.y, job.sample)),
+               .origin = {},
+               .direction = {},
+               .radiance = {},
+               .from = {}};
+        const auto u = p.sequence.draw(0);
+        const CameraRay ray =
+            scene_.camera.ray(job.x + u[0], job.y + u[1], options_.width, options_.height);
+        p.origin = ray.origin, p.direction = ray.direction;
+        p.flight = 1 - u[2];
+        ++counters_.paths;
+        if constexpr (Surfaces)
+            p.surfaces.place.inside = scene_.camera.kind == Camera::Kind::Perspective
+                                          ? aroundCamera_
+                                          : interiors_->at(p.origin);
+        if (options_.depthLayers) findDepth(p);
+        paths_.push_back(p);
+        const std::size_t i = paths_.size() - 1;
+        addSphereHits(i, nullptr);
+        if (needs_.localLights) {
+            paths_[i].equiangular = u[3];
+            paths_[i].lamp = paths_[i].random.uniform();
+        }
+    }
+
+    /// What is known of a flight before it is tracked: the surface at its end, and the equiangular
+    /// point on it.
+    void lookAhead(std::size_t i) {
+        Path& p = paths_[i];
+        if constexpr (Surfaces) {
+            AmongSurfaces& s = p.surfaces;
+            s.hitsAhead =
+                interiors_->nearest(p.origin, p.direction, infinity, s.place, s.seen, s.ahead);
+            s.tMax = s.hitsAhead ? s.ahead.t : infinity;
+            ++counters_.surfaceRays;
+        }
+        if (needs_.localLights) addEquiangular(i, p.equiangular, p.lamp);
+    }
+
+    void walk() {
+        walks_.clear();
+        if (!Surfaces && !needs_.scattering) {
+            absorb();
+            return;
+        }
+        for (Path& p : paths_)
+            walks_.push_back({p.origin, p.direction, flightOf(p).tMax, p.flight, p.random,
+                              pathRoulette, false, p.throughput, 0, -1});
+        TrackingCounters c;
+        if constexpr (Surfaces) {
+            for (std::size_t i = 0; i < paths_.size(); ++i) {
+                const MediumSummary& medium = *flightOf(paths_[i]).medium;
+                if (medium.scatters)
+                    trackDistance<N>(*medium.medium, {&walks_[i], 1}, c);
+                else if (!medium.medium->parts.empty())
+                    absorbAlong(medium, walks_[i], c);
+            }
+        } else {
+            trackDistance<N>(scene_.medium, walks_, c);
+        }
+        counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
+    }
+
+    /// The short way of media that only absorb: every path escapes, with its transmittance.
+    void absorb() {
+        TrackingCounters c;
+        for (Path& p : paths_) {
+            walks_.push_back({p.origin, p.direction, infinity, p.flight, p.random, 0, false,
+                              p.throughput, 0, -1});
+            absorbAlong(media_[0], walks_.back(), c);
+        }
+        counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
+    }
+    static void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk,
+                            TrackingCounters& c) {
+        TransmittanceQuery<N> q{walk.origin, walk.direction, walk.tMax, walk.random,
+                                0,           walk.throughput};
+        trackTransmittance<N>(*medium.medium, {&q, 1}, c);
+        walk.random = q.random, walk.throughput = q.contribution;
+    }
+
+    void shade(std::size_t i) {
+        Path& p = paths_[i];
+        const DistanceQuery<N>& w = walks_[i];
+        p.random = w.random, p.throughput = w.throughput;
+        const bool scattered = w.part >= 0;
+        if constexpr (Surfaces) {
+            if (!(p.throughput.maximum() > 0)) {
+                if (p.surfaces.seen) p.result->film.alpha = 1;
+                p.alive = false;
+                return;
+            }
+            if (!scattered && p.surfaces.hitsAhead) {
+                meetSurface(i);
+                return;
+            }
+        }
+        if (seen(p)) p.result->film.alpha = scattered ? 1 : 1 - p.throughput.mean();
+        if (!(p.throughput.maximum() > 0)) {
+            p.alive = false;
+        } else if (!scattered) {
+            escape(p);
+        } else if (options_.maxScatterings && p.scatterings >= *options_.maxScatterings) {
+            p.alive = false;
+        } else {
+            const Medium& medium = *flightOf(p).medium->medium;
+            scatter(i, w.t, medium.parts[static_cast<std::size_t>(w.part)].g());
+        }
+    }
+
+    void shadowWalk() {
+        TrackingCounters c;
+        counters_.shadowRays += shadows_.size();
+        while (!shadows_.empty()) {
+            if constexpr (Surfaces)
+                for (std::size_t i = 0; i < shadows_.size(); ++i)
+                    shadowAmongSurfaces(shadows_[i], shadowQueries_[i], c);
+            else
+                trackTransmittance<N>(scene_.medium, shadowQueries_, c);
+            std::size_t left = 0;
+            for (std::size_t i = 0; i < shadows_.size(); ++i) {
+                const Spectrum<N> arrived = shadowQueries_[i].contribution;
+                if (!(arrived.maximum() > 0)) continue;
+                ShadowRay<Surfaces> s = shadows_[i];
+                if (!s.secondLeg) {
+                    paths_[s.path].radiance += s.colour * toRgb(arrived);
+                    continue;
+                }
+                s.secondLeg = false;
+                TransmittanceQuery<N> q = shadowQueries_[i];
+                q.origin = s.origin, q.direction = s.direction, q.tMax = s.tMax;
+                if constexpr (Surfaces) s.place.left.reset();
+                shadows_[left] = s, shadowQueries_[left] = q, ++left;
+            }
+            shadows_.resize(left), shadowQueries_.resize(left);
+        }
+        counters_.shadowSegments += c.segments, counters_.shadowCollisions += c.collisions;
+    }
+
+    void retire() {
+        std::size_t left = 0;
+        for (Path& p : paths_) {
+            if (p.alive) {
+                paths_[left++] = p;
+                continue;
+            }
+            if (p.result->catcher.weight > 0)
+                p.result->catcher.lit = p.radiance.mean();
+            else
+                p.result->film.radiance = p.radiance;
+        }
+        paths_.resize(left, paths_.front());
+    }
+
+    // ---- events in media ----------------------------------------------------------------------
+
+    /// Radiance from infinity; next-event estimation has a share in images and discs.
+    void escape(Path& p) {
+        p.alive = false;
+        for (std::size_t i = 0; i < scene_.lights.lights().size(); ++i) {
+            const int light = static_cast<int>(i);
+            const Rgb radiance = scene_.lights.distantRadiance(light, p.direction, seen(p));
+            if (!(radiance.maximum() > 0)) continue;
+            p.radiance += toRgb(p.throughput) * radiance * tint(p) *
+                          static_cast<float>(hitWeight(
+                              p, [&] { return choice_.pdf(light, p.from, p.direction); }));
+        }
+    }
+
+    void scatter(std::size_t i, double t, double g) {
+        Path& p = paths_[i];
+        ++counters_.scatterings;
+        const Vec3d position = p.origin + p.direction * t;
+        const EventNumbers u = numbers(p);
+        // What equiangular sampling of this flight leaves to this event; see addEquiangular.
+        const FlightShare share{!needs_.localLights, flightOf(p), t};
+        p.from = {position, p.direction, g};
+        if constexpr (Surfaces) {
+            AmongSurfaces& s = p.surfaces;
+            s.place.left.reset();
+            s.seen = false;
+            s.sought = AmongSurfaces::Sought::ByChance;
+        }
+        if (needs_.lightSampling) addNextEvent(i, u, share);
+
+        const PhaseSample s = sampleHenyeyGreenstein(p.direction, g, u.phase[0], u.phase[1]);
+        p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;
+        p.flight = u.flight;
+        ++p.scatterings;
+        addSphereHits(i, &share);
+        if (p.scatterings >= firstOrderRoulette &&
+            std::has_single_bit(static_cast<std::uint64_t>(p.scatterings))) {
+            if (p.random.uniform() >= 0.70710678118654752) {
+                p.alive = false;
+                return;
+            }
+            p.throughput *= 1.41421356f;
+        }
+        p.equiangular = u.equiangular, p.lamp = u.pick;
+    }
+
+    EventNumbers numbers(Path& p) {
+        std::int64_t order = p.scatterings;
+        if constexpr (Surfaces) order += p.surfaces.bounces;
+        if (order >= quasiRandomOrders) {
+            auto& r = p.random;
+            return {{r.uniform(), r.uniform()},
+                    {r.uniform(), r.uniform()},
+                    r.uniformOpenLow(),
+                    r.uniform(),
+                    r.uniform()};
+        }
+        const auto set = static_cast<std::uint32_t>(2 * order + 1);
+        const auto a = p.sequence.draw(set), b = p.sequence.draw(set + 1);
+        return {{a[0], a[1]}, {a[2], a[3]}, 1 - b[0], b[1], b[2]};
+    }
+
+    // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
+
+    void meetSurface(std::size_t i);
+    void bounce(std::size_t i, const SurfaceHit& hit, const Crossing& crossing);
+    AmongSurfaces::Sought soughtAfter(AmongSurfaces::Sought before, const Bsdf& bsdf,
+                                      const BsdfSample& b) const;
+    /// A boundary that changes nothing but the medium.
+    void goOn(Path& p);
+    void addEmission(Path& p, const SurfaceHit& hit, const Bsdf& bsdf);
+    /// Next-event estimation at a surface.
+    void lightSurface(std::size_t i, const EventNumbers& u, const SurfaceHit& hit,
+                      const Crossing& crossing, Vec3d out, bool caught);
+    /// Shadow catchers: what light that next-event estimation leaves out would bring from the
+    /// direction that was drawn, if nothing stood there.
+    void addUnoccluded(Path& p);
+    void playRoulette(Path& p);
+    /// Takes a shadow ray through boundaries that light passes, to its end or the first surface
+    /// that stops it.
+    void shadowAmongSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
+                             TrackingCounters& c);
+    /// Camera rays' transmittance and the distance of what they meet, by a walk of their own.
+    void findDepth(const Path& p);
+    void addNextEvent(std::size_t i, const EventNumbers& u, const FlightShare& share);
+    /// Sphere lights that the new direction hits: the other side of next-event estimation's MIS.
+    /// Without an event (`share` null) it is the camera that sees them.
+    void addSphereHits(std::size_t i, const FlightShare* share);
+    void addEquiangular(std::size_t i, double u, double pick);
+    /// Adds a shadow ray that brings `light` times the path's throughput, unless that is nothing.
+    /// `mayPass`: transparent shadows concern it.
+    bool addShadowRay(std::size_t i, Vec3d origin, Vec3d direction, double tMax, Rgb light,
+                      bool mayPass);
+
+    /// Multiple importance sampling's weight of light that a path hits, of which next-event
+    /// estimation at the last event would have had the density pdf().
+    template <class F>
+    double hitWeight(const Path& p, F&& pdf) {
+        if constexpr (Surfaces) {
+            using enum AmongSurfaces::Sought;
+            if (p.surfaces.sought == Never) return 1;
+            if (p.surfaces.sought == Straight) return pdf() > 0 ? 0 : 1;
+        } else {
+            if (p.scatterings == 0) return 1;
+        }
+        return powerHeuristic(p.phasePdf, pdf());
+    }
+    std::optional<Vec3d> lampPosition(int light) const {
+        const Light& l = scene_.lights.lights()[static_cast<std::size_t>(light)];
+        if (const auto* point = std::get_if<PointLight>(&l)) return point->position;
+        if (const auto* sphere = std::get_if<SphereLight>(&l)) return sphere->position;
+        return {};
+    }
+
+    // ---- the path's state ---------------------------------------------------------------------
+
+    /// Nothing has happened on the camera's ray so far.
+    static bool seen(const Path& p) {
+        if constexpr (Surfaces)
+            return p.surfaces.seen;
+        else
+            return p.scatterings == 0;
+    }
+    Flight flightOf(const Path& p) const {
+        if constexpr (Surfaces)
+            return {p.origin, p.direction, p.surfaces.tMax,
+                    &media_[interiors_->medium(p.surfaces.place.inside)]};
+        else
+            return {p.origin, p.direction, infinity, &media_[0]};
+    }
+    static Rgb tint(const Path& p) {
+        if constexpr (Surfaces)
+            return p.surfaces.tint;
+        else
+            return Rgb(1.0f);
+    }
+    /// Surfaces' colour goes with the channels where three are tracked.
+    static void multiply(Path& p, Rgb weight) {
+        if constexpr (N == 3)
+            p.throughput *= weight;
+        else
+            p.surfaces.tint *= weight;
+    }
+    static float brightness(const Path& p) {
+        return (toRgb(p.throughput) * p.surfaces.tint).maximum();
+    }
+    static Rgb toRgb(Spectrum<N> s) {
+        return Rgb::map([&](int c) { return s[N == 1 ? 0 : c]; });
+    }
+
+    struct Piece {
+        Vec3d origin;
+        double length;
+        std::uint32_t medium;
+    };
+
+    const Scene& scene_;
+    const Needs needs_;
+    const Options options_;
+    const float typicalRadiance_;
+    std::vector<MediumSummary> media_;  // of the outside, and of what surfaces hold
+    LightChoice choice_;
+    RenderCounters counters_;
+    std::vector<Path> paths_;
+    std::vector<DistanceQuery<N>> walks_;
+    std::vector<ShadowRay<Surfaces>> shadows_;
+    std::vector<TransmittanceQuery<N>> shadowQueries_;
+    // Where there are surfaces:
+    std::optional<Interiors> interiors_;
+    InteriorStack aroundCamera_;
+    std::vector<Piece> pieces_;  // of one shadow ray
+};
+
+}  // namespace woodcock
+
+#include "woodcock/render/batch_tracer_light.h"
+#include "woodcock/render/batch_tracer_surfaces.h"

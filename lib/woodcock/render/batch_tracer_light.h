@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// How batch_tracer.h finds light.
+
+#include "woodcock/render/batch_tracer.h"
+
+namespace woodcock {
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::addNextEvent(std::size_t i, const EventNumbers& u,
+                                            const FlightShare& share) {
+    Path& p = paths_[i];
+    const auto chosen = choice_.choose(p.from, u.pick);
+    if (!chosen) return;
+    const LightSample s =
+        scene_.lights.sample(chosen->light, p.from.position, u.light[0], u.light[1]);
+    if (!(s.weight.maximum() > 0)) return;
+    const double phase = henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
+    double weight = phase / chosen->probability;
+    if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
+    if (const auto lamp = lampPosition(chosen->light)) weight *= share(*lamp);
+    addShadowRay(i, p.from.position, s.direction, s.distance, s.weight * static_cast<float>(weight),
+                 true);
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::addSphereHits(std::size_t i, const FlightShare* share) {
+    for (int light : scene_.lights.local()) {
+        const auto* sphere =
+            std::get_if<SphereLight>(&scene_.lights.lights()[static_cast<std::size_t>(light)]);
+        if (!sphere || (!share && !sphere->visible)) continue;
+        const Path& p = paths_[i];
+        const double t = sphere->hit(p.origin, p.direction);
+        if (!std::isfinite(t)) continue;
+        double weight = 1;
+        if (share)
+            weight = hitWeight(p, [&] { return choice_.pdf(light, p.from, p.direction); }) *
+                     (*share)(sphere->position);
+        bool sought = false;
+        if constexpr (Surfaces) sought = p.surfaces.sought == AmongSurfaces::Sought::ByChance;
+        addShadowRay(i, p.origin, p.direction, t, sphere->radiance * static_cast<float>(weight),
+                     sought);
+    }
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pick) {
+    const Path& p = paths_[i];
+    if (options_.maxScatterings && p.scatterings >= *options_.maxScatterings) return;
+    const Flight flight = flightOf(p);
+    const auto lamps = scene_.lights.local();
+    const double scaled = pick * static_cast<double>(lamps.size());
+    const int light = lamps[std::min(static_cast<std::size_t>(scaled), lamps.size() - 1)];
+    const Vec3d lamp = *lampPosition(light);
+    const Equiangular e = flight.equiangular(lamp);
+    const double t = e.sample(u), pdf = e.pdf(t);
+    if (!(pdf > 0)) return;
+    const ScatterPoint at{p.origin + p.direction * t, p.direction, 0};
+    const double lightU = scaled - std::floor(scaled);
+    const LightSample s =
+        scene_.lights.sample(light, at.position, lightU, paths_[i].random.uniform());
+    if (!(s.weight.maximum() > 0)) return;
+    Rgb scattered;  // sum over parts of sigma_s x phase
+    for (const MediumPart& part : flight.medium->medium->parts)
+        scattered += part.sigmaS(at.position) *
+                     static_cast<float>(henyeyGreenstein(dot(at.forward, s.direction), part.g()));
+    // Balance heuristic against the event, over the density of this point and lamp.
+    const double weight = static_cast<double>(lamps.size()) / (pdf + flight.density(e, t));
+    if (!addShadowRay(i, p.origin, p.direction, t,
+                      scattered * s.weight * static_cast<float>(weight), true))
+        return;
+    ShadowRay<Surfaces>& ray = shadows_.back();
+    ray.secondLeg = true;
+    ray.origin = at.position, ray.direction = s.direction, ray.tMax = s.distance;
+}
+
+template <int N, bool Surfaces>
+bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d direction,
+                                            double tMax, Rgb light, bool mayPass) {
+    Path& p = paths_[i];
+    light *= tint(p);
+    const float brightest = light.maximum();
+    const Spectrum<N> contribution = p.throughput * brightest;
+    if (!(contribution.maximum() > 0)) return false;
+    shadows_.push_back({i, light * (1 / brightest), false, false, {}, {}, 0, {}});
+    if constexpr (Surfaces) {
+        shadows_.back().place = p.surfaces.place;
+        shadows_.back().transparent = mayPass && options_.transparentShadows;
+    }
+    shadowQueries_.push_back({origin, direction, tMax, RandomStream(p.random.bits()),
+                              shadowRoulette * typicalRadiance_, contribution});
+    return true;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// What batch_tracer.h does on surfaces, and its layers of what camera rays meet.
+
+#include "woodcock/render/batch_tracer.h"
+
+namespace woodcock {
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::meetSurface(std::size_t i) {
+    Path& p = paths_[i];
+    AmongSurfaces& s = p.surfaces;
+    const SurfaceHit hit = s.ahead;
+    const SurfaceObject& object = interiors_->object(hit);
+    const Crossing crossing = interiors_->cross(s.place.inside, p.direction, hit);
+    p.origin = hit.position;
+    s.place.left = hit;
+    if (s.seen && object.holdout) {
+        p.result->film.alpha = 1 - p.throughput.mean();
+        p.alive = false;
+        return;
+    }
+    if (crossing.passes) {
+        s.place.inside = crossing.beyond;
+        goOn(p);
+        return;
+    }
+    if (s.seen) {
+        p.result->film.alpha = 1;
+        if (object.matte) {
+            p.alive = false;
+            return;
+        }
+        if (object.shadowCatcher) {
+            p.result->film.alpha = 1 - p.throughput.mean();
+            p.result->catcher.weight = p.throughput.mean();
+        }
+    }
+    addEmission(p, hit, crossing.bsdf);
+    if (options_.maxBounces && s.bounces >= *options_.maxBounces) {
+        p.alive = false;
+        return;
+    }
+    bounce(i, hit, crossing);
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
+                                      const Crossing& crossing) {
+    Path& p = paths_[i];
+    AmongSurfaces& s = p.surfaces;
+    const Vec3d out = -p.direction;
+    const EventNumbers u = numbers(p);
+    const bool caught = s.seen && p.result->catcher.weight > 0;
+    s.seen = false;
+    s.place.inside = crossing.near;
+    if (crossing.bsdf.smooth()) {
+        p.from = {hit.position, p.direction, 0};
+        if (needs_.lightSampling) lightSurface(i, u, hit, crossing, out, caught);
+    }
+
+    const BsdfSample b = crossing.bsdf.sample(out, {u.phase[0], u.phase[1], p.random.uniform()});
+    multiply(p, b.weight);
+    if (!(brightness(p) > 0)) {
+        p.alive = false;
+        return;
+    }
+    p.direction = b.direction, p.phasePdf = b.pdf, p.flight = u.flight;
+    p.equiangular = u.equiangular, p.lamp = u.pick;
+    s.sought = soughtAfter(s.sought, crossing.bsdf, b);
+    if (b.transmitted) s.place.inside = crossing.beyond;
+    ++s.bounces;
+    if (caught) addUnoccluded(p);
+    const FlightShare wholly;
+    addSphereHits(i, &wholly);
+    playRoulette(p);
+}
+
+template <int N, bool Surfaces>
+AmongSurfaces::Sought BatchTracer<N, Surfaces>::soughtAfter(AmongSurfaces::Sought before,
+                                                            const Bsdf& bsdf,
+                                                            const BsdfSample& b) const {
+    using enum AmongSurfaces::Sought;
+    if (!b.delta) return ByChance;
+    // Where a smooth part was lit, a delta part's direction still is its own alone.
+    const bool straight = options_.transparentShadows && b.transmitted && !bsdf.smooth();
+    return straight && before != Never ? Straight : Never;
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::goOn(Path& p) {
+    p.flight = p.random.uniformOpenLow();
+    p.equiangular = p.random.uniform(), p.lamp = p.random.uniform();
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::addEmission(Path& p, const SurfaceHit& hit, const Bsdf& bsdf) {
+    const Rgb radiance = bsdf.emitted(-p.direction);
+    if (!(radiance.maximum() > 0)) return;
+    const auto pdf = [&] {
+        const std::uint32_t first = scene_.surfaces->firstEmitter[hit.instance];
+        const MeshLight* light = scene_.lights.mesh();
+        if (first == SurfaceObject::dark || !light) return 0.0;
+        return light->pdf(p.from.position, first + hit.primitive, hit.position) *
+               choice_.probability(scene_.lights.meshIndex(), p.from);
+    };
+    p.radiance += toRgb(p.throughput) * tint(p) * radiance * static_cast<float>(hitWeight(p, pdf));
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u,
+                                            const SurfaceHit& hit, const Crossing& crossing,
+                                            Vec3d out, bool caught) {
+    Path& p = paths_[i];
+    const auto chosen = choice_.choose(p.from, u.pick);
+    if (!chosen) return;
+    const LightSample l = scene_.lights.sample(chosen->light, hit.position, u.light[0], u.light[1]);
+    if (!(l.weight.maximum() > 0)) return;
+    const Rgb f = crossing.bsdf.evaluate(out, l.direction);
+    if (!(f.maximum() > 0)) return;
+    double weight = 1 / chosen->probability;
+    if (l.pdf > 0)
+        weight *= powerHeuristic(l.pdf * chosen->probability, crossing.bsdf.pdf(out, l.direction));
+    if (caught)
+        p.result->catcher.unlit += (toRgb(p.throughput) * tint(p) * f * l.weight).mean() *
+                                   static_cast<float>(1 / chosen->probability);
+    if (!addShadowRay(i, hit.position, l.direction, l.distance,
+                      f * l.weight * static_cast<float>(weight), true))
+        return;
+    if (dot(out, hit.normal) * dot(l.direction, hit.normal) < 0)
+        shadows_.back().place.inside = crossing.beyond;
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::addUnoccluded(Path& p) {
+    for (const Light& light : scene_.lights.lights()) {
+        const auto* environment = std::get_if<Environment>(&light);
+        if (environment && environment->constant())
+            p.result->catcher.unlit +=
+                (toRgb(p.throughput) * tint(p) * environment->radiance(p.direction)).mean();
+    }
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::playRoulette(Path& p) {
+    const float weight = brightness(p);
+    float survival = std::min(1.0f, weight / pathRoulette);
+    if (p.surfaces.bounces >= firstBounceRoulette) survival *= bounceSurvival;
+    if (survival >= 1) return;
+    if (p.random.uniform() >= survival)
+        p.alive = false;
+    else
+        p.throughput *= 1 / survival;
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
+                                                   TransmittanceQuery<N>& q, TrackingCounters& c) {
+    if (!(q.contribution.maximum() > 0)) return;
+    pieces_.clear();
+    Interiors::Place place = shadow.place;
+    Vec3d origin = q.origin;
+    double left = q.tMax;
+    SurfaceHit hit;
+    Rgb passed(1.0f);
+    while (true) {
+        ++counters_.surfaceRays;
+        const bool hits =
+            interiors_->nearest(origin, q.direction, left * beforeLight, place, false, hit);
+        pieces_.push_back({origin, hits ? hit.t : left, interiors_->medium(place.inside)});
+        if (!hits) break;
+        const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
+        if (!crossing.passes) {
+            if (!shadow.transparent || crossing.bsdf.smooth() || !crossing.bsdf.transmits()) {
+                q.contribution = {};
+                return;
+            }
+            passed = passed * crossing.bsdf.straightTransmittance(q.direction);
+        }
+        place.inside = crossing.beyond;
+        place.left = hit;
+        origin = hit.position;
+        left -= hit.t;
+    }
+    q.contribution *= passed.mean();
+    for (const Piece& piece : pieces_) {
+        const Medium& medium = *media_[piece.medium].medium;
+        if (medium.parts.empty()) continue;
+        q.origin = piece.origin, q.tMax = piece.length;
+        trackTransmittance<N>(medium, {&q, 1}, c);
+        if (!(q.contribution.maximum() > 0)) return;
+    }
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
+    DistanceQuery<N> q{p.origin,
+                       p.direction,
+                       infinity,
+                       p.flight,
+                       RandomStream(RandomStream(p.random).bits()),
+                       0,
+                       true,
+                       Spectrum<N>(1.0f),
+                       0,
+                       -1};
+    TrackingCounters c;
+    DepthSample& depth = p.result->depth;
+    double behind = 0;  // distance to where the query starts
+    if constexpr (Surfaces) {
+        Interiors::Place place = p.surfaces.place;
+        while (true) {
+            SurfaceHit hit;
+            const bool hits =
+                interiors_->nearest(q.origin, q.direction, infinity, place, true, hit);
+            q.tMax = hits ? hit.t : infinity;
+            trackDistance<N>(*media_[interiors_->medium(place.inside)].medium, {&q, 1}, c);
+            if (q.part >= 0 || !hits) break;
+            const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
+            if (interiors_->object(hit).holdout) return;
+            if (!crossing.passes) {
+                const float weight = q.throughput.mean();
+                const Vec3d n =
+                    hit.shadingNormal * (dot(hit.normal, q.direction) < 0 ? weight : -weight);
+                depth = {{}, weight * static_cast<float>(behind + hit.t), weight, n.as<float>()};
+                return;
+            }
+            place.inside = crossing.beyond, place.left = hit;
+            behind += hit.t;
+            q.origin = hit.position, q.u = q.random.uniformOpenLow();
+        }
+    } else {
+        trackDistance<N>(scene_.medium, {&q, 1}, c);
+    }
+    const float weight = q.throughput.mean();
+    if (q.part >= 0)
+        depth = {{}, weight * static_cast<float>(behind + q.t), weight, {}};
+    else
+        depth.transmittance = toRgb(q.throughput);
+}
+
+}  // namespace woodcock

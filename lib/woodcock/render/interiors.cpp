@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/interiors.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+
+void InteriorStack::enter(std::uint32_t instance) {
+    const auto end = instances_.begin() + count_;
+    if (std::find(instances_.begin(), end, instance) != end) return;
+    if (count_ == capacity)
+        throw inputError(
+            "more than {} closed surfaces of glass or interfaces overlap at one place; so many "
+            "cannot be told apart",
+            capacity);
+    instances_[count_++] = instance;
+}
+
+void InteriorStack::leave(std::uint32_t instance) {
+    const auto end = instances_.begin() + count_;
+    const auto found = std::find(instances_.begin(), end, instance);
+    if (found == end) return;  // it started inside, or is one-sided by rounding
+    *found = instances_[--count_];
+}
+
+Interiors::Interiors(const Scene& scene)
+    : set_(*scene.surfaces), holds_(scene.surfaces->holdsMedium()) {
+    for (const SurfaceObject& object : set_.objects) {
+        anyHolds_ |= object.holdsMedium;
+        anyInvisible_ |= !object.cameraVisible;
+    }
+}
+
+InteriorStack Interiors::at(Vec3d position) const {
+    InteriorStack inside;
+    if (!anyHolds_) return inside;
+    for (const std::uint32_t instance : set_.geometry.enclosing(position, holds_))
+        if (objectOf(instance).cameraVisible) inside.enter(instance);
+    return inside;
+}
+
+std::uint32_t Interiors::filling(const InteriorStack& inside) const {
+    std::uint32_t best = outside;
+    for (const std::uint32_t instance : inside.instances()) {
+        const auto rank = [&](std::uint32_t i) {
+            const std::uint32_t object = set_.geometry.instances()[i].object;
+            return std::tuple(set_.objects[object].priority, object, i);
+        };
+        if (best == outside || rank(instance) > rank(best)) best = instance;
+    }
+    return best;
+}
+
+double Interiors::ior(std::uint32_t instance) const {
+    return instance == outside ? 1 : objectOf(instance).ior;
+}
+
+std::uint32_t Interiors::medium(const InteriorStack& inside) const {
+    const std::uint32_t instance = filling(inside);
+    return instance == outside ? 0 : objectOf(instance).medium;
+}
+
+Crossing Interiors::cross(const InteriorStack& inside, Vec3d direction,
+                          const SurfaceHit& hit) const {
+    const bool holds = holds_[hit.object];
+    const bool entering = dot(direction, hit.normal) < 0;
+    InteriorStack near = inside, beyond = inside;
+    BsdfPoint point{hit.normal, hit.shadingNormal, hit.u, hit.v, 1, 1};
+    bool hidden = false;
+    if (holds) {
+        // On either side as if it were just entered or left, wherever the stack believes to be.
+        if (entering)
+            near.leave(hit.instance), beyond.enter(hit.instance);
+        else
+            near.enter(hit.instance), beyond.leave(hit.instance);
+        const std::uint32_t from = filling(near), to = filling(beyond);
+        hidden = from == to;
+        point.iorOutside = ior(entering ? from : to);
+        point.iorInside = ior(entering ? to : from);
+    } else if (!inside.empty()) {
+        // An opaque thing in water: no light gets through, whatever the index.
+        point.iorOutside = point.iorInside = ior(filling(inside));
+    }
+    Bsdf bsdf(set_.materials, objectOf(hit.instance).material, point);
+    const bool passes = hidden || bsdf.passes();
+    return {near, beyond, std::move(bsdf), passes};
+}
+
+bool Interiors::nearest(Vec3d origin, Vec3d direction, double tMax, const Place& start,
+                        bool cameraRay, SurfaceHit& hit) const {
+    const SurfaceHit* left = start.left ? &*start.left : nullptr;
+    if (!set_.geometry.intersect(origin, direction, tMax, left, hit)) return false;
+    if (!cameraRay || !anyInvisible_) return true;
+    double travelled = 0;
+    while (!object(hit).cameraVisible) {
+        travelled += hit.t;
+        const SurfaceHit passed = hit;
+        if (!set_.geometry.intersect(passed.position, direction, tMax - travelled, &passed, hit))
+            return false;
+    }
+    hit.t += travelled;
+    return true;
+}
+
+}  // namespace woodcock

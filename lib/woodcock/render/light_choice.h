@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "woodcock/light/light_set.h"
+
+namespace woodcock {
+
+/// Power heuristic of two sampling densities: Veach 1997, eq. 9.13.
+inline double powerHeuristic(double own, double other) {
+    if (!(own > 0)) return 0;
+    const double r = other / own;
+    return 1 / (1 + r * r);
+}
+
+/// Next-event estimation's choice of a light, and how likely it is. One for each thread.
+class LightChoice {
+public:
+    explicit LightChoice(const LightSet& lights)
+        : lights_(lights), pick_(lights.sampled().size()) {}
+
+    struct Chosen {
+        int light;
+        double probability;
+    };
+    std::optional<Chosen> choose(const ScatterPoint& from, double u) {
+        const auto sampled = lights_.sampled();
+        lights_.pickProbabilities(from, pick_);
+        std::size_t k = 0;
+        while (k + 1 < sampled.size() && u >= pick_[k]) u -= pick_[k++];
+        if (!(pick_[k] > 0)) return {};
+        return Chosen{sampled[k], pick_[k]};
+    }
+
+    double probability(int light, const ScatterPoint& from) {
+        const auto sampled = lights_.sampled();
+        lights_.pickProbabilities(from, pick_);
+        for (std::size_t i = 0; i < sampled.size(); ++i)
+            if (sampled[i] == light) return pick_[i];
+        return 0;
+    }
+
+    /// Density, per steradian, with which next-event estimation at `from` would pick this direction
+    /// towards this light.
+    double pdf(int light, const ScatterPoint& from, Vec3d direction) {
+        const double pdf = lights_.pdf(light, from.position, direction);
+        return pdf > 0 ? pdf * probability(light, from) : 0;
+    }
+
+private:
+    const LightSet& lights_;
+    std::vector<float> pick_;
+};
+
+}  // namespace woodcock

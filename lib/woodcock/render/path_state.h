@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "woodcock/base/sample_sequence.h"
+#include "woodcock/render/flight.h"
+#include "woodcock/render/interiors.h"
+#include "woodcock/render/path_tracer.h"
+
+namespace woodcock {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Throughput below which paths play Russian roulette (absorption is a weight).
+inline constexpr float pathRoulette = 0.1f;
+/// Shadow rays play it below this part of the radiance that the scene's lights typically make.
+inline constexpr float shadowRoulette = 0.05f;
+/// Scattering orders whose numbers come from the quasi-random sequence.
+inline constexpr std::int64_t quasiRandomOrders = 4;
+/// From this order on, every doubling of the order is survived with probability 1/sqrt(2): in a
+/// conservative medium the number of scatterings has a tail like n^(-1/2), for which both cost and
+/// variance then grow like log n.
+inline constexpr int firstOrderRoulette = 4096;
+/// From this bounce off surfaces on, each is survived with this probability: light that total
+/// reflection keeps in a crystal never leaves it.
+inline constexpr int firstBounceRoulette = 256;
+inline constexpr float bounceSurvival = 0.95f;
+/// Shadow rays end this much, relatively, before a light that is a surface itself.
+inline constexpr double beforeLight = 1 - 1e-7;
+
+/// The random numbers of one scattering event and of the flight after it.
+struct EventNumbers {
+    std::array<double, 2> phase, light;
+    double flight, pick, equiangular;
+};
+
+/// What a path needs to know where there are surfaces.
+struct AmongSurfaces {
+    Interiors::Place place;  ///< where the flight starts
+    SurfaceHit ahead;        ///< the nearest surface, at tMax
+    bool hitsAhead = false;
+    double tMax = infinity;
+    Rgb tint{1.0f};  ///< surfaces' part of the throughput where one channel is tracked
+    int bounces = 0;
+    bool seen = true;  ///< by the camera: nothing but boundaries and clear air so far
+    /// How light that the path hits was looked for before.
+    enum class Sought {
+        Never,     ///< next-event estimation could not have this direction: counts in full
+        ByChance,  ///< by next-event estimation at the last event: its share is left out
+        Straight   ///< through the dielectrics since, by transparent shadows: does not count
+    } sought = Sought::Never;
+};
+struct Nothing {};
+
+template <int N, bool Surfaces>
+struct PathState {
+    PathResult* result;
+    SampleSequence sequence;
+    RandomStream random;
+    Vec3d origin, direction;
+    Spectrum<N> throughput{1.0f};
+    Rgb radiance;
+    std::int64_t scatterings = 0;
+    ScatterPoint from;    // the last scattering event, for MIS at what its direction hits
+    double phasePdf = 0;  // of that direction
+    double flight = 1;    // draws the next optical depth
+    double equiangular = 0, lamp = 0;  // and the equiangular point on its way
+    bool alive = true;
+    [[no_unique_address]] std::conditional_t<Surfaces, AmongSurfaces, Nothing> surfaces = {};
+};
+
+/// A query of light along one or two straight legs, and the path that it lights. The medium's
+/// channels travel in the query; the light's colour, largest channel 1, waits here.
+template <bool Surfaces>
+struct ShadowRay {
+    std::size_t path;
+    Rgb colour;
+    bool secondLeg = false;
+    bool transparent = false;  // passes dielectrics
+    Vec3d origin, direction;   // of the second leg
+    double tMax = 0;
+    [[no_unique_address]] std::conditional_t<Surfaces, Interiors::Place, Nothing> place = {};
+};
+
+}  // namespace woodcock
