@@ -13,6 +13,7 @@ struct FacetRing {
     int count = 1;     ///< evenly around the axis
     double distance = 1;  ///< of their planes from the origin; > 0
     double turn = 0;      ///< of the first normal about y from +z towards +x, degrees
+    bool operator==(const FacetRing&) const = default;
 };
 
 /// The convex body that lies behind all facets: flat, closed, facing outwards. Errors: Usage on

@@ -13,6 +13,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/field_source.h"
+#include "woodcock/mesh/faceted_mesh.h"
 #include "woodcock/scene/places.h"
 
 namespace woodcock {
@@ -179,6 +180,12 @@ struct LatheShape {
     bool operator==(const LatheShape&) const = default;
 };
 
+/// See facetedMesh().
+struct FacetShape {
+    std::vector<FacetRing> rings;
+    bool operator==(const FacetShape&) const = default;
+};
+
 /// What a closed surface of glass, or an interface, holds.
 struct InteriorDescription {
     Rgb sigmaA{0.0f}, sigmaS{0.0f};  ///< per world unit
@@ -188,7 +195,8 @@ struct InteriorDescription {
 
 struct SurfaceDescription {
     std::string name;  ///< may be empty
-    std::variant<MeshShape, SphereShape, BoxShape, DiskShape, PlaneShape, LatheShape> shape;
+    std::variant<MeshShape, SphereShape, BoxShape, DiskShape, PlaneShape, LatheShape, FacetShape>
+        shape;
     std::string material;  ///< name; empty: diffuse grey of 0.8
     /// Degrees: edges less sharp are smooth, so 0 is flat. Absent: as a mesh file says; a lathe's
     /// and a level set's at 60.

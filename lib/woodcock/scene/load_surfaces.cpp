@@ -39,8 +39,7 @@ public:
         const auto placeOf = [&](const char* key) {
             return findPlace(scene_.places, fmt::format("surface[{}].{}", index, key));
         };
-        const bool file = std::holds_alternative<MeshShape>(surface.shape);
-        LoadedSurface loaded = inPlace(placeOf(file ? "file" : "lathe"), [&] {
+        LoadedSurface loaded = inPlace(placeOf(keyOf(surface)), [&] {
             return std::visit([&](const auto& shape) { return shaped(shape, surface, nature); },
                               surface.shape);
         });
@@ -55,6 +54,12 @@ public:
     }
 
 private:
+    /// Of the shape's value, where reading or making it may fail.
+    static const char* keyOf(const SurfaceDescription& surface) {
+        if (std::holds_alternative<MeshShape>(surface.shape)) return "file";
+        return std::holds_alternative<FacetShape>(surface.shape) ? "facets" : "lathe";
+    }
+
     LoadedSurface shaped(const MeshShape& shape, const SurfaceDescription& surface,
                          const SurfaceNature& nature) {
         const auto key =
@@ -73,6 +78,9 @@ private:
             latheMesh(shape.profile, shape.segments, surface.smooth.value_or(defaultSmooth));
         if (nature.encloses) close(mesh, "the lathe");
         return {std::make_shared<SurfaceMesh>(std::move(mesh)), {}, {}};
+    }
+    LoadedSurface shaped(const FacetShape& shape, const SurfaceDescription&, const SurfaceNature&) {
+        return {std::make_shared<SurfaceMesh>(facetedMesh(shape.rings)), {}, {}};
     }
     LoadedSurface shaped(const BoxShape& shape, const SurfaceDescription&, const SurfaceNature&) {
         if (!box_) box_ = std::make_shared<SurfaceMesh>(boxMesh({{0, 0, 0}, {1, 1, 1}}));

@@ -11,8 +11,9 @@ namespace {
 
 using Base = const std::filesystem::path&;
 
-const std::vector<std::string> shapeKeys{"file", "sphere", "box", "disk", "plane", "lathe"};
-constexpr int mostPriority = 1'000'000, mostSegments = 100'000;
+const std::vector<std::string> shapeKeys{"file",  "sphere", "box",   "disk",
+                                         "plane", "lathe",  "facets"};
+constexpr int mostPriority = 1'000'000, mostSegments = 100'000, mostFacets = 1000;
 
 MeshShape parseMesh(const TomlTable& surface, Base base) {
     const TomlValue file = *surface.find("file");
@@ -68,6 +69,21 @@ LatheShape parseLathe(const TomlValue& value) {
     return shape;
 }
 
+FacetShape parseFacets(const TomlValue& value) {
+    FacetShape shape;
+    for (const TomlValue& element : value.elements("a list of rings of facets")) {
+        const TomlTable table = element.table();
+        table.allowOnly({"angle", "count", "distance", "turn"}, element.name());
+        FacetRing ring;
+        ring.angle = table.need("angle", "angle = 34.5").number({0, 180});
+        ring.distance = table.need("distance", "distance = 1").number(positive);
+        if (const auto v = table.find("count")) ring.count = v->integer(1, mostFacets);
+        if (const auto v = table.find("turn")) ring.turn = v->number();
+        shape.rings.push_back(ring);
+    }
+    return shape;
+}
+
 auto parseShape(const TomlTable& table, Base base) -> decltype(SurfaceDescription::shape) {
     std::vector<std::string> given;
     for (const std::string& key : shapeKeys)
@@ -87,6 +103,7 @@ auto parseShape(const TomlTable& table, Base base) -> decltype(SurfaceDescriptio
     if (given[0] == "box") return BoxShape{parseBounds(value)};
     if (given[0] == "disk") return parseDisk(value);
     if (given[0] == "plane") return parsePlane(value);
+    if (given[0] == "facets") return parseFacets(value);
     return parseLathe(value);
 }
 
@@ -176,9 +193,10 @@ void parseCompositing(const TomlTable& table, SurfaceDescription& surface) {
 }  // namespace
 
 SurfaceDescription parseSurface(const TomlTable& table, Base base) {
-    table.allowOnly({"name", "file", "level_set", "sphere", "box", "disk", "plane", "lathe",
-                     "material", "smooth", "transform", "matrix", "instances", "medium", "priority",
-                     "holdout", "shadow_catcher", "matte", "camera_visible"},
+    table.allowOnly({"name",     "file",      "level_set",      "sphere",    "box",
+                     "disk",     "plane",     "lathe",          "facets",    "material",
+                     "smooth",   "transform", "matrix",         "instances", "medium",
+                     "priority", "holdout",   "shadow_catcher", "matte",     "camera_visible"},
                     "[[surface]]");
     SurfaceDescription surface;
     if (const auto v = table.find("name")) surface.name = v->text();

@@ -69,6 +69,15 @@ void write(SceneWriter& out, const LatheShape& shape) {
                                   shape.segments));
 }
 
+void write(SceneWriter& out, const FacetShape& shape) {
+    std::string all = "[";
+    for (const FacetRing& r : shape.rings)
+        all +=
+            fmt::format("\n    {{ angle = {}, count = {}, distance = {}, turn = {} }},",
+                        tomlNumber(r.angle), r.count, tomlNumber(r.distance), tomlNumber(r.turn));
+    out.line("facets", all + "\n]");
+}
+
 void write(SceneWriter& out, const InteriorDescription& interior) {
     std::string value = fmt::format("{{ sigma_a = {}, sigma_s = {}", tomlColour(interior.sigmaA),
                                     tomlColour(interior.sigmaS));
