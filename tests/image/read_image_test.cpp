@@ -71,5 +71,11 @@ TEST_F(ReadImage, NamesTheFileThatCannotBeRead) {
     EXPECT_NE(refusalOf(dir_ / "cut.exr").find("cut.exr"), std::string::npos);
 }
 
+TEST_F(ReadImage, RefusesSizesBeyondTheMemory) {
+    test::writeText(dir_ / "vast.ppm", "P6 2000000 2000000 255\n");
+    const std::string message = refusalOf(dir_ / "vast.ppm");
+    EXPECT_NE(message.find("2000000 x 2000000 with 3 channels need"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace woodcock

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/memory.h"
 
 namespace woodcock {
 
@@ -57,9 +58,16 @@ Image readImage(const std::filesystem::path& file) {
     const OIIO::ImageSpec& spec = input->spec();
     const auto channels = static_cast<std::size_t>(spec.nchannels);
     const auto pixels = static_cast<std::size_t>(spec.image_pixels());
-    std::vector<float> all(pixels * channels);
-    if (all.empty() || spec.deep || spec.depth > 1)
+    if (pixels * channels == 0 || spec.deep || spec.depth > 1)
         throw inputError("cannot read image '{}': it has no flat pixels", file.string());
+    const double bytes =
+        static_cast<double>(pixels) * static_cast<double>(channels + 3) * sizeof(float);
+    if (const auto limit = static_cast<double>(memoryLimit()); bytes > limit)
+        throw inputError(
+            "cannot read image '{}': {} x {} with {} channels need {} of memory, and "
+            "there is {}",
+            file.string(), spec.width, spec.height, channels, formatGiB(bytes), formatGiB(limit));
+    std::vector<float> all(pixels * channels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data()))
         throw inputError("cannot read image '{}': {}", file.string(), input->geterror());
 
