@@ -3,6 +3,7 @@
 # little that a picture would not show them.
 tracer=lib/woodcock/render/path_tracer.cpp
 tracking=lib/woodcock/medium/tracking.cpp
+bsdf=lib/woodcock/surface/bsdf.cpp
 
 # ---- grid
 
@@ -139,3 +140,41 @@ defect "picture off by half a pixel" 'Camera.*:Session.*:Transmittance.OfThinRay
 defect "a pixel's first sample is not summed" 'Film.*' "" \
     lib/woodcock/image/film.cpp \
     'p.radiance[i] += v;' 'p.radiance[i] += p.samples > 0 ? v : 0;'
+
+# ---- surface
+
+defect "refraction leaves radiance as it is" 'Bsdf*' "" \
+    $bsdf \
+    'drawn.transmitted ? static_cast<float>(1 / (view.eta * view.eta)) : 1.0f' '1.0f'
+
+defect "facets seen through glass without their index" 'Bsdf*' "" \
+    $bsdf \
+    'cosine * eta * eta * beyond' 'cosine * eta * beyond'
+
+defect "the lobe's number used again as it is" 'Bsdf*' "" \
+    $bsdf \
+    'u = std::clamp((place - before) / chosen->weight, 0.0, 1 - 0x1p-53);' ''
+
+defect "one lobe's leak taken for the other's light" 'Bsdf*' "" \
+    $bsdf \
+    'if (!(dot(drawn.direction, view.normal) > 0)) return {};' ''
+
+defect "shading normals never bent" 'Bsdf*' "" \
+    $bsdf \
+    'if (above >= least) return shading;' 'if (above >= -2) return shading;'
+
+defect "grazing rays below the horizon" 'Bsdf*' "" \
+    $bsdf \
+    'view.local.z = std::max(view.local.z, 1e-300);' ''
+
+defect "facets hidden from one side alone" 'Bsdf*:Ggx*' "" \
+    lib/woodcock/surface/microfacet.h \
+    'z * (out.z + o) / (z * o + out.z * slope(in))' '1 + 0 * (z + o + slope(in))'
+
+defect "metals in glass as in air" 'Bsdf*' "" \
+    $bsdf \
+    'double{lobe.k[c]} / ior' 'double{lobe.k[c]}'
+
+defect "texels at their corners" 'TextureImage*' "" \
+    lib/woodcock/surface/texture.cpp \
+    'place * size - 0.5' 'place * size'
