@@ -150,6 +150,7 @@ struct NearestTriangle : MeshQuery {
     bool found = false;
     std::uint32_t primitive = 0;
     std::array<double, 3> weights{};
+    double side = 0;  ///< direction . normal of what was found
 };
 
 struct Crossings : MeshQuery {
@@ -168,12 +169,13 @@ bool acceptNearest(MeshQuery& base, std::uint32_t primitive) {
     // Beside the edge that the ray starts at, and where it passes one, only the side can tell a hit
     // from what rounding makes of none: who starts inside can only leave, and the other way round.
     const bool doubtful = point->edge < 0 || t * query.speed < 4 * point->tolerance;
-    if (query.starts && doubtful && dot(query.ray.direction, triangle.normal) * query.leftSide > 0)
-        return false;
+    const double side = dot(query.ray.direction, triangle.normal);
+    if (query.starts && doubtful && side * query.leftSide > 0) return false;
     query.tMax = t;
     query.found = true;
     query.primitive = primitive;
     query.weights = point->weights;
+    query.side = side;
     return true;
 }
 
@@ -453,10 +455,19 @@ void Geometry::Impl::nearestOfMesh(NearestQuery& query, std::uint32_t i,
         inner.left = query.left->primitive;
         inner.leftSide = dot(ray.direction, shape.triangle(inner.left).normal);
     }
-    RTCRayHit embree = embreeRay(inner.ray.origin, ray.direction * (1 / inner.speed),
-                                 (part.to - part.from) * inner.speed);
-    initContext(inner.embree);
-    traverse(shape.scene.get(), inner.embree, embree);
+    const Vec3d direction = ray.direction * (1 / inner.speed);
+    const auto search = [&](Vec3d origin) {
+        RTCRayHit embree = embreeRay(origin, direction, (part.to - part.from) * inner.speed);
+        initContext(inner.embree);
+        traverse(shape.scene.get(), inner.embree, embree);
+    };
+    search(inner.ray.origin);
+    // Who leaves almost along the surface, beside an edge, may be on its other side for floats.
+    // Then nothing is met of a mesh that is closed, or what is met is met from the wrong side.
+    if (inner.starts && (inner.found ? inner.side * inner.leftSide > 0 : inner.leftSide < 0)) {
+        const Vec3d normal = normalize(shape.triangle(inner.left).normal);
+        search(inner.ray.origin + normal * std::copysign(4 * floatError, inner.leftSide));
+    }
     if (!inner.found) return;
     query.tMax = inner.tMax;
     query.found = true;
