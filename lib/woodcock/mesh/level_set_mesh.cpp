@@ -8,6 +8,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_transform.h"
 #include "woodcock/grid/vdb_file.h"
 #include "woodcock/grid/vdb_grids_read.h"
 #include "woodcock/mesh/surface_mesh.h"
@@ -54,14 +55,15 @@ SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& plac
     SurfaceMesh surface;
     TriangleMesh mesh;
     for (const openvdb::Vec3s& p : points) mesh.points.push_back({p[0], p[1], p[2]});
-    // OpenVDB's polygons are clockwise from outside.
-    for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[2], t[1]});
+    for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[1], t[2]});
     for (const openvdb::Vec4I& q : quads) {
-        mesh.triangles.push_back({q[0], q[2], q[1]});
-        mesh.triangles.push_back({q[0], q[3], q[2]});
+        mesh.triangles.push_back({q[0], q[1], q[2]});
+        mesh.triangles.push_back({q[0], q[2], q[3]});
     }
     surface.mesh = weld(mesh);
     if (surface.mesh.triangles.empty()) throw inputError("{} has no surface", place);
+    // OpenVDB's polygons are clockwise from outside, in the grid's own space.
+    if (affineOf(*grid.transform().baseMap()).determinant() > 0) flip(surface);
     return surface;
 }
 
