@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/surface/geometry_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace woodcock {
+
+Frame::Frame(const Box3d& box) {
+    if (box.empty()) return;
+    centre = box.lower * 0.5 + box.upper * 0.5;
+    const Vec3d size = box.size();
+    const double largest = std::max({size.x, size.y, size.z});
+    if (largest > 0) scale = std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000));
+}
+
+FramedMesh::FramedMesh(const SurfaceMesh& mesh, const EmbreeDevice& device) : mesh_(&mesh) {
+    const Box3d box = boundsOf(mesh.mesh);
+    frame_ = Frame(box);
+    box_ = {frame_.point(box.lower), frame_.point(box.upper)};
+    tree_ = EmbreeTree(
+        device, mesh.mesh.points.size(),
+        [&](std::size_t i) { return frame_.point(mesh.mesh.points[i].as<double>()); },
+        mesh.mesh.triangles);
+}
+
+Triangle FramedMesh::triangle(std::uint32_t index) const {
+    const auto& corners = mesh_->mesh.triangles[index];
+    const auto corner = [&](std::size_t i) {
+        return frame_.point(mesh_->mesh.points[corners[i]].as<double>());
+    };
+    return Triangle({corner(0), corner(1), corner(2)});
+}
+
+namespace {
+
+/// What a ray starts on: its side tells which triangles it can meet.
+struct Start {
+    std::uint32_t triangle;
+    double side;  ///< direction . normal
+};
+
+struct NearestTriangle final : TriangleVisitor {
+    const FramedMesh& mesh;
+    LocalRay ray;  ///< from its point at `from` on
+    double from = 0;
+    double speed;
+    std::optional<Start> start;
+    MeshPoint nearest;  ///< t: so far
+    bool found = false;
+    double side = 0;  ///< direction . normal, of what was found
+
+    NearestTriangle(const FramedMesh& m, const LocalRay& r, double begin, double tMax)
+        : mesh(m), ray{r.at(begin), r.direction}, from(begin), speed(length(r.direction)) {
+        nearest.t = tMax;
+    }
+
+    bool accept(std::uint32_t index) override {
+        if (start && index == start->triangle) return false;
+        const Triangle triangle = mesh.triangle(index);
+        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle);
+        if (!point) return false;
+        const double t = from + point->t;
+        if (!(t > 0) || !(t < nearest.t)) return false;
+        // Beside the edge that the ray starts at, and where it passes one, only the side can tell a
+        // hit from what rounding makes of none: who starts inside can only leave, and the other way
+        // round.
+        const double thisSide = dot(ray.direction, triangle.normal);
+        const bool doubtful = point->edge < 0 || t * speed < 4 * point->tolerance;
+        if (start && doubtful && thisSide * start->side > 0) return false;
+        nearest = {t, index, point->weights};
+        side = thisSide;
+        found = true;
+        return true;
+    }
+
+    /// Nothing is met of a mesh that is closed, or it is met from the wrong side.
+    bool missed() const { return start && (found ? side * start->side > 0 : start->side < 0); }
+};
+
+struct Crossings final : TriangleVisitor {
+    const FramedMesh& mesh;
+    LocalRay ray;
+    int leaving = 0;
+    bool uncertain = false;
+
+    Crossings(const FramedMesh& m, const LocalRay& r) : mesh(m), ray(r) {}
+
+    bool accept(std::uint32_t index) override {
+        const Triangle triangle = mesh.triangle(index);
+        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle);
+        if (!point || !(point->t > 0)) return false;
+        uncertain = uncertain || point->edge < 2 * point->tolerance;
+        leaving += dot(ray.direction, triangle.normal) > 0 ? 1 : -1;
+        return false;
+    }
+};
+
+}  // namespace
+
+std::optional<MeshPoint> FramedMesh::nearest(const LocalRay& ray, double tMax,
+                                             std::optional<std::uint32_t> left) const {
+    const RayInterval part = clip(ray, box_, EmbreeTree::margin, {0, tMax});
+    if (part.empty()) return std::nullopt;
+    NearestTriangle visitor(*this, ray, part.from, tMax);
+    if (!(visitor.speed > 0)) return std::nullopt;
+    TreeRay treeRay{visitor.ray.origin, ray.direction * (1 / visitor.speed),
+                    (part.to - part.from) * visitor.speed};
+    if (left) visitor.start = {*left, dot(ray.direction, triangle(*left).normal)};
+    tree_.traverse(treeRay, visitor);
+    // Who leaves almost along the surface, beside an edge, may be on its other side for floats.
+    if (visitor.missed()) {
+        const Vec3d normal = normalize(triangle(*left).normal);
+        treeRay.origin += normal * std::copysign(4 * floatError, visitor.start->side);
+        tree_.traverse(treeRay, visitor);
+    }
+    return visitor.found ? std::optional(visitor.nearest) : std::nullopt;
+}
+
+bool FramedMesh::encloses(Vec3d point) const {
+    if (!box_.contains(point)) return false;
+    constexpr int ways = 9;  // another one where one passes an edge too closely for floats
+    int inside = 0;
+    for (int k = 0; k < ways; ++k) {
+        const double y = 1 - (2 * k + 1.0) / ways, azimuth = 0.7 + 2.399963229728653 * k;
+        const double r = std::sqrt(1 - y * y);
+        const LocalRay ray{point, {r * std::cos(azimuth), y, r * std::sin(azimuth)}};
+        Crossings crossings(*this, ray);
+        tree_.traverse({point, ray.direction, 2 * length(box_.size())}, crossings);
+        if (!crossings.uncertain) return crossings.leaving > 0;
+        inside += crossings.leaving > 0;
+    }
+    return 2 * inside > ways;
+}
+
+}  // namespace woodcock
