@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/light/light_tree.h"
 
-#include <numeric>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
 
 namespace woodcock {
 
@@ -15,27 +18,41 @@ double cosOfDifference(double cosA, double cosB) {
     return cosA * cosB + std::sqrt(std::max(0.0, (1 - cosA * cosA) * (1 - cosB * cosB)));
 }
 
+struct Emitter {
+    EmitterBounds bounds;
+    std::uint32_t index;
+};
+
 class Builder {
 public:
-    Builder(std::span<const EmitterBounds> emitters, LightTree& tree)
-        : emitters_(emitters), tree_(tree) {}
+    explicit Builder(LightTree& tree) : tree_(tree) {}
 
-    EmitterBounds build(std::span<std::uint32_t> chosen, int depth, std::uint64_t path) {
-        const std::size_t node = tree_.nodes.size();
-        tree_.nodes.emplace_back();
+    EmitterBounds build(std::span<Emitter> chosen, std::size_t node, int depth,
+                        std::uint64_t path) {
+        LightTree::Node& n = tree_.nodes[node];
         EmitterBounds bounds;
         if (chosen.size() == 1) {
-            bounds = emitters_[chosen[0]];
-            tree_.nodes[node].emitter = chosen[0];
-            tree_.paths[chosen[0]] = path;
+            bounds = chosen[0].bounds;
+            n.emitter = chosen[0].index;
+            tree_.paths[n.emitter] = path;
         } else {
             const std::size_t middle = split(chosen, depth);
-            const EmitterBounds first = build(chosen.first(middle), depth + 1, path);
-            tree_.nodes[node].second = static_cast<std::uint32_t>(tree_.nodes.size());
-            bounds = together(
-                first, build(chosen.subspan(middle), depth + 1, path | std::uint64_t{1} << depth));
+            const std::size_t second = node + 2 * middle;  // after the 2 middle - 1 of the first
+            n.second = static_cast<std::uint32_t>(second);
+            EmitterBounds a, b;
+            const auto buildFirst = [&] {
+                a = build(chosen.first(middle), node + 1, depth + 1, path);
+            };
+            const auto buildSecond = [&] {
+                b = build(chosen.subspan(middle), second, depth + 1,
+                          path | std::uint64_t{1} << depth);
+            };
+            if (chosen.size() > 4096)
+                tbb::parallel_invoke(buildFirst, buildSecond);
+            else
+                buildFirst(), buildSecond();
+            bounds = together(a, b);
         }
-        LightTree::Node& n = tree_.nodes[node];
         n.centre = bounds.box.centre(), n.radius = length(bounds.box.size()) / 2;
         n.axis = bounds.axis, n.cosSpread = std::cos(bounds.spread), n.power = bounds.power;
         return bounds;
@@ -46,8 +63,6 @@ private:
     /// From here on halves: with 32 bits of emitters no path is longer than 64.
     static constexpr int freeDepth = 31;
 
-    Vec3d centre(std::uint32_t emitter) const { return emitters_[emitter].box.centre(); }
-
     struct Split {
         double cost = std::numeric_limits<double>::infinity();
         int axis = 0;
@@ -55,9 +70,9 @@ private:
     };
 
     /// Reorders the emitters and returns how many of them are the first child's.
-    std::size_t split(std::span<std::uint32_t> chosen, int depth) const {
+    static std::size_t split(std::span<Emitter> chosen, int depth) {
         Box3d centres;
-        for (const std::uint32_t e : chosen) centres.add(centre(e));
+        for (const Emitter& e : chosen) centres.add(e.bounds.box.centre());
         const Vec3d size = centres.size();
         const double longest = std::max({size.x, size.y, size.z});
         Split best;
@@ -69,40 +84,47 @@ private:
                     if (s.cost < best.cost) best = s;
                 }
         if (best.cost < std::numeric_limits<double>::infinity()) {
-            const auto middle = std::partition(chosen.begin(), chosen.end(), [&](std::uint32_t e) {
+            const auto middle = std::partition(chosen.begin(), chosen.end(), [&](const Emitter& e) {
                 return bucketOf(e, centres, best.axis) <= best.bucket;
             });
             return static_cast<std::size_t>(middle - chosen.begin());
         }
         const int axis = size.x == longest ? 0 : size.y == longest ? 1 : 2;
         const std::size_t half = chosen.size() / 2;
-        std::nth_element(
-            chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(half), chosen.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
+        std::nth_element(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(half),
+                         chosen.end(), [&](const Emitter& a, const Emitter& b) {
+                             return a.bounds.box.centre()[axis] < b.bounds.box.centre()[axis];
+                         });
         return half;
     }
 
-    std::size_t bucketOf(std::uint32_t emitter, const Box3d& centres, int axis) const {
-        const double along = (centre(emitter)[axis] - centres.lower[axis]) / centres.size()[axis];
+    static std::size_t bucketOf(const Emitter& emitter, const Box3d& centres, int axis) {
+        const double along =
+            (emitter.bounds.box.centre()[axis] - centres.lower[axis]) / centres.size()[axis];
         return std::min(static_cast<std::size_t>(along * bucketCount), bucketCount - 1);
     }
 
-    Split bestSplit(std::span<const std::uint32_t> chosen, const Box3d& centres, int axis) const {
+    static Split bestSplit(std::span<const Emitter> chosen, const Box3d& centres, int axis) {
         std::array<EmitterBounds, bucketCount> bucket{};
-        for (const std::uint32_t e : chosen) {
+        for (const Emitter& e : chosen) {
             EmitterBounds& b = bucket[bucketOf(e, centres, axis)];
-            b.box.add(emitters_[e].box);
-            b.axis += emitters_[e].axis;
-            b.power += emitters_[e].power;
+            b.box.add(e.bounds.box);
+            b.axis += e.bounds.axis;
+            b.spread = std::max(b.spread, e.bounds.spread);
+            b.power += e.bounds.power;
         }
         // Around the sum of the axes, which is cheaper than cone by cone
         for (EmitterBounds& b : bucket)
             b.axis = length(b.axis) > 0 ? normalize(b.axis) : Vec3d{1, 0, 0};
-        for (const std::uint32_t e : chosen) {
-            EmitterBounds& b = bucket[bucketOf(e, centres, axis)];
-            const double angle = std::acos(std::clamp(dot(b.axis, emitters_[e].axis), -1.0, 1.0));
-            b.spread = std::min(pi, std::max(b.spread, angle + emitters_[e].spread));
+        std::array<double, bucketCount> leastCosine;
+        leastCosine.fill(1);
+        for (const Emitter& e : chosen) {
+            const std::size_t i = bucketOf(e, centres, axis);
+            leastCosine[i] = std::min(leastCosine[i], dot(bucket[i].axis, e.bounds.axis));
         }
+        for (std::size_t i = 0; i < bucketCount; ++i)
+            bucket[i].spread =
+                std::min(pi, bucket[i].spread + std::acos(std::max(leastCosine[i], -1.0)));
 
         std::array<double, bucketCount> costBelow{};
         EmitterBounds sum = bucket[0];
@@ -122,7 +144,6 @@ private:
         return best;
     }
 
-    std::span<const EmitterBounds> emitters_;
     LightTree& tree_;
 };
 
@@ -175,12 +196,12 @@ double LightTree::Node::importance(Vec3d from) const {
 }
 
 LightTree::LightTree(std::span<const EmitterBounds> emitters) : paths(emitters.size()) {
-    std::vector<std::uint32_t> chosen;
+    std::vector<Emitter> chosen;
     for (std::size_t i = 0; i < emitters.size(); ++i)
-        if (emitters[i].power > 0) chosen.push_back(static_cast<std::uint32_t>(i));
+        if (emitters[i].power > 0) chosen.push_back({emitters[i], static_cast<std::uint32_t>(i)});
     if (chosen.empty()) return;
-    nodes.reserve(2 * chosen.size() - 1);
-    Builder(emitters, *this).build(chosen, 0, 0);
+    nodes.resize(2 * chosen.size() - 1);
+    Builder(*this).build(chosen, 0, 0, 0);
 }
 
 }  // namespace woodcock

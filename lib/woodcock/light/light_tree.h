@@ -25,10 +25,10 @@ EmitterBounds together(const EmitterBounds& a, const EmitterBounds& b);
 struct LightTree {
     struct Node {
         Vec3d centre;
-        double radius;  ///< of the sphere that holds all
+        double radius = 0;  ///< of the sphere that holds all
         Vec3d axis;
-        double cosSpread;  ///< -1: all directions
-        double power;
+        double cosSpread = 1;  ///< -1: all directions
+        double power = 0;
         std::uint32_t second = 0;   ///< the second child, the first is the next node; 0: a leaf
         std::uint32_t emitter = 0;  ///< of a leaf
 
