@@ -213,6 +213,31 @@ TEST(MeshLight, TakesTheEndsOfRandomNumbers) {
     }
 }
 
+TEST(MeshLight, SendsOutWhatVariesOverATriangle) {
+    Triangle both = someTriangle;
+    both.bothSides = true;
+    const MeshLight light({someTriangle, both},
+                          [](std::uint32_t triangle, double b1, double b2, bool front) {
+                              return Rgb(static_cast<float>(b1), static_cast<float>(b2),
+                                         static_cast<float>(10 * triangle + front));
+                          });
+    RandomStream random(7);
+    for (double distance : {1e-9, 0.3, 30.0, 1e5})
+        for (double side : {1.0, -1.0}) {
+            const auto& c = someTriangle.corner;
+            const Vec3d from = (c[1] + c[2]) / 3.0 + Vec3d{-0.13, 0.23, 0.84} * (side * distance);
+            for (int i = 0; i < 200; ++i) {
+                const Sample s = draw(light, from, random);
+                if (!(s.light.pdf > 0)) continue;
+                const Rgb sent = s.light.weight * static_cast<float>(s.light.pdf);
+                const Vec3d expected = c[0] + (c[1] - c[0]) * sent[0] + (c[2] - c[0]) * sent[1];
+                const Vec3d position = from + s.light.direction * s.light.distance;
+                EXPECT_LT(length(expected - position), 1e-6 + 1e-14 * distance);
+                EXPECT_NEAR(sent[2], 10 * s.triangle + (side > 0), 1e-5);
+            }
+        }
+}
+
 TEST(MeshLight, LeavesOutWhatCannotShine) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr float infinity = std::numeric_limits<float>::infinity();

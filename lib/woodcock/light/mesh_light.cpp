@@ -78,7 +78,8 @@ EmitterBounds boundsOf(const MeshLight::Triangle& t) {
 
 }  // namespace
 
-MeshLight::MeshLight(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+MeshLight::MeshLight(std::vector<Triangle> triangles, RadianceAt radianceAt)
+    : triangles_(std::move(triangles)), radianceAt_(std::move(radianceAt)) {
     std::vector<EmitterBounds> bounds;
     bounds.reserve(triangles_.size());
     std::array<double, 3> power{};
@@ -111,6 +112,16 @@ double MeshLight::firstShare(std::uint32_t node, Vec3d from) const {
     return first / (first + second);
 }
 
+Rgb MeshLight::radianceAt(std::uint32_t triangle, Vec3d position, bool front) const {
+    const Triangle& t = triangles_[triangle];
+    if (!radianceAt_) return t.radiance;
+    const Vec3d normal = wideNormal(t), d = position - t.corner[0];
+    const double square = dot(normal, normal);
+    const double b1 = dot(cross(d, t.corner[2] - t.corner[0]), normal) / square;
+    const double b2 = dot(cross(t.corner[1] - t.corner[0], d), normal) / square;
+    return radianceAt_(triangle, b1, b2, front);
+}
+
 LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& triangle) const {
     LightSample s;
     if (tree_.nodes.empty()) return s;
@@ -135,7 +146,8 @@ LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& t
     if (!(distance > 0 && std::isfinite(distance))) return s;
     s.distance = distance;
     s.pdf = picked * density(t, from, solidAngle, distance);
-    s.weight = t.radiance * static_cast<float>(1 / s.pdf);
+    s.weight = radianceAt(triangle, from + s.direction * distance, seen.front()) *
+               static_cast<float>(1 / s.pdf);
     return s;
 }
 

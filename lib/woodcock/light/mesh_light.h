@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,13 @@ public:
         bool bothSides = false;
         bool operator==(const Triangle&) const = default;
     };
+    /// What a triangle sends out where it varies: at corner 0 + b1 (corner 1 - corner 0) +
+    /// b2 (corner 2 - corner 0), from the side that it faces or from the other.
+    using RadianceAt = std::function<Rgb(std::uint32_t triangle, double b1, double b2, bool front)>;
+
     /// Triangles without area or radiance, or with any that is not finite, are never sampled.
-    explicit MeshLight(std::vector<Triangle> triangles);
+    /// Without `radianceAt` each sends out its mean everywhere.
+    explicit MeshLight(std::vector<Triangle> triangles, RadianceAt radianceAt = {});
 
     std::span<const Triangle> triangles() const { return triangles_; }
 
@@ -44,8 +50,10 @@ public:
 private:
     double importance(std::uint32_t node, Vec3d from) const;
     double firstShare(std::uint32_t node, Vec3d from) const;
+    Rgb radianceAt(std::uint32_t triangle, Vec3d position, bool front) const;
 
     std::vector<Triangle> triangles_;
+    RadianceAt radianceAt_;
     LightTree tree_;
     Vec3d centre_;
     double power_ = 0;

@@ -27,22 +27,16 @@ Light buildLight(const SphereDescription& sphere, EnvironmentMap&&) {
     return SphereLight{sphere.position, sphere.radius, sphere.radiance, sphere.visible};
 }
 
-/// Light that surfaces send out is one light.
-template <class L>
-void addEmitters(std::vector<L>& lights, std::vector<MeshLight::Triangle> emitters) {
-    if constexpr (std::is_constructible_v<L, MeshLight>)
-        if (!emitters.empty()) lights.push_back(MeshLight(std::move(emitters)));
-}
-
 LightSet buildLights(const SceneDescription& description, std::vector<EnvironmentMap> maps,
-                     std::vector<MeshLight::Triangle> emitters) {
+                     BuiltSurfaces& surfaces) {
     std::vector<Light> lights;
     maps.resize(description.lights.size());  // lights that were chosen after loading have no image
     for (size_t i = 0; i < maps.size(); ++i)
         lights.push_back(
             std::visit([&](const auto& light) { return buildLight(light, std::move(maps[i])); },
                        description.lights[i].light));
-    addEmitters(lights, std::move(emitters));
+    if (!surfaces.emitters.empty())
+        lights.push_back(MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
     return LightSet(std::move(lights));
 }
 
@@ -68,10 +62,10 @@ Affine3d worldFromCamera(const CameraPose& pose) {
 
 Scene buildScene(const SceneDescription& description, LoadedScene loaded) {
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
-    return {
-        buildMedium(description, loaded, ""),
-        buildLights(description, std::move(loaded.environmentMaps), std::move(surfaces.emitters)),
-        buildCamera(description.camera), std::move(surfaces.set), std::move(surfaces.interiors)};
+    return {buildMedium(description, loaded, ""),
+            buildLights(description, std::move(loaded.environmentMaps), surfaces),
+            buildCamera(description.camera), std::move(surfaces.set),
+            std::move(surfaces.interiors)};
 }
 
 }  // namespace woodcock

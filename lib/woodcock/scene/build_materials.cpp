@@ -37,19 +37,6 @@ Material buildMaterial(const MixDescription& m, const Image& image, const SceneD
                        makeTexture(m.weight, image)};
 }
 
-Emission emissionAt(const std::vector<Material>& materials, std::uint32_t index, double u,
-                    double v) {
-    if (const auto* emissive = std::get_if<EmissiveMaterial>(&materials[index]))
-        return {emissive->radiance.at(u, v), emissive->bothSides};
-    const auto* mix = std::get_if<MixMaterial>(&materials[index]);
-    if (!mix) return {};
-    const float weight = mix->weight.at(u, v).mean();
-    const Emission first = emissionAt(materials, mix->first, u, v),
-                   second = emissionAt(materials, mix->second, u, v);
-    return {first.radiance * (1 - weight) + second.radiance * weight,
-            first.bothSides || second.bothSides};
-}
-
 /// The longer side of the largest image that decides about emission; 0: there is none.
 int finestTexture(const std::vector<Material>& materials, std::uint32_t index) {
     const auto side = [](const Texture& texture) {
@@ -83,7 +70,7 @@ Emission meanOver(const std::vector<Material>& materials, std::uint32_t index,
     const auto add = [&](double b1, double b2) {
         const double b0 = 1 - b1 - b2;
         mean = emissionAt(materials, index, b0 * uv[0].u + b1 * uv[1].u + b2 * uv[2].u,
-                          b0 * uv[0].v + b1 * uv[1].v + b2 * uv[2].v);
+                          b0 * uv[0].v + b1 * uv[1].v + b2 * uv[2].v, true);
         sum += Vec3d{mean.radiance[0], mean.radiance[1], mean.radiance[2]};
     };
     for (int i = 0; i < cuts; ++i)
@@ -112,6 +99,26 @@ std::vector<Material> buildMaterials(const SceneDescription& description,
             description.materials[i].material));
     materials.emplace_back(DiffuseMaterial());
     return materials;
+}
+
+Emission emissionAt(const std::vector<Material>& materials, std::uint32_t index, double u, double v,
+                    bool front) {
+    if (const auto* emissive = std::get_if<EmissiveMaterial>(&materials[index])) {
+        const bool dark = !front && !emissive->bothSides;
+        return {dark ? Rgb(0.0f) : emissive->radiance.at(u, v), emissive->bothSides};
+    }
+    const auto* mix = std::get_if<MixMaterial>(&materials[index]);
+    if (!mix) return {};
+    const float weight = mix->weight.at(u, v).mean();
+    const Emission first = emissionAt(materials, mix->first, u, v, front),
+                   second = emissionAt(materials, mix->second, u, v, front);
+    return {first.radiance * (1 - weight) + second.radiance * weight,
+            first.bothSides || second.bothSides};
+}
+
+bool emissionVaries(const std::vector<Material>& materials, std::uint32_t index) {
+    return std::holds_alternative<MixMaterial>(materials[index]) ||
+           finestTexture(materials, index) > 0;
 }
 
 std::vector<Emission> meanEmission(const std::vector<Material>& materials, std::uint32_t material,

@@ -17,11 +17,18 @@ std::vector<Material> buildMaterials(const SceneDescription& description,
 /// Of that list; the empty name is the default's.
 std::uint32_t materialIndex(const SceneDescription& description, std::string_view name);
 
-/// What a triangle sends out.
+/// What a surface sends out.
 struct Emission {
     Rgb radiance{0.0f};
     bool bothSides = false;
 };
+
+/// At texture coordinates, from the side that it faces or from the other.
+Emission emissionAt(const std::vector<Material>& materials, std::uint32_t material, double u,
+                    double v, bool front);
+
+/// Whether that is not the same everywhere and from both sides.
+bool emissionVaries(const std::vector<Material>& materials, std::uint32_t material);
 
 /// Of each triangle of a mesh of this material, textures averaged over it; empty where all are
 /// dark.

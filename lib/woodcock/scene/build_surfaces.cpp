@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/scene/build_surfaces.h"
 
+#include <algorithm>
 #include <map>
 
 #include "woodcock/base/error.h"
@@ -21,6 +22,14 @@ Shape shapeOf(const SurfaceDescription& surface, const LoadedSurface& loaded) {
     return InfinitePlane();
 }
 
+/// Of one emissive mesh, from its first emitter on.
+struct EmissiveInstance {
+    std::uint32_t firstEmitter;
+    std::shared_ptr<const SurfaceMesh> mesh;
+    std::uint32_t material;
+    bool mirrored;
+};
+
 class Builder {
 public:
     Builder(const SceneDescription& description, const LoadedScene& loaded)
@@ -33,6 +42,7 @@ public:
         built_.set = std::make_shared<SurfaceSet>(
             SurfaceSet{Geometry(std::move(shapes_), std::move(instances_)), std::move(objects_),
                        std::move(materials_), std::move(firstEmitter_)});
+        if (emissionVaries_) built_.radianceAt = radianceAt();
         return std::move(built_);
     }
 
@@ -66,9 +76,9 @@ private:
             const Affine3d worldFromShape =
                 surface.worldFromObject * instance * loaded.objectFromMesh;
             instances_.push_back({shape, object, worldFromShape});
-            firstEmitter_.push_back(emission.empty()
-                                        ? SurfaceObject::dark
-                                        : addEmitters(*loaded.mesh, emission, worldFromShape));
+            firstEmitter_.push_back(
+                emission.empty() ? SurfaceObject::dark
+                                 : addEmitters(loaded.mesh, emission, worldFromShape, material));
         }
     }
 
@@ -82,8 +92,9 @@ private:
         return known->second;
     }
 
-    std::uint32_t addEmitters(const SurfaceMesh& mesh, const std::vector<Emission>& emission,
-                              const Affine3d& worldFromMesh) {
+    std::uint32_t addEmitters(const std::shared_ptr<const SurfaceMesh>& mesh,
+                              const std::vector<Emission>& emission, const Affine3d& worldFromMesh,
+                              std::uint32_t material) {
         const size_t first = built_.emitters.size();
         if (emission.size() > mostEmitters - first)
             throw inputError(
@@ -93,16 +104,37 @@ private:
         // A mirror image runs around its corners the other way, and faces outwards all the same.
         const bool mirrored = worldFromMesh.determinant() < 0;
         for (size_t i = 0; i < emission.size(); ++i) {
-            const auto& t = mesh.mesh.triangles[i];
+            const auto& t = mesh->mesh.triangles[i];
             const auto corner = [&](size_t k) {
-                return worldFromMesh.point(mesh.mesh.points[t[k]].as<double>());
+                return worldFromMesh.point(mesh->mesh.points[t[k]].as<double>());
             };
             built_.emitters.push_back(
                 {{corner(0), corner(mirrored ? 2 : 1), corner(mirrored ? 1 : 2)},
                  emission[i].radiance,
                  emission[i].bothSides});
         }
+        emissionVaries_ |= emissionVaries(materials_, material);
+        emissive_.push_back({static_cast<std::uint32_t>(first), mesh, material, mirrored});
         return static_cast<std::uint32_t>(first);
+    }
+
+    MeshLight::RadianceAt radianceAt() {
+        return [set = built_.set, instances = std::move(emissive_)](
+                   std::uint32_t emitter, double b1, double b2, bool front) {
+            const auto after = std::upper_bound(
+                instances.begin(), instances.end(), emitter,
+                [](std::uint32_t e, const EmissiveInstance& i) { return e < i.firstEmitter; });
+            const EmissiveInstance& instance = *std::prev(after);
+            if (instance.mirrored) std::swap(b1, b2);
+            const auto& uvs = instance.mesh->uvs;
+            const auto uv =
+                uvs.empty() ? std::array<Vec2f, 3>{} : uvs[emitter - instance.firstEmitter];
+            const double b0 = 1 - b1 - b2;
+            return emissionAt(set->materials, instance.material,
+                              b0 * uv[0].u + b1 * uv[1].u + b2 * uv[2].u,
+                              b0 * uv[0].v + b1 * uv[1].v + b2 * uv[2].v, front)
+                .radiance;
+        };
     }
 
     /// What SurfaceObject::medium says of it.
@@ -138,6 +170,8 @@ private:
     std::vector<ShapeInstance> instances_;
     std::vector<SurfaceObject> objects_;
     std::vector<std::uint32_t> firstEmitter_;
+    std::vector<EmissiveInstance> emissive_;
+    bool emissionVaries_ = false;
     std::uint32_t vacuum_ = 0;  ///< the interior that holds nothing; 0: not yet needed
     BuiltSurfaces built_;
 };

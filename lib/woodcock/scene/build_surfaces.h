@@ -15,6 +15,7 @@ struct BuiltSurfaces {
     std::shared_ptr<const SurfaceSet> set;  ///< null: none
     std::vector<Medium> interiors;          ///< as of Scene
     std::vector<MeshLight::Triangle> emitters;
+    MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
 };
 
 /// The surfaces of a scene, what they hold, and the triangles that emit light: those of all
