@@ -278,7 +278,9 @@ void Geometry::Impl::complete(const Nearest& nearest, const LocalRay& worldRay,
     } else {
         p.y = 0;
         hit.normal = worldNormal(i, {0, 1, 0});
-        hit.u = p.x, hit.v = p.z;
+        const bool disk = kind == Prepared::Kind::Disk;  // an image fits the square around it
+        hit.u = disk ? (1 + p.x) / 2 : p.x;
+        hit.v = disk ? (1 - p.z) / 2 : -p.z;
     }
     hit.shadingNormal = hit.normal;
     hit.position = world(i, p);

@@ -31,7 +31,9 @@ struct SurfaceHit {
     Vec3d position;       ///< the point on the surface
     Vec3d normal;         ///< the surface's own, outwards
     Vec3d shadingNormal;  ///< interpolated, on the same side; the same where there is none
-    double u = 0, v = 0;  ///< texture coordinates; sphere: longitude, latitude from below
+    /// Texture coordinates. Sphere: longitude, latitude from below; plane: x, -z; disk: the square
+    /// around it.
+    double u = 0, v = 0;
     std::uint32_t object = 0, instance = 0, primitive = 0;
 };
 
