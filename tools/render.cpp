@@ -22,6 +22,7 @@
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/load.h"
 #include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_files.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::tool {
@@ -112,12 +113,9 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 /// Nothing that is read may be written over, and nothing that is written may be written twice.
-void checkFiles(const SceneDescription& scene, const RenderOptions& options) {
+void checkFiles(SceneDescription scene, const RenderOptions& options) {
     std::vector<std::filesystem::path> read = options.inputs, written;
-    for (const VolumeDescription& volume : scene.volumes) read.push_back(volume.file);
-    for (const LightDescription& light : scene.lights)
-        if (const auto* environment = std::get_if<EnvironmentDescription>(&light.light))
-            read.push_back(environment->image);
+    for (const std::filesystem::path* file : sceneFiles(scene)) read.push_back(*file);
     read.push_back(scene.ocio);
     if (options.rendersImages()) written = scene.output.files;
     for (const std::filesystem::path& file : {options.stats, options.writeScene})
