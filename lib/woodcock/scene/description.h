@@ -110,7 +110,9 @@ struct LightDescription {
 struct TextureDescription {
     Rgb colour{1.0f};
     std::filesystem::path image = {};
-    std::string colourSpace = {};  ///< of OpenColorIO; empty: sRGB for 8 and 16 bit, else linear
+    /// Of OpenColorIO; empty: an ordinary picture where it holds integers, scene-linear where it
+    /// holds floats; a weight's numbers are always taken as they are.
+    std::string colourSpace = {};
     bool operator==(const TextureDescription&) const = default;
 };
 struct DiffuseDescription {

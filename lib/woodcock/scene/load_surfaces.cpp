@@ -16,14 +16,18 @@ using Mesh = std::shared_ptr<const SurfaceMesh>;
 constexpr double defaultSmooth = 60;  // degrees, where a shape brings no normals of its own
 constexpr int emitterRings = 48, emitterSectors = 256;
 
-SurfaceMesh readShape(const MeshShape& shape, std::optional<double> smooth) {
-    if (shape.file.extension() != ".vdb") {
-        SurfaceMesh mesh = readSurfaceMesh(shape.file);
-        if (smooth) smoothNormals(mesh, *smooth);
-        return mesh;
-    }
-    SurfaceMesh mesh = levelSetMesh(shape.file, shape.levelSet, 0);
-    smoothNormals(mesh, smooth.value_or(defaultSmooth));
+void smooth(SurfaceMesh& mesh, double angle) {
+    if (angle > 0)
+        smoothNormals(mesh, angle);
+    else
+        mesh.normals.clear();
+}
+
+SurfaceMesh readShape(const MeshShape& shape, std::optional<double> angle) {
+    const bool levelSet = shape.file.extension() == ".vdb";
+    SurfaceMesh mesh =
+        levelSet ? levelSetMesh(shape.file, shape.levelSet, 0) : readSurfaceMesh(shape.file);
+    if (angle || levelSet) smooth(mesh, angle.value_or(defaultSmooth));
     return mesh;
 }
 
@@ -67,6 +71,10 @@ private:
         Mesh& mesh = files_[key];
         if (!mesh) {
             SurfaceMesh read = readShape(shape, surface.smooth);
+            if (read.droppedTriangles > 0)
+                notes_.push_back(fmt::format("{} holds {} triangle{} of no area: left out",
+                                             shape.file.string(), read.droppedTriangles,
+                                             read.droppedTriangles == 1 ? "" : "s"));
             if (nature.encloses) close(read, shape.file.string());
             mesh = std::make_shared<SurfaceMesh>(std::move(read));
         }
@@ -74,8 +82,9 @@ private:
     }
     LoadedSurface shaped(const LatheShape& shape, const SurfaceDescription& surface,
                          const SurfaceNature& nature) {
-        SurfaceMesh mesh =
-            latheMesh(shape.profile, shape.segments, surface.smooth.value_or(defaultSmooth));
+        const double angle = surface.smooth.value_or(defaultSmooth);
+        SurfaceMesh mesh = latheMesh(shape.profile, shape.segments, angle);
+        if (angle == 0) mesh.normals.clear();
         if (nature.encloses) close(mesh, "the lathe");
         return {std::make_shared<SurfaceMesh>(std::move(mesh)), {}, {}};
     }

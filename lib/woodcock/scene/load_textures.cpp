@@ -3,8 +3,9 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 
-#include "woodcock/image/read_image.h"
+#include "woodcock/image/read_texture.h"
 
 namespace woodcock {
 namespace {
@@ -12,23 +13,44 @@ namespace {
 /// What a colour space conversion of white may give.
 constexpr float almostOne = 1 + 1e-4f;
 
-std::shared_ptr<const TextureImage> readTextureImage(const TextureDescription& texture,
-                                                     const std::filesystem::path&) {
-    Image image = readImage(texture.image);
-    return std::make_shared<TextureImage>(image.width, image.height, std::move(image.rgb));
-}
+/// Reads images, each once.
+class Reader {
+public:
+    explicit Reader(const SceneDescription& scene) : scene_(scene) {}
+
+    std::shared_ptr<const TextureImage> read(const std::filesystem::path& file,
+                                             const std::string& colourSpace,
+                                             const std::string& place) {
+        auto& image = known_[{file, colourSpace}];
+        if (image) return image;
+        if (!config_)
+            inPlace(findPlace(scene_.places, "ocio"), [&] { config_.emplace(scene_.ocio); });
+        inPlace(place, [&] {
+            Image read = readTexture(file, colourSpace, *config_);
+            image = std::make_shared<TextureImage>(read.width, read.height, std::move(read.rgb));
+        });
+        return image;
+    }
+
+private:
+    const SceneDescription& scene_;
+    std::optional<ColorConfig> config_;
+    std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const TextureImage>>
+        known_;
+};
 
 struct NamedTexture {
     const TextureDescription* texture = nullptr;
     const char* key = "";
-    bool reflects = true;  ///< and so must not exceed 1
+    bool limited = true;  ///< to 1: it shares light out, and makes none
+    bool isData = false;
 };
 NamedTexture textureOf(const DiffuseDescription& m) { return {&m.colour, "colour"}; }
 NamedTexture textureOf(const ConductorDescription& m) { return {&m.colour, "colour"}; }
 NamedTexture textureOf(const DielectricDescription&) { return {}; }
 NamedTexture textureOf(const InterfaceDescription&) { return {}; }
 NamedTexture textureOf(const EmissiveDescription& m) { return {&m.radiance, "radiance", false}; }
-NamedTexture textureOf(const MixDescription& m) { return {&m.weight, "weight"}; }
+NamedTexture textureOf(const MixDescription& m) { return {&m.weight, "weight", true, true}; }
 
 }  // namespace
 
@@ -42,8 +64,7 @@ Texture makeTexture(const TextureDescription& description,
 
 std::vector<std::shared_ptr<const TextureImage>> loadTextures(const SceneDescription& scene) {
     std::vector<std::shared_ptr<const TextureImage>> textures;
-    std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const TextureImage>>
-        known;
+    Reader reader(scene);
     for (size_t i = 0; i < scene.materials.size(); ++i) {
         const NamedTexture named =
             std::visit([](const auto& m) { return textureOf(m); }, scene.materials[i].material);
@@ -53,18 +74,18 @@ std::vector<std::shared_ptr<const TextureImage>> loadTextures(const SceneDescrip
         const auto placeOf = [&](const char* key) {
             return findPlace(scene.places, fmt::format("{}.{}", value, key));
         };
-        auto& image = known[{named.texture->image, named.texture->colourSpace}];
-        inPlace(placeOf("image"), [&] {
-            if (!image) image = readTextureImage(*named.texture, scene.ocio);
-        });
+        // Weights are no colours: a mask of bytes means what it says.
+        const bool data = named.isData && named.texture->colourSpace.empty();
+        const auto image = reader.read(
+            named.texture->image, data ? "data" : named.texture->colourSpace, placeOf("image"));
         textures.back() = image;
         const Rgb largest = named.texture->colour * image->maximum();
-        if (!named.reflects || largest.maximum() <= almostOne) continue;
+        if (!named.limited || largest.maximum() <= almostOne) continue;
         inPlace(placeOf(named.texture->colour == Rgb(1) ? "image" : "times"), [&] {
             throw inputError(
                 "{} reaches {:.4g} with {}, but a {} is at most 1; give times = {:.3g} or less",
                 value, largest.maximum(), named.texture->image.string(), named.key,
-                std::floor(999 / image->maximum().maximum()) / 1000);
+                std::floor(1000 / image->maximum().maximum()) / 1000);
         });
     }
     return textures;
