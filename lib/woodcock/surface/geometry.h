@@ -27,8 +27,10 @@ struct ShapeInstance {
 
 /// Where a ray meets a surface. All vectors are of unit length and in world space.
 struct SurfaceHit {
-    double t = 0;         ///< along the ray
-    Vec3d position;       ///< the point on the surface
+    double t = 0;  ///< along the ray
+    /// The point on the surface; of triangles a little within their edges, by what floats cannot
+    /// tell (5e-7 of the mesh's size), so that paths go on from a place that is surely theirs.
+    Vec3d position;
     Vec3d normal;         ///< the surface's own, outwards
     Vec3d shadingNormal;  ///< interpolated, on the same side; the same where there is none
     /// Texture coordinates. Sphere: longitude, latitude from below; plane: x, -z; disk: the square
@@ -37,8 +39,8 @@ struct SurfaceHit {
     std::uint32_t object = 0, instance = 0, primitive = 0;
 };
 
-/// All surfaces of a scene. Rays are found by Embree in floats, relative to the middle of the
-/// scene, and then worked out in doubles on what was found. Immutable; shared by threads.
+/// All surfaces of a scene. What a ray may meet is found by Embree in floats, in each shape's own
+/// frame, and then decided on and worked out in doubles. Immutable; shared by threads.
 class Geometry {
 public:
     /// Throws Error{Input} on transforms that are not finite or flatten their shape, naming the
@@ -52,7 +54,8 @@ public:
     const std::vector<ShapeInstance>& instances() const;
 
     /// The nearest hit with 0 < t < tMax. `left`: the hit at whose position the ray starts, null in
-    /// free space; a ray does not meet again the place that it leaves.
+    /// free space; a ray does not meet again the place that it leaves. No closed mesh has cracks,
+    /// but a ray that is aimed at one of its corners to the last bit of a float may pass there.
     bool intersect(Vec3d origin, Vec3d direction, double tMax, const SurfaceHit* left,
                    SurfaceHit& hit) const;
 

@@ -45,6 +45,7 @@ struct NearestTriangle final : TriangleVisitor {
     LocalRay ray;  ///< from its point at `from` on
     double from = 0;
     double speed;
+    double error = floatError;  ///< of the search
     std::optional<Start> start;
     MeshPoint nearest;  ///< t: so far
     bool found = false;
@@ -58,7 +59,7 @@ struct NearestTriangle final : TriangleVisitor {
     bool accept(std::uint32_t index) override {
         if (start && index == start->triangle) return false;
         const Triangle triangle = mesh.triangle(index);
-        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle);
+        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle, error);
         if (!point) return false;
         const double t = from + point->t;
         if (!(t > 0) || !(t < nearest.t)) return false;
@@ -88,7 +89,7 @@ struct Crossings final : TriangleVisitor {
 
     bool accept(std::uint32_t index) override {
         const Triangle triangle = mesh.triangle(index);
-        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle);
+        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle, floatError);
         if (!point || !(point->t > 0)) return false;
         uncertain = uncertain || point->edge < 2 * point->tolerance;
         leaving += dot(ray.direction, triangle.normal) > 0 ? 1 : -1;
@@ -110,8 +111,10 @@ std::optional<MeshPoint> FramedMesh::nearest(const LocalRay& ray, double tMax,
     tree_.traverse(treeRay, visitor);
     // Who leaves almost along the surface, beside an edge, may be on its other side for floats.
     if (visitor.missed()) {
+        constexpr double aside = 4 * floatError;
         const Vec3d normal = normalize(triangle(*left).normal);
-        treeRay.origin += normal * std::copysign(4 * floatError, visitor.start->side);
+        treeRay.origin += normal * std::copysign(aside, visitor.start->side);
+        visitor.error = floatError + aside;
         tree_.traverse(treeRay, visitor);
     }
     return visitor.found ? std::optional(visitor.nearest) : std::nullopt;

@@ -55,7 +55,8 @@ std::optional<double> meetPlane(const LocalRay& ray, double tMax) {
     return t > 0 && t < tMax ? std::optional(t) : std::nullopt;
 }
 
-std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle) {
+std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
+                                          double error) {
     const double slope = dot(ray.direction, triangle.normal);
     const double twiceArea = length(triangle.normal);
     if (slope == 0 || !(twiceArea > 0)) return std::nullopt;
@@ -70,7 +71,7 @@ std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& t
     w[0] = 1 - w[1] - w[2];
 
     const double cosine = std::abs(slope) / (length(ray.direction) * twiceArea);
-    point.tolerance = floatError / cosine;
+    point.tolerance = error / cosine;
     const std::array<double, 3> height = heights(triangle);
     point.edge = std::min({w[0] * height[0], w[1] * height[1], w[2] * height[2]});
     if (!(point.edge >= -point.tolerance)) return std::nullopt;

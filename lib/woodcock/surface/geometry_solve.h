@@ -48,10 +48,11 @@ struct TrianglePoint {
     double edge = 0;       ///< distance of the ray from the nearest edge; negative: outside
     double tolerance = 0;  ///< what an error beside the ray makes along the triangle
 };
-/// Where a ray meets a triangle that was found in floats. A ray that passes it by no more than
-/// these could tell meets it at its edge, so that there are no cracks. Nothing where it surely
-/// passes, or is parallel.
-std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle);
+/// Where a ray meets a triangle that was found in floats. A ray that passes it by no more than what
+/// the search was in error by meets it at its edge, so that there are no cracks. Nothing where it
+/// surely passes, or is parallel.
+std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
+                                          double error);
 
 /// Weights moved inwards so far that their point has `margin` from all edges, or is the middle.
 std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
