@@ -16,6 +16,8 @@ const char* nameOf(Kind kind) {
             return "closed form";
         case Kind::Slab:
             return "slab";
+        case Kind::Surface:
+            return "surface";
         case Kind::Property:
             return "property";
         case Kind::Sampling:
@@ -71,8 +73,8 @@ std::uint64_t Lab::seed(const std::string& name) const {
 const std::vector<Check>& checks() {
     static const std::vector<Check> all = [] {
         std::vector<Check> list;
-        for (const auto& subject : {closedForms(), singleScattering(), slabs(), properties(),
-                                    sampling(), lightSampling(), extremes()})
+        for (const auto& subject : {closedForms(), singleScattering(), slabs(), surfaces(),
+                                    properties(), sampling(), lightSampling(), extremes()})
             list.insert(list.end(), subject.begin(), subject.end());
         return list;
     }();

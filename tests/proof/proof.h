@@ -14,9 +14,9 @@
 /// machine and build (`woodcock verify`).
 namespace woodcock::proof {
 
-enum class Kind { ClosedForm, Slab, Property, Sampling, Extreme };
-inline constexpr Kind kinds[]{Kind::ClosedForm, Kind::Slab, Kind::Property, Kind::Sampling,
-                              Kind::Extreme};
+enum class Kind { ClosedForm, Slab, Surface, Property, Sampling, Extreme };
+inline constexpr Kind kinds[]{Kind::ClosedForm, Kind::Slab,     Kind::Surface,
+                              Kind::Property,   Kind::Sampling, Kind::Extreme};
 const char* nameOf(Kind kind);
 
 /// Imprecise: agrees, but with an error so large that agreement means little.

@@ -11,6 +11,7 @@ namespace woodcock::proof {
 std::vector<Check> closedForms();
 std::vector<Check> singleScattering();
 std::vector<Check> slabs();
+std::vector<Check> surfaces();
 std::vector<Check> properties();
 std::vector<Check> sampling();
 std::vector<Check> lightSampling();

@@ -21,7 +21,7 @@ struct DepthSample {
     Rgb transmittance;
     float weightedDepth = 0;  ///< sum over absorbed-or-scattered weight x distance, world units
     float weight = 0;
-    Vec3f weightedNormal;  ///< world space, towards the camera; only where it meets a surface
+    Vec3f weightedNormal = {};  ///< world space, towards the camera; only where it meets a surface
 };
 
 /// Light on a shadow catcher that one camera path met: with what is in the scene, and without.
