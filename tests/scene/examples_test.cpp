@@ -47,8 +47,14 @@ TEST(ExampleScenes, RenderWhereTheyNeedNoFile) {
         const RenderResult result = render(buildScene(description, std::move(loaded)), settings);
         EXPECT_EQ(result.film.nonFiniteCount(), 0u);
         EXPECT_GT(result.film.alpha(16, 13), 0.2f) << file;
-        EXPECT_LT(result.film.alpha(0, 0), 0.05f) << file;
-        EXPECT_GT(result.film.radiance(16, 13).mean(), 0.01f) << file;
+        // A ground reaches into the corner.
+        if (description.surfaces.empty()) {
+            EXPECT_LT(result.film.alpha(0, 0), 0.05f) << file;
+        }
+        double light = 0;
+        for (int y = 0; y < 27; ++y)
+            for (int x = 0; x < 32; ++x) light += result.film.radiance(x, y).mean();
+        EXPECT_GT(light / (32 * 27), 0.01) << file;
         ++rendered;
     }
     EXPECT_GE(rendered, 1);

@@ -103,7 +103,7 @@ TEST(SurfaceErrors, OfShapes) {
     EXPECT_EQ(
         surfaceMistake("name = \"a\""),
         "scene.toml:7:1: surface[0] has no shape; give one of file, sphere, box, disk, plane, "
-        "lathe, such as file = \"mesh.obj\" or sphere = { centre = [0, 0, 0], radius = 1 }");
+        "lathe, facets, such as file = \"mesh.obj\" or sphere = { centre = [0, 0, 0], radius = 1 }");
     EXPECT_EQ(surfaceMistake("file = \"a.obj\"\ndisk = {}"),
               "scene.toml:9:8: surface[0].disk stands beside file; give one of them: a surface has "
               "one shape, and others are surfaces too");

@@ -136,13 +136,14 @@ TEST(Geometry, CoordinatesOfPrimitives) {
     EXPECT_EQ(hit.v, 1);
     ASSERT_TRUE(geometry.intersect({10.5, 1, -0.25}, {0, -1, 0}, infinity, nullptr, hit));
     EXPECT_EQ(hit.object, 1u);
-    EXPECT_EQ(hit.u, 0.5);
-    EXPECT_EQ(hit.v, -0.25);
+    // Of the square around the disk.
+    EXPECT_EQ(hit.u, 0.75);
+    EXPECT_EQ(hit.v, 0.625);
     EXPECT_EQ(hit.normal, (Vec3d{0, 1, 0}));
     ASSERT_TRUE(geometry.intersect({11.5, 1, 3e5}, {0, -1, 0}, infinity, nullptr, hit));
     EXPECT_EQ(hit.object, 2u);
     EXPECT_EQ(hit.t, 8);
-    EXPECT_EQ(hit.v, 3e5);
+    EXPECT_EQ(hit.v, -3e5);
     EXPECT_FALSE(geometry.intersect({11.5, 1, 3e5}, {0, -1, 0}, 7.999, nullptr, hit));
     EXPECT_FALSE(geometry.intersect({11.5, 1, 3e5}, {1, 0, 0}, infinity, nullptr, hit));
     EXPECT_EQ(geometry.bounds(), (Box3d{{-2, -2, -2}, {11, 2, 2}}));
