@@ -300,4 +300,10 @@ std::string ColorConfig::pictureSpace() const {
     return {};
 }
 
+std::vector<std::string> ColorConfig::views(const std::string& display) const {
+    DisplaySettings settings;
+    settings.display = display;
+    return viewNames(*impl_->config, impl_->complete(settings).display);
+}
+
 }  // namespace woodcock

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "woodcock/image/chromaticities.h"
 
@@ -56,6 +57,9 @@ public:
     /// What the config calls the space of ordinary pictures, the sRGB curve over Rec.709 primaries;
     /// empty where no name that is known for it is found.
     std::string pictureSpace() const;
+
+    /// The views of a display, an empty name meaning the default one; Error{Usage} as above.
+    std::vector<std::string> views(const std::string& display = {}) const;
 
 private:
     struct Impl;
