@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace woodcock {
+
+// Numbers as text for a page's script: compressed as zlib does, in base64.
+
+std::string packBytes(std::span<const unsigned char> bytes);
+
+/// Floats rounded to their upper 24 bits, which leave 5 digits: first the highest byte of each,
+/// then the next ones, which compress better so.
+std::string packFloats(std::span<const float> values);
+
+}  // namespace woodcock
