@@ -96,6 +96,7 @@ int run(int argc, char** argv) {
     tool::addBakeCommand(app);
     tool::addConvertCommand(app);
     tool::addInfoCommand(app);
+    tool::addCompareCommand(app);
     tool::addVerifyCommand(app);
     for (CLI::App* command : app.get_subcommands(nullptr))
         for (CLI::Option* option : command->get_options()) option->disable_flag_override();
