@@ -25,7 +25,8 @@ float standardErrorOfMean(double sum, double sumOfSquares, double n) {
 
 }  // namespace
 
-Film::Film(int width, int height, Window crop) : width_(width), height_(height), crop_(crop) {
+Film::Film(int width, int height, Window crop, bool withSurfaces)
+    : width_(width), height_(height), crop_(crop) {
     if (width <= 0 || height <= 0)
         throw usageError("an image of {} x {} pixels is empty", width, height);
     if (crop.width() <= 0 || crop.height() <= 0)
@@ -38,6 +39,7 @@ Film::Film(int width, int height, Window crop) : width_(width), height_(height),
                          crop.x0, crop.y0, crop.x1, crop.y1, width, height);
     pixels_.resize(static_cast<std::size_t>(crop.width()) *
                    static_cast<std::size_t>(crop.height()));
+    if (withSurfaces) surfacePixels_.resize(pixels_.size());
 }
 
 std::size_t Film::index(int x, int y) const {
@@ -75,8 +77,10 @@ void Film::add(int x, int y, const DepthSample& sample) {
     for (int i = 0; i < 3; ++i) p.transmittance[i] += sample.transmittance[i];
     p.weightedDepth += sample.weightedDepth;
     p.depthWeight += sample.weight;
-    for (int i = 0; i < 3; ++i) p.weightedNormal[i] += sample.weightedNormal[i];
     ++p.depthSamples;
+    if (surfacePixels_.empty()) return;
+    SurfacePixel& s = surfacePixels_[index(x, y)];
+    for (int i = 0; i < 3; ++i) s.weightedNormal[i] += sample.weightedNormal[i];
 }
 
 void Film::add(int x, int y, const CatcherSample& sample) {
@@ -85,9 +89,10 @@ void Film::add(int x, int y, const CatcherSample& sample) {
         ++p.nonFinite;
         return;
     }
-    p.catcherLit += sample.lit;
-    p.catcherUnlit += sample.unlit;
-    p.catcherWeight += sample.weight;
+    SurfacePixel& s = surfacePixels_.at(index(x, y));
+    s.catcherLit += sample.lit;
+    s.catcherUnlit += sample.unlit;
+    s.catcherWeight += sample.weight;
 }
 
 void Film::merge(const Film& other) {
@@ -101,17 +106,22 @@ void Film::merge(const Film& other) {
             p.radiance[c] += q.radiance[c];
             p.radianceSquared[c] += q.radianceSquared[c];
             p.transmittance[c] += q.transmittance[c];
-            p.weightedNormal[c] += q.weightedNormal[c];
         }
-        p.catcherLit += q.catcherLit;
-        p.catcherUnlit += q.catcherUnlit;
-        p.catcherWeight += q.catcherWeight;
         p.alpha += q.alpha;
         p.weightedDepth += q.weightedDepth;
         p.depthWeight += q.depthWeight;
         p.samples += q.samples;
         p.depthSamples += q.depthSamples;
         p.nonFinite += q.nonFinite;
+    }
+    if (surfacePixels_.empty()) surfacePixels_.resize(other.surfacePixels_.size());
+    for (std::size_t i = 0; i < other.surfacePixels_.size(); ++i) {
+        SurfacePixel& p = surfacePixels_[i];
+        const SurfacePixel& q = other.surfacePixels_[i];
+        for (int c = 0; c < 3; ++c) p.weightedNormal[c] += q.weightedNormal[c];
+        p.catcherLit += q.catcherLit;
+        p.catcherUnlit += q.catcherUnlit;
+        p.catcherWeight += q.catcherWeight;
     }
 }
 
@@ -124,8 +134,11 @@ float Film::alpha(int x, int y) const {
     const Pixel& p = at(x, y);
     if (p.samples == 0) return 0;
     double alpha = p.alpha;
-    if (p.catcherUnlit > 0)
-        alpha += p.catcherWeight * std::max(0.0, 1 - p.catcherLit / p.catcherUnlit);
+    if (!surfacePixels_.empty()) {
+        const SurfacePixel& s = surfacePixels_[index(x, y)];
+        if (s.catcherUnlit > 0)
+            alpha += s.catcherWeight * std::max(0.0, 1 - s.catcherLit / s.catcherUnlit);
+    }
     return static_cast<float>(alpha / static_cast<double>(p.samples));
 }
 
@@ -149,8 +162,8 @@ float Film::depth(int x, int y) const {
 }
 
 Vec3f Film::normal(int x, int y) const {
-    const Pixel& p = at(x, y);
-    const Rgb n = mean(p.weightedNormal, p.depthSamples);
+    if (surfacePixels_.empty()) return {};
+    const Rgb n = mean(surfacePixels_[index(x, y)].weightedNormal, at(x, y).depthSamples);
     return {n[0], n[1], n[2]};
 }
 

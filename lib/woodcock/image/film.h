@@ -39,11 +39,15 @@ public:
         double alpha = 0;
         double transmittance[3] = {};
         double weightedDepth = 0, depthWeight = 0;
-        double weightedNormal[3] = {};
-        double catcherLit = 0, catcherUnlit = 0, catcherWeight = 0;
         std::uint64_t samples = 0;       ///< of radiance and alpha
         std::uint64_t depthSamples = 0;  ///< of transmittance and depth
         std::uint64_t nonFinite = 0;     ///< samples dropped because they were NaN or infinite
+    };
+
+    /// What only scenes with surfaces need.
+    struct SurfacePixel {
+        double weightedNormal[3] = {};
+        double catcherLit = 0, catcherUnlit = 0, catcherWeight = 0;
     };
 
     /// `width` x `height` is the whole image; samples may only fall into the crop
@@ -56,7 +60,7 @@ public:
     };
 
     /// Throws Error{Usage} on an empty image, and on a crop that is empty or leaves it.
-    Film(int width, int height, Window crop);
+    Film(int width, int height, Window crop, bool withSurfaces = false);
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -69,7 +73,7 @@ public:
     /// A sample with anything NaN or infinite in it is dropped and counted.
     void add(int x, int y, const FilmSample& sample);
     void add(int x, int y, const DepthSample& sample);
-    void add(int x, int y, const CatcherSample& sample);
+    void add(int x, int y, const CatcherSample& sample);  ///< only withSurfaces
     /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other.
     void merge(const Film& other);
 
@@ -85,7 +89,7 @@ public:
     float depth(int x, int y) const;
     static constexpr float noDepth = 1e10f;
     /// Mean world-space normal of the surfaces that camera rays meet, towards the camera, times the
-    /// part of the rays that meet one.
+    /// part of the rays that meet one; 0 without surfaces.
     Vec3f normal(int x, int y) const;
 
     std::uint64_t nonFiniteCount() const;
@@ -101,6 +105,7 @@ private:
     int width_, height_;
     Window crop_;
     std::vector<Pixel> pixels_;
+    std::vector<SurfacePixel> surfacePixels_;  // empty without surfaces
 };
 
 }  // namespace woodcock

@@ -56,7 +56,7 @@ public:
           settings_(settings),
           crop_(crop),
           needs_(findNeeds(scene)),
-          film_(settings.width, settings.height, crop) {
+          film_(settings.width, settings.height, crop, needs_.surfaces) {
         for (int y = crop.y0 / tileSize * tileSize; y < crop.y1; y += tileSize)
             for (int x = crop.x0 / tileSize * tileSize; x < crop.x1; x += tileSize)
                 tiles_.push_back({std::max(x, crop.x0), std::max(y, crop.y0),
