@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Deliberate defects, read by run.sh; see there for the arguments of `defect`. Most are biased by so
 # little that a picture would not show them.
-tracer=lib/woodcock/render/path_tracer.cpp
+tracer=lib/woodcock/render/batch_tracer.h
+light=lib/woodcock/render/batch_tracer_light.h
+surfaces=lib/woodcock/render/batch_tracer_surfaces.h
 tracking=lib/woodcock/medium/tracking.cpp
 bsdf=lib/woodcock/surface/bsdf.cpp
 
@@ -98,7 +100,7 @@ defect "image sampled evenly in angle" 'EnvironmentMap.*' "environment images" \
 # ---- render
 
 defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of slabs" \
-    $tracer \
+    $light \
     'henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g)' \
     'henyeyGreenstein(dot(p.from.forward, s.direction), -p.from.g)'
 
@@ -108,15 +110,15 @@ defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
     'p.origin = position, p.direction = s.direction, p.phasePdf = 1 / (4 * pi);'
 
 defect "MIS forgets how a light was picked" 'Furnace*:LocalLights.*' "" \
-    $tracer \
-    'powerHeuristic(s.pdf * pick_[k], phase)' 'powerHeuristic(s.pdf, phase)'
+    $light \
+    'powerHeuristic(s.pdf * chosen->probability, phase)' 'powerHeuristic(s.pdf, phase)'
 
 defect "lamps counted by both samplings" 'PointLight.*:SphereLight.*' "airlight" \
-    $tracer \
-    '(pdf + flightDensity(e, t))' 'pdf'
+    $light \
+    '(pdf + flight.density(e, t))' 'pdf'
 
 defect "shadow rays go on behind the lamp" 'PointLight.*:SphereLight.*' "" \
-    $tracer \
+    $light \
     'ray.tMax = s.distance;' 'ray.tMax = infinity;'
 
 defect "numbers used twice" 'Slab.*:Furnace.*' "table of slabs" \
@@ -130,6 +132,32 @@ defect "roulette of high orders without factor" 'Furnace*' "furnace at any depth
 defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
     $tracer \
     'p.scatterings >= *options_.maxScatterings) {' 'p.scatterings + 1 >= *options_.maxScatterings) {'
+
+# ---- surfaces
+
+defect "shadow rays see the outside's medium alone" 'SurfaceLayers*' "media inside surfaces" \
+    $surfaces \
+    'hits ? hit.t : left, interiors_->medium(place.inside)' 'hits ? hit.t : left, 0'
+
+defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
+    lib/woodcock/render/interiors.cpp \
+    'rank(instance) > rank(best)' 'rank(instance) < rank(best)'
+
+defect "refracted light stays in the medium it came from" 'SurfaceLayers*' "plates of glass" \
+    $surfaces \
+    'if (b.transmitted) s.place.inside = crossing.beyond;' ''
+
+defect "lamps with a shape counted in full by both samplings" 'SurfaceLayers*' "emissive surfaces" \
+    $surfaces \
+    'static_cast<float>(hitWeight(p, pdf))' '1.0f'
+
+defect "roulette of bounces without factor" 'SurfaceLayers*' "emissive surfaces" \
+    $surfaces \
+    'p.throughput *= 1 / survival;' ''
+
+defect "shadow catchers forget the sky" 'SurfaceLayers*' "" \
+    $surfaces \
+    'if (caught) addUnoccluded(p);' ''
 
 # ---- camera, film
 
