@@ -109,7 +109,7 @@ TEST(ExrLayers, UnknownNamesListTheKnown) {
         EXPECT_EQ(e.kind(), ErrorKind::Usage);
         EXPECT_STREQ(e.what(),
                      "unknown layer 'sample'; did you mean 'samples'? known layers: depth, "
-                     "transmittance, samples, error");
+                     "normal, transmittance, samples, error");
     }
 }
 
