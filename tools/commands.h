@@ -14,7 +14,8 @@ CLI::App& addCompareCommand(CLI::App& app);
 CLI::App& addConvertCommand(CLI::App& app);
 CLI::App& addInfoCommand(CLI::App& app);
 CLI::App& addVerifyCommand(CLI::App& app);
-/// `commandLine` goes into the images' headers.
+// `commandLine` goes into the images' headers.
+CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine);
 CLI::App& addRenderCommand(CLI::App& app, const std::string& commandLine);
 
 }  // namespace woodcock::tool

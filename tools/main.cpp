@@ -98,6 +98,7 @@ int run(int argc, char** argv) {
     tool::addInfoCommand(app);
     tool::addCompareCommand(app);
     tool::addVerifyCommand(app);
+    tool::addCyclesCommand(app, commandLine(argc, argv));
     for (CLI::App* command : app.get_subcommands(nullptr))
         for (CLI::Option* option : command->get_options()) option->disable_flag_override();
     try {

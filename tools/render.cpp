@@ -11,6 +11,7 @@
 #include "log.h"
 #include "progress.h"
 #include "render_options.h"
+#include "scene_input.h"
 #include "stats.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
@@ -19,9 +20,6 @@
 #include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/defaults.h"
-#include "woodcock/scene/load.h"
-#include "woodcock/scene/parse.h"
 #include "woodcock/scene/scene_files.h"
 #include "woodcock/scene/write.h"
 
@@ -31,39 +29,12 @@ namespace {
 
 constexpr int interruptedCode = 130;
 
-SceneDescription parseInput(const RenderOptions& options,
-                            const std::vector<std::string>& overrides) {
-    if (options.inputIsScene()) return parseScene(options.inputs.front(), overrides);
-    const std::string name = "command line";
-    SceneDescription scene = parseSceneText(defaultSceneText(options.inputs), name, "", overrides);
-    std::erase_if(scene.places, [&](const auto& place) { return place.second.starts_with(name); });
-    return scene;
-}
-
 Storage storageOf(const std::string& name) {
     return name == "half" ? Storage::Half : name == "float" ? Storage::Float : Storage::Auto;
 }
 
-/// The size goes through the scene file, where cameras depend on it. What it replaces is checked
-/// all the same.
-SceneDescription parseAtSize(const RenderOptions& options) {
-    SceneDescription scene = parseInput(options, options.overrides);
-    if (!options.size) return scene;
-    const int width = options.size->width;
-    const double shape = double(scene.render.height) / scene.render.width;
-    const double height = options.size->height.value_or(std::max(1.0, std::round(width * shape)));
-    if (height > largestImageSide)
-        throw usageError("--res {} in the scene's shape is {} pixels high; the most are {}", width,
-                         height, largestImageSide);
-    std::vector<std::string> overrides = options.overrides;
-    overrides.push_back(fmt::format("render.resolution=[{}, {}]", width, height));
-    scene = parseInput(options, overrides);
-    scene.places["render.resolution"] = "--res";
-    return scene;
-}
-
 SceneDescription describeScene(const RenderOptions& options) {
-    SceneDescription scene = parseAtSize(options);
+    SceneDescription scene = parseInput({options.inputs, options.overrides, options.size});
     for (VolumeDescription& volume : scene.volumes) {
         if (options.storage) volume.storage = storageOf(*options.storage);
         volume.repair |= options.repair;
@@ -227,14 +198,6 @@ void writeTextFile(const std::filesystem::path& file, const std::string& text) {
     writeWholeFile(file, {bytes, text.size()});
 }
 
-/// Loads what the scene names and fills in what it leaves open.
-LoadedScene load(SceneDescription& description) {
-    LoadedScene loaded = loadScene(description);
-    for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
-    for (const std::string& choice : completeScene(description, loaded)) spdlog::info("{}", choice);
-    return loaded;
-}
-
 RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
                                 ProgressStyle style) {
     spdlog::info("{}", findNeeds(scene).describe());
@@ -272,7 +235,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
 
     const auto loadStart = std::chrono::steady_clock::now();
-    LoadedScene loaded = load(description);
+    LoadedScene loaded = loadAndComplete(description);
     if (!options.writeScene.empty())
         writeTextFile(options.writeScene,
                       writeScene(description, options.writeScene.parent_path()));

@@ -5,6 +5,7 @@
 #include <climits>
 
 #include "option_kinds.h"
+#include "scene_input.h"
 
 namespace woodcock::tool {
 
@@ -91,7 +92,6 @@ void addReports(CLI::App& command, RenderOptions& o) {
 bool hasExtension(const std::filesystem::path& file, const char* extension) {
     return CLI::detail::to_lower(file.extension().string()) == extension;
 }
-bool isSceneFile(const std::filesystem::path& file) { return hasExtension(file, ".toml"); }
 bool isExrFile(const std::filesystem::path& file) { return hasExtension(file, ".exr"); }
 
 /// An option that would do nothing is a mistake.
@@ -116,13 +116,8 @@ void RenderOptions::addTo(CLI::App& command) {
     addReports(command, *this);
 }
 
-bool RenderOptions::inputIsScene() const { return isSceneFile(inputs.front()); }
-
 void RenderOptions::check() const {
-    if (inputs.size() > 1 && std::any_of(inputs.begin(), inputs.end(), isSceneFile))
-        throw usageError("a scene file is rendered alone, but {} inputs are given", inputs.size());
-    if (std::any_of(inputs.begin(), inputs.end(), [](const auto& file) { return file.empty(); }))
-        throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb)");
+    checkInput({inputs, overrides, size});
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
     exclude(quiet, logLevel.has_value(), "--quiet and --log-level");
     exclude(quiet, progress == "bar" || progress == "json", "--quiet and --progress");

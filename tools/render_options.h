@@ -44,8 +44,6 @@ struct RenderOptions {
     void check() const;
     /// Throws Error{Usage} where an option is for another kind of file than those to be written.
     void checkFor(const std::vector<std::filesystem::path>& files) const;
-    /// One .toml, rather than .vdb files.
-    bool inputIsScene() const;
     /// Or only saves the scene.
     bool rendersImages() const { return writeScene.empty() || !outputs.empty(); }
 };

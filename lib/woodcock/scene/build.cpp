@@ -13,12 +13,8 @@ Light buildLight(const SunDescription& sun, EnvironmentMap&&) {
 }
 Light buildLight(const EnvironmentDescription& environment, EnvironmentMap&& map) {
     if (map.empty()) return Environment(environment.radiance, environment.visible);
-    // A quarter turn about x takes the image's up, +y, to +z.
-    const Affine3d up = environment.up == UpAxis::Z
-                            ? Affine3d{{Vec3d{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {}}
-                            : Affine3d();
-    return Environment(std::move(map), environment.radiance,
-                       up * Affine3d::rotate(1, environment.rotation), environment.visible);
+    return Environment(std::move(map), environment.radiance, worldFromLight(environment),
+                       environment.visible);
 }
 Light buildLight(const PointDescription& point, EnvironmentMap&&) {
     return PointLight{point.position, point.intensity};
@@ -58,6 +54,14 @@ Affine3d worldFromCamera(const CameraPose& pose) {
     if (const auto* matrix = std::get_if<Affine3d>(&pose)) return *matrix;
     const LookAt& lookAt = std::get<LookAt>(pose);
     return lookAtTransform(lookAt.eye, lookAt.target, lookAt.up);
+}
+
+Affine3d worldFromLight(const EnvironmentDescription& environment) {
+    // A quarter turn about x takes the image's up, +y, to +z.
+    const Affine3d up = environment.up == UpAxis::Z
+                            ? Affine3d{{Vec3d{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {}}
+                            : Affine3d();
+    return up * Affine3d::rotate(1, environment.rotation);
 }
 
 Scene buildScene(const SceneDescription& description, LoadedScene loaded) {

@@ -13,4 +13,7 @@ Scene buildScene(const SceneDescription& description, LoadedScene loaded);
 
 Affine3d worldFromCamera(const CameraPose& pose);
 
+/// The rotation that takes an environment image's up, +y, and centre, -z, to where they are.
+Affine3d worldFromLight(const EnvironmentDescription& environment);
+
 }  // namespace woodcock

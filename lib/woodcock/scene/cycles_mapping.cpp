@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/cycles_mapping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "woodcock/scene/build.h"
+
+namespace woodcock {
+
+CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
+    CyclesMedium medium;
+    medium.density = (sigmaA + sigmaS).maximum();
+    if (medium.density > 0) {
+        const double density = medium.density;
+        medium.scatterColour =
+            Rgb::map([&](int c) { return static_cast<float>(sigmaS[c] / density); });
+        medium.absorbColour =
+            Rgb::map([&](int c) { return static_cast<float>(1 - sigmaA[c] / density); });
+    }
+    return medium;
+}
+
+int cyclesVolumeBounces(std::optional<int> maxScatterings) {
+    return std::min(maxScatterings.value_or(cyclesMostBounces + 1) - 1, cyclesMostBounces);
+}
+
+CyclesColour cyclesColour(Rgb light) {
+    const float largest = light.maximum();
+    return largest > 0 ? CyclesColour{largest, light * (1 / largest)} : CyclesColour{};
+}
+
+CyclesColour cyclesSun(Rgb irradiance, double angularDiameter) {
+    CyclesColour sun = cyclesColour(irradiance);
+    const double cosine = std::cos(angularDiameter * pi / 360);
+    sun.strength = static_cast<float>(sun.strength / (cosine * cosine));
+    return sun;
+}
+
+CyclesColour cyclesPoint(Rgb intensity) {
+    CyclesColour point = cyclesColour(intensity);
+    point.strength = static_cast<float>(point.strength * (4 * pi));
+    return point;
+}
+
+Affine3d cyclesImageFromWorld(const EnvironmentDescription& environment) {
+    // The light's -z, its image's centre, becomes +x, its +y +z.
+    const Affine3d cyclesFromLight{{Vec3d{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}}, {}};
+    return cyclesFromLight * worldFromLight(environment).inverse();
+}
+
+}  // namespace woodcock

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/scene/description.h"
+
+namespace woodcock {
+
+// Woodcock's parameters in Blender Cycles' terms. The other direction is tools/blender/mapping.py.
+
+/// What Volume Scatter and Volume Absorption take, as object densities are those of the world:
+/// sigma_s = density x scatterColour, sigma_a = density x (1 - absorbColour).
+struct CyclesMedium {
+    float density = 0;
+    Rgb scatterColour{0.0f}, absorbColour{1.0f};
+    bool scatters() const { return density > 0 && scatterColour.maximum() > 0; }
+    bool absorbs() const { return density > 0 && absorbColour.minimum() < 1; }
+};
+/// All colours lie in [0, 1].
+CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS);
+
+/// Cycles clamps g to this, either way.
+constexpr float cyclesLargestG = 0.999f;
+
+/// The most bounces of any kind that Blender counts.
+constexpr int cyclesMostBounces = 1024;
+/// Cycles' m volume bounces are m + 1 scatterings: the last one is still lit by lamps. Needs
+/// maxScatterings > 0.
+int cyclesVolumeBounces(std::optional<int> maxScatterings);
+
+/// A colour of which the largest channel is 1, and what it is to be multiplied by.
+struct CyclesColour {
+    float strength = 0;
+    Rgb colour{1.0f};
+};
+CyclesColour cyclesColour(Rgb light);
+
+/// Of a sun lamp: irradiance on a surface that faces it. Cycles spreads it over the disc of an
+/// angular diameter (degrees) as if the sky were flat there: by the tangent, not the sine.
+CyclesColour cyclesSun(Rgb irradiance, double angularDiameter);
+
+/// Of a point lamp: power, 4 pi times the intensity.
+CyclesColour cyclesPoint(Rgb intensity);
+
+/// Turns a world direction to where Cycles looks it up in an environment image: the image's centre
+/// is towards +x, its top +z and its left +y there.
+Affine3d cyclesImageFromWorld(const EnvironmentDescription& environment);
+
+}  // namespace woodcock

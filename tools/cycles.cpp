@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
+#include <climits>
+
+#include "commands.h"
+#include "cycles_render.h"
+#include "interrupt.h"
+#include "log.h"
+#include "option_kinds.h"
+#include "progress.h"
+#include "scene_input.h"
+#include "woodcock/base/whole_file.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int interruptedCode = 130;
+
+struct Options {
+    SceneInput input;
+    std::optional<int> spp, threads;
+    std::optional<std::uint64_t> seed;
+    std::optional<std::string> mode;
+    std::optional<double> stepRate;
+    std::filesystem::path image, blend;
+    std::string blender, progress = "auto";
+    std::optional<std::string> logLevel;
+    bool quiet = false;
+};
+
+void checkOutput(const std::filesystem::path& file, const char* option, const char* extension) {
+    if (file.empty()) return;
+    if (file.extension() != extension)
+        throw usageError("{} '{}' is no {} file", option, file.string(), extension);
+    checkWritable(file);
+}
+
+void check(const Options& options) {
+    checkInput(options.input);
+    if (options.image.empty() && options.blend.empty())
+        throw usageError(
+            "there is no output; name an image with -o, such as -o cycles.exr, or a "
+            "file to save the scene in, with --save");
+    checkOutput(options.image, "-o", ".exr");
+    checkOutput(options.blend, "--save", ".blend");
+    if (options.stepRate && options.mode == "null")
+        throw usageError("--step-rate is for --mode biased, which marches");
+    if (options.quiet && options.logLevel)
+        throw usageError("--quiet and --log-level contradict each other; give one of them");
+}
+
+void run(const Options& options, const std::string& commandLine) {
+    const ProgressStyle style =
+        options.quiet ? ProgressStyle::None : progressStyle(options.progress);
+    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
+             options.quiet ? "warning" : options.logLevel.value_or("info"));
+    check(options);
+    catchInterrupts();
+    SceneDescription scene = parseInput(options.input);
+    scene.render.spp = options.spp.value_or(scene.render.spp);
+    scene.render.seed = options.seed.value_or(scene.render.seed);
+    const LoadedScene loaded = loadAndComplete(scene);
+
+    CyclesOptions cycles;
+    cycles.settings.mode = options.mode.value_or("");
+    cycles.settings.stepRate = options.stepRate.value_or(cycles.settings.stepRate);
+    cycles.settings.threads = options.threads.value_or(0);
+    cycles.blender = options.blender;
+    cycles.image = options.image;
+    cycles.blend = options.blend;
+    cycles.commandLine = commandLine;
+    cycles.shouldStop = interrupted;
+    CyclesResult result;
+    {
+        WorkProgress progress(style, "cycles");
+        cycles.onProgress = [&](double fraction) { progress.update(fraction); };
+        result = renderWithCycles(scene, loaded, cycles);
+    }
+    if (result.stopped) {
+        spdlog::warn("interrupted: nothing is written");
+        throw CLI::RuntimeError(interruptedCode);
+    }
+    if (!options.image.empty()) {
+        if (result.mode == "biased" && options.mode != "biased")
+            spdlog::warn("Blender {} only marches through volumes, which is biased",
+                         result.version);
+        spdlog::info("Blender {} ({}): {} samples in {:.1f} s", result.version, result.mode,
+                     scene.render.spp, result.seconds);
+    }
+    for (const auto& file : {options.image, options.blend})
+        if (!file.empty()) spdlog::info("wrote {}", file.string());
+}
+
+}  // namespace
+
+CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
+    CLI::App& command =
+        *app.add_subcommand("cycles", "Render a scene with Blender's Cycles, to compare");
+    const auto o = std::make_shared<Options>();
+    command.add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
+        ->required()
+        ->type_name("FILE");
+    command.add_option("-o,--output", o->image, "Image to write")->type_name("FILE.exr");
+    command.add_option("--save", o->blend, "Save the scene for Blender; renders only with -o")
+        ->type_name("FILE.blend");
+    command
+        .add_option("--blender", o->blender,
+                    "Blender's program, or a Python with bpy; else $BLENDER, else on the PATH")
+        ->type_name("PROGRAM");
+    addChoice(command, "--mode", o->mode, {"null", "biased"},
+              "Null-collision tracking (from Blender 5.0 on, and the default there) or ray "
+              "marching:")
+        ->type_name("MODE");
+    addParsed(
+        command, "--step-rate", o->stepRate,
+        [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
+        "Of --mode biased: a step's length as Blender counts it, 1 being a voxel; 0.1 if not given")
+        ->type_name("NUMBER");
+    addParsed(command, "--res", o->input.size, parseImageSize,
+              "Image size; a width alone keeps the scene's shape")
+        ->type_name("WIDTHxHEIGHT");
+    addCount(command, "--spp", o->spp, 1, 16777216, "Samples per pixel");
+    addCount(command, "--seed", o->seed, 0, INT64_MAX, "Of the random numbers");
+    addCount(command, "--threads", o->threads, 0, 1024, "0: one for each core");
+    addList(command, "--set", o->input.overrides,
+            "Set a value of the scene, such as volume[0].scale=2")
+        ->type_name("KEY=VALUE");
+    addChoice(command, "--progress", o->progress, {"auto", "bar", "json", "none"},
+              "How to show it:")
+        ->type_name("STYLE");
+    addChoice(command, "--log-level", o->logLevel,
+              {"trace", "debug", "info", "warning", "error", "off"},
+              "The least to report; debug shows what Blender says:")
+        ->type_name("LEVEL");
+    command.add_flag("-q,--quiet", o->quiet, "Report warnings and errors only");
+    command.callback([o, commandLine] { run(*o, commandLine); });
+    return command;
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cycles_scene.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "woodcock/base/error.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/cycles_mapping.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+using nlohmann::json;
+
+json toJson(Rgb v) { return {v[0], v[1], v[2]}; }
+json toJson(Vec3d v) { return {v.x, v.y, v.z}; }
+json toJson(const Affine3d& m) {
+    json rows = json::array();
+    for (int row = 0; row < 3; ++row)
+        rows.push_back({m.column[0][row], m.column[1][row], m.column[2][row], m.translation[row]});
+    rows.push_back({0, 0, 0, 1});
+    return rows;
+}
+
+template <class... A>
+Error refusal(const std::string& place, fmt::format_string<A...> text, A&&... args) {
+    return inputError("{}{}Cycles cannot express {}", place, place.empty() ? "" : ": ",
+                      fmt::format(text, std::forward<A>(args)...));
+}
+
+// ---- volumes
+
+/// Without scattering, what would scatter is lost to the camera.
+json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters) {
+    if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
+    const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
+    return {{"density", medium.density},
+            {"scatter_colour", toJson(medium.scatterColour)},
+            {"absorb_colour", toJson(medium.absorbColour)},
+            {"scatters", medium.scatters()},
+            {"absorbs", medium.absorbs()},
+            {"g", g}};
+}
+
+class VolumeWriter {
+public:
+    VolumeWriter(const SceneDescription& scene, const LoadedScene& loaded, std::size_t index)
+        : volume_(scene.volumes[index]),
+          loaded_(loaded.volumes[index]),
+          places_(scene.places),
+          name_(fmt::format("volume[{}]", index)),
+          scatters_(scene.render.maxScatterings != 0) {}
+
+    void addTo(json& list) const {
+        if (std::abs(volume_.g) > cyclesLargestG)
+            throw refusal(place("g"), "a g of {}: it clamps g to +-{}", volume_.g, cyclesLargestG);
+        if (!volume_.inside.empty())
+            throw refusal(place("inside"), "a volume inside the surface '{}'", volume_.inside);
+        if (volume_.repair)
+            throw refusal(place("repair"),
+                          "a volume that is repaired as it is loaded: it reads the "
+                          "file as it is; save it repaired with woodcock convert --repair");
+        std::visit([&](const auto& c) { add(list, c); }, volume_.coefficients);
+    }
+
+private:
+    std::string place(const char* key) const { return findPlace(places_, name_ + "." + key); }
+
+    json gridJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
+        for (int c = 0; c < field.field->channels(); ++c)
+            if (field.field->background(c) != 0)
+                throw refusal(place("file"),
+                              "the background {} of grid '{}': it draws active voxels "
+                              "alone",
+                              field.field->background(c), field.grid);
+        json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
+        grid["file"] = std::filesystem::absolute(volume_.file).string();
+        grid["grid"] = field.grid;
+        grid["colour"] = field.field->channels() > 1;
+        grid["matrix"] = toJson(volume_.worldFromObject);
+        grid["object_from_index"] = toJson(field.objectFromIndex);
+        grid["albedo_grid"] = nullptr;
+        return grid;
+    }
+
+    void add(json& list, const DensityCoefficients& c) const {
+        const auto [sigmaA, sigmaS] = splitByAlbedo(*c.scale, c.albedo);
+        json grid = gridJson(loaded_.density, sigmaA, sigmaS);
+        if (loaded_.albedo && scatters_) {
+            grid["albedo_grid"] = loaded_.albedo.grid;
+            grid["albedo_from_index"] = toJson(loaded_.albedo.objectFromIndex);
+            grid["absorbs"] = true;  // what the grid takes from scattering
+        }
+        list.push_back(std::move(grid));
+    }
+    void add(json& list, const SeparateCoefficients& c) const {
+        const Rgb none(0);
+        const bool sameGrid = c.sigmaA && c.sigmaS && loaded_.sigmaA.field == loaded_.sigmaS.field;
+        if (sameGrid)
+            return list.push_back(gridJson(loaded_.sigmaA, c.sigmaA->scale, c.sigmaS->scale));
+        if (c.sigmaA) list.push_back(gridJson(loaded_.sigmaA, c.sigmaA->scale, none));
+        if (c.sigmaS) list.push_back(gridJson(loaded_.sigmaS, none, c.sigmaS->scale));
+    }
+    void add(json& list, const HomogeneousBox& c) const {
+        json box = mediumJson(c.sigmaA, c.sigmaS, volume_.g, scatters_);
+        box["box"] = {toJson(c.box.lower), toJson(c.box.upper)};
+        box["matrix"] = toJson(volume_.worldFromObject);
+        list.push_back(std::move(box));
+    }
+
+    const VolumeDescription& volume_;
+    const LoadedVolume& loaded_;
+    const Places& places_;
+    std::string name_;
+    bool scatters_;
+};
+
+// ---- lights
+
+json lightJson(const SunDescription& sun, const std::string& place) {
+    if (sun.visible) throw refusal(place, "a sun that the camera sees; leave out its 'visible'");
+    const CyclesColour light = cyclesSun(sun.irradiance, sun.angularDiameter);
+    return {{"type", "sun"},
+            {"direction", toJson(normalize(sun.direction))},
+            {"strength", light.strength},
+            {"colour", toJson(light.colour)},
+            {"angle", sun.angularDiameter * pi / 180}};
+}
+json lightJson(const EnvironmentDescription& environment, const std::string&) {
+    json light{{"type", "environment"},
+               {"radiance", toJson(environment.radiance)},
+               {"visible", environment.visible},
+               {"image", nullptr}};
+    if (!environment.image.empty()) {
+        light["image"] = std::filesystem::absolute(environment.image).string();
+        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
+    }
+    return light;
+}
+json lightJson(const PointDescription& point, const std::string&) {
+    const CyclesColour light = cyclesPoint(point.intensity);
+    return {{"type", "point"},
+            {"position", toJson(point.position)},
+            {"power", light.strength},
+            {"colour", toJson(light.colour)}};
+}
+json lightJson(const SphereDescription& sphere, const std::string&) {
+    const CyclesColour light = cyclesColour(sphere.radiance);
+    return {{"type", "sphere"},
+            {"position", toJson(sphere.position)},
+            {"radius", sphere.radius},
+            {"strength", light.strength},
+            {"colour", toJson(light.colour)},
+            {"visible", sphere.visible}};
+}
+
+// ---- camera and settings
+
+json cameraJson(const SceneDescription& scene) {
+    const CameraDescription& camera = scene.camera;
+    const bool orthographic = camera.kind == CameraDescription::Kind::Orthographic;
+    json out{{"type", orthographic ? "orthographic" : "perspective"},
+             {"matrix", toJson(worldFromCamera(*camera.pose))},
+             {"shift", {0, 0}},
+             {"clip_start", 1e-6},
+             {"clip_end", 1e9}};
+    if (orthographic)
+        out["height"] = *camera.height;
+    else
+        out["angle"] = camera.fovY * pi / 180;
+    return out;
+}
+
+json renderJson(const RenderDescription& render, const CyclesSettings& settings) {
+    constexpr std::uint64_t seeds = 0x7fffffff;
+    const bool scatters = render.maxScatterings != 0;
+    return {{"resolution", {render.width, render.height}},
+            {"spp", render.spp},
+            {"seed", render.seed % seeds},
+            {"mode", settings.mode},
+            {"step_rate", settings.stepRate},
+            {"threads", settings.threads},
+            {"draw", settings.draw},
+            {"volume_bounces", scatters ? cyclesVolumeBounces(render.maxScatterings) : 0},
+            {"max_bounces", cyclesMostBounces}};
+}
+
+}  // namespace
+
+std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded,
+                        const CyclesSettings& settings) {
+    json volumes = json::array(), lights = json::array();
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        VolumeWriter(scene, loaded, i).addTo(volumes);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const std::string place = findPlace(scene.places, fmt::format("light[{}].visible", i));
+        lights.push_back(std::visit([&](const auto& light) { return lightJson(light, place); },
+                                    scene.lights[i].light));
+    }
+    const json out{{"volumes", std::move(volumes)},
+                   {"lights", std::move(lights)},
+                   {"surfaces", json::array()},
+                   {"camera", cameraJson(scene)},
+                   {"render", renderJson(scene.render, settings)},
+                   {"save", settings.save}};
+    return out.dump(1);
+}
+
+}  // namespace woodcock::tool

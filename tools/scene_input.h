@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "woodcock/base/parse.h"
+#include "woodcock/scene/load.h"
+
+namespace woodcock::tool {
+
+/// A scene file (.toml), or VDB files that a scene is made around.
+struct SceneInput {
+    std::vector<std::filesystem::path> files;
+    std::vector<std::string> overrides;  ///< of --set
+    std::optional<ImageSize> size;       ///< of --res
+};
+
+bool isSceneFile(const std::filesystem::path& file);
+
+/// Throws Error{Usage} on an empty name, and on a scene file beside other inputs.
+void checkInput(const SceneInput& input);
+
+/// The scene, at the size that is asked for.
+SceneDescription parseInput(const SceneInput& input);
+
+/// Loads what the scene names and fills in what it leaves open; the log tells.
+LoadedScene loadAndComplete(SceneDescription& description);
+
+}  // namespace woodcock::tool
