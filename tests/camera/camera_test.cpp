@@ -30,6 +30,20 @@ TEST(Camera, CornersOfAPerspectiveLieAtHalfTheFieldOfView) {
     EXPECT_NEAR(std::acos(dot(top, bottom)) * 180 / pi, 60, 1e-10);
 }
 
+TEST(Camera, AShiftedFilmShowsWhatLiesBesideIt) {
+    const Camera straight = Camera::perspective({1, 2, 3}, {4, 1, -7}, {0, 1, 0}, 60);
+    Camera shifted = straight;
+    shifted.shiftX = 0.5, shifted.shiftY = -1;
+    // Half a height to the right and one down, in pixels of an image 36 high.
+    expectNear(shifted.ray(10, 5, 64, 36).direction, straight.ray(28, 41, 64, 36).direction);
+
+    Camera flat = Camera::orthographic({5, 0, 0}, {0, 0, 0}, {0, 0, 1}, 4);
+    const CameraRay there = flat.ray(7, 1, 20, 10);
+    flat.shiftX = 0.5, flat.shiftY = -1;
+    expectNear(flat.ray(2, -9, 20, 10).origin, there.origin);
+    expectNear(flat.ray(2, -9, 20, 10).direction, there.direction);
+}
+
 TEST(Camera, OrthographicRaysAreParallelAndSpanTheHeight) {
     const Camera camera = Camera::orthographic({5, 0, 0}, {0, 0, 0}, {0, 0, 1}, 4);
     for (double x : {0.0, 10.0, 20.0})

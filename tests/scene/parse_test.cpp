@@ -173,6 +173,9 @@ TEST(Parse, Cameras) {
     expectNear(pose.column[2], {1, 0, 0});
     EXPECT_EQ(pose.translation, (Vec3d{4, 5, 6}));
 
+    const auto shifted = section("[camera]\nshift = [0.25, -1]").camera;
+    EXPECT_EQ(shifted.shift, (std::array<double, 2>{0.25, -1}));
+    EXPECT_EQ(section("[camera]\nfov = 20").camera.shift, (std::array<double, 2>{0, 0}));
     const auto angleOnly = section("[camera]\nfov = 20").camera;
     EXPECT_FALSE(angleOnly.pose);
     EXPECT_EQ(angleOnly.fovY, 20);

@@ -102,7 +102,9 @@ SceneDescription fullScene() {
     scene.camera = {CameraDescription::Kind::Perspective,
                     LookAt{{1.0 / 3, 2, 3}, {0, 0.1, 0}, {0, 0, 1}},
                     33.3,
-                    {}};
+                    {},
+                    {},
+                    {1.0 / 3, -2}};
     addSurfaces(scene);
     scene.render = {321, 123, 7, 42, 0, 9, true, 1.5, 0.01, 2.5};
     scene.output = {{"a.exr", "b.png"}, {"error", "depth"}, true, "d", "v\\w", "l\n", -0.5};
@@ -203,6 +205,7 @@ TEST(SceneDigest, ChangesWithAllThatTheImageShows) {
     EXPECT_TRUE(changed([](S s) { s.render.maxBounces = 10; }));
     EXPECT_TRUE(changed([](S s) { s.render.transparentShadows = false; }));
     EXPECT_TRUE(changed([](S s) { s.camera.fovY = 30; }));
+    EXPECT_TRUE(changed([](S s) { s.camera.shift = {0, 0.5}; }));
     EXPECT_TRUE(changed([](S s) { s.render.width = 1; }));
     EXPECT_TRUE(changed([](S s) { s.render.maxScatterings.reset(); }));
 

@@ -5,7 +5,8 @@ namespace woodcock {
 
 CameraRay Camera::ray(double x, double y, int pixelWidth, int pixelHeight) const {
     const double h = pixelHeight;
-    const double sx = (2 * x - pixelWidth) / h, sy = (h - 2 * y) / h;  // +-1 at top and bottom
+    const double sx = (2 * x - pixelWidth) / h + 2 * shiftX;
+    const double sy = (h - 2 * y) / h + 2 * shiftY;  // +-1 at top and bottom, where not shifted
     if (kind == Kind::Orthographic) {
         const double half = height / 2;
         return {worldFromCamera.point({sx * half, sy * half, 0}),

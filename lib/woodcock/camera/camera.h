@@ -18,6 +18,9 @@ struct Camera {
     Affine3d worldFromCamera;
     double fovY = 40;   ///< full vertical angle in degrees (perspective)
     double height = 1;  ///< world units from bottom to top (orthographic)
+    /// How far the film is moved to the right and upwards, in heights of the picture: it then shows
+    /// what lies there, without turning.
+    double shiftX = 0, shiftY = 0;
 
     /// The ray through film position (x, y), in pixels of an image of width x height, y down.
     CameraRay ray(double x, double y, int width, int height) const;

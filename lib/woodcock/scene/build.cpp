@@ -45,6 +45,8 @@ Camera buildCamera(const CameraDescription& description) {
     camera.worldFromCamera = worldFromCamera(*description.pose);
     camera.fovY = description.fovY;
     if (orthographic) camera.height = *description.height;
+    camera.shiftX = description.shift[0];
+    camera.shiftY = description.shift[1];
     return camera;
 }
 

@@ -234,8 +234,9 @@ struct CameraDescription {
     enum class Kind { Perspective, Orthographic } kind = Kind::Perspective;
     std::optional<CameraPose> pose;  ///< absent: chosen to frame the volumes
     double fovY = 40;                ///< full vertical angle, degrees (perspective)
-    std::optional<double> height;  ///< world units from bottom to top (orthographic); absent: fits
-    PartialPose given = {};        ///< where `pose` is absent
+    std::optional<double> height;   ///< world units from bottom to top (orthographic); absent: fits
+    PartialPose given = {};         ///< where `pose` is absent
+    std::array<double, 2> shift{};  ///< of the film, in heights of the picture: right, up
     bool operator==(const CameraDescription&) const = default;
 };
 

@@ -98,13 +98,17 @@ CameraDescription parseCamera(const TomlTable& table, double aspect) {
                           : CameraDescription::Kind::Orthographic;
     if (camera.kind == CameraDescription::Kind::Perspective) {
         table.allowOnly({"type", "eye", "look_at", "up", "matrix", "fov", "focal_length",
-                         "sensor_height", "sensor_width"},
+                         "sensor_height", "sensor_width", "shift"},
                         "a perspective [camera]");
         camera.fovY = parseFov(table, aspect, camera.fovY);
     } else {
-        table.allowOnly({"type", "eye", "look_at", "up", "matrix", "height"},
+        table.allowOnly({"type", "eye", "look_at", "up", "matrix", "height", "shift"},
                         "an orthographic [camera]");
         if (const auto v = table.find("height")) camera.height = v->number(positive);
+    }
+    if (const auto v = table.find("shift")) {
+        const auto sides = v->elements("[right, up], in heights of the picture", 2);
+        camera.shift = {sides[0].number({-1000, 1000}), sides[1].number({-1000, 1000})};
     }
     for (const char* key : {"eye", "look_at", "up"})
         table.exclude(key, "matrix", "the matrix places the camera alone");

@@ -118,6 +118,10 @@ void write(SceneWriter& out, const CameraDescription& camera) {
     } else {
         out.line("fov", tomlNumber(camera.fovY), "degrees, bottom to top");
     }
+    if (camera.shift != std::array<double, 2>{})
+        out.line("shift",
+                 fmt::format("[{}, {}]", tomlNumber(camera.shift[0]), tomlNumber(camera.shift[1])),
+                 "of the film, in heights of the picture: right, up");
     if (camera.pose)
         std::visit([&](const auto& pose) { write(out, pose); }, *camera.pose);
     else
