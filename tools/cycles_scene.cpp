@@ -163,7 +163,7 @@ json cameraJson(const SceneDescription& scene) {
     const bool orthographic = camera.kind == CameraDescription::Kind::Orthographic;
     json out{{"type", orthographic ? "orthographic" : "perspective"},
              {"matrix", toJson(worldFromCamera(*camera.pose))},
-             {"shift", {0, 0}},
+             {"shift", camera.shift},
              {"clip_start", 1e-6},
              {"clip_end", 1e9}};
     if (orthographic)
