@@ -12,6 +12,7 @@
 
 #include "blender.h"
 #include "child_process.h"
+#include "cycles_surfaces.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
@@ -130,6 +131,7 @@ CyclesResult renderWithCycles(const SceneDescription& scene, const LoadedScene& 
     const WorkDirectory directory;
     writeScripts(directory);
     writeText(directory / "scene.json", text);
+    writeCyclesMeshes(directory.string(), scene, loaded);
     const auto onLine = [&](const std::string& line) {
         spdlog::debug("{}", line);
         if (const auto fraction = fractionIn(line)) options.onProgress(*fraction);

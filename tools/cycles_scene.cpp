@@ -2,11 +2,10 @@
 #include "cycles_scene.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "woodcock/base/error.h"
+#include "cycles_json.h"
+#include "cycles_surfaces.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/cycles_mapping.h"
 
 namespace woodcock::tool {
 
@@ -14,35 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-json toJson(Rgb v) { return {v[0], v[1], v[2]}; }
-json toJson(Vec3d v) { return {v.x, v.y, v.z}; }
-json toJson(const Affine3d& m) {
-    json rows = json::array();
-    for (int row = 0; row < 3; ++row)
-        rows.push_back({m.column[0][row], m.column[1][row], m.column[2][row], m.translation[row]});
-    rows.push_back({0, 0, 0, 1});
-    return rows;
-}
-
-template <class... A>
-Error refusal(const std::string& place, fmt::format_string<A...> text, A&&... args) {
-    return inputError("{}{}Cycles cannot express {}", place, place.empty() ? "" : ": ",
-                      fmt::format(text, std::forward<A>(args)...));
-}
-
 // ---- volumes
-
-/// Without scattering, what would scatter is lost to the camera.
-json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters) {
-    if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
-    const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
-    return {{"density", medium.density},
-            {"scatter_colour", toJson(medium.scatterColour)},
-            {"absorb_colour", toJson(medium.absorbColour)},
-            {"scatters", medium.scatters()},
-            {"absorbs", medium.absorbs()},
-            {"g", g}};
-}
 
 class VolumeWriter {
 public:
@@ -55,13 +26,15 @@ public:
 
     void addTo(json& list) const {
         if (std::abs(volume_.g) > cyclesLargestG)
-            throw refusal(place("g"), "a g of {}: it clamps g to +-{}", volume_.g, cyclesLargestG);
+            throw cyclesRefusal(place("g"), "a g of {}: it clamps g to +-{}", volume_.g,
+                                cyclesLargestG);
         if (!volume_.inside.empty())
-            throw refusal(place("inside"), "a volume inside the surface '{}'", volume_.inside);
+            throw cyclesRefusal(place("inside"), "a volume inside the surface '{}'",
+                                volume_.inside);
         if (volume_.repair)
-            throw refusal(place("repair"),
-                          "a volume that is repaired as it is loaded: it reads the "
-                          "file as it is; save it repaired with woodcock convert --repair");
+            throw cyclesRefusal(place("repair"),
+                                "a volume that is repaired as it is loaded: it reads the "
+                                "file as it is; save it repaired with woodcock convert --repair");
         std::visit([&](const auto& c) { add(list, c); }, volume_.coefficients);
     }
 
@@ -71,10 +44,10 @@ private:
     json gridJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
         for (int c = 0; c < field.field->channels(); ++c)
             if (field.field->background(c) != 0)
-                throw refusal(place("file"),
-                              "the background {} of grid '{}': it draws active voxels "
-                              "alone",
-                              field.field->background(c), field.grid);
+                throw cyclesRefusal(place("file"),
+                                    "the background {} of grid '{}': it draws active voxels "
+                                    "alone",
+                                    field.field->background(c), field.grid);
         json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
         grid["file"] = std::filesystem::absolute(volume_.file).string();
         grid["grid"] = field.grid;
@@ -120,7 +93,8 @@ private:
 // ---- lights
 
 json lightJson(const SunDescription& sun, const std::string& place) {
-    if (sun.visible) throw refusal(place, "a sun that the camera sees; leave out its 'visible'");
+    if (sun.visible)
+        throw cyclesRefusal(place, "a sun that the camera sees; leave out its 'visible'");
     const CyclesColour light = cyclesSun(sun.irradiance, sun.angularDiameter);
     return {{"type", "sun"},
             {"direction", toJson(normalize(sun.direction))},
@@ -201,7 +175,7 @@ std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded
     }
     const json out{{"volumes", std::move(volumes)},
                    {"lights", std::move(lights)},
-                   {"surfaces", json::array()},
+                   {"surfaces", cyclesSurfaces(scene, loaded)},
                    {"camera", cameraJson(scene)},
                    {"render", renderJson(scene.render, settings)},
                    {"save", settings.save}};

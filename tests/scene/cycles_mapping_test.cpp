@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/cycles_mapping.h"
+
+#include <gtest/gtest.h>
+
+#include "woodcock/base/random.h"
+#include "woodcock/scene/build.h"
+
+namespace woodcock {
+namespace {
+
+void expectNear(Rgb a, Rgb b, float relative = 1e-6f) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], relative * std::abs(b[c])) << c;
+}
+
+/// As Cycles reads them: Volume Scatter gives density x colour, Volume Absorption density x (1 -
+/// colour).
+Rgb scattering(const CyclesMedium& m) { return m.scatterColour * m.density; }
+Rgb absorption(const CyclesMedium& m) { return (Rgb(1) - m.absorbColour) * m.density; }
+
+TEST(CyclesMapping, MediaKeepTheirCoefficients) {
+    // What a Principled Volume of density 2 and these colours and absorption colours has.
+    struct {
+        Rgb sigmaS, sigmaA;
+    } const cases[] = {{{1, 1.4f, 1.8f}, {1, 0.6f, 0.2f}},
+                       {{1, 1.4f, 1.8f}, {0.5f, 0.3f, 0.1f}},
+                       {{2.4f, 1.4f, 1.8f}, {0, 0.6f, 0.2f}},
+                       {{0, 0, 0}, {3, 2, 0}},
+                       {{5, 0, 1}, {0, 0, 0}}};
+    for (const auto& c : cases) {
+        const CyclesMedium m = cyclesMedium(c.sigmaA, c.sigmaS);
+        expectNear(scattering(m), c.sigmaS);
+        expectNear(absorption(m), c.sigmaA);
+        EXPECT_EQ(m.scatters(), c.sigmaS.maximum() > 0);
+        EXPECT_EQ(m.absorbs(), c.sigmaA.maximum() > 0);
+        for (const Rgb& colour : {m.scatterColour, m.absorbColour}) {
+            EXPECT_GE(colour.minimum(), 0);
+            EXPECT_LE(colour.maximum(), 1);
+        }
+    }
+    EXPECT_FALSE(cyclesMedium(Rgb(0), Rgb(0)).scatters());
+    EXPECT_FALSE(cyclesMedium(Rgb(0), Rgb(0)).absorbs());
+}
+
+TEST(CyclesMapping, OneBounceLessThanScatterings) {
+    EXPECT_EQ(cyclesVolumeBounces(1), 0);
+    EXPECT_EQ(cyclesVolumeBounces(8), 7);
+    EXPECT_EQ(cyclesVolumeBounces(1025), 1024);
+    EXPECT_EQ(cyclesVolumeBounces(5000), 1024);
+    EXPECT_EQ(cyclesVolumeBounces(std::nullopt), 1024);
+}
+
+TEST(CyclesMapping, Lamps) {
+    const CyclesColour point = cyclesPoint({1, 2, 0.5f});
+    EXPECT_NEAR(point.strength, 8 * pi, 1e-5);
+    expectNear(point.colour, {0.5f, 1, 0.25f});
+    const CyclesColour sun = cyclesSun({4, 2, 1}, 0);
+    EXPECT_EQ(sun.strength, 4);
+    expectNear(sun.colour, {1, 0.5f, 0.25f});
+    // Cycles' disc of half angle a has radiance strength / (pi tan^2 a), and gives pi sin^2 a of
+    // it.
+    const double tangent = std::tan(pi / 6), sine = std::sin(pi / 6);
+    const double radiance = cyclesSun(Rgb(3), 60).strength / (pi * tangent * tangent);
+    EXPECT_NEAR(radiance * pi * sine * sine, 3, 1e-6);
+    EXPECT_EQ(cyclesColour(Rgb(0)).strength, 0);
+}
+
+/// Where in an image, u to the right and v downwards, Cycles looks for a direction.
+std::pair<double, double> cyclesLookUp(Vec3d d) {
+    return {0.5 - std::atan2(d.y, d.x) / (2 * pi), std::acos(d.z) / pi};
+}
+/// Where Woodcock's image has it.
+std::pair<double, double> woodcockLookUp(Vec3d d) {
+    return {0.5 + std::atan2(d.x, -d.z) / (2 * pi), std::acos(d.y) / pi};
+}
+
+TEST(CyclesMapping, EnvironmentImagesAreTurnedAlike) {
+    RandomStream random(7);
+    for (const UpAxis up : {UpAxis::Y, UpAxis::Z})
+        for (const double rotation : {0.0, 70.0, -200.0}) {
+            EnvironmentDescription environment;
+            environment.up = up;
+            environment.rotation = rotation;
+            for (int i = 0; i < 20; ++i) {
+                const Vec3d d = normalize(
+                    Vec3d{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5});
+                const auto expected =
+                    woodcockLookUp(worldFromLight(environment).inverse().vector(d));
+                const auto found = cyclesLookUp(cyclesImageFromWorld(environment).vector(d));
+                EXPECT_NEAR(found.first, expected.first, 1e-12);
+                EXPECT_NEAR(found.second, expected.second, 1e-12);
+            }
+        }
+}
+
+}  // namespace
+}  // namespace woodcock
