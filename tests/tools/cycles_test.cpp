@@ -6,13 +6,13 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "cycles_scene.h"
 #include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 #include "tests/support/read_back.h"
 #include "tests/support/run_program.h"
 #include "tests/support/write_vdb.h"
+#include "tools/cycles_scene.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
@@ -164,14 +164,35 @@ TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
     std::string forward = fog;
     forward.replace(forward.find("g = 0.3"), 7, "g = 0.9999");
     refused(forward, {"test.toml:5:", "Cycles cannot express", "0.9999", "0.999"});
-    refused(fog + "[[light]]\ntype = \"sun\"\nangular_diameter = 5\nvisible = true\n",
-            {"test.toml:16:", "a sun that the camera sees"});
+    refused(
+        fog + "[[light]]\ntype = \"sun\"\nelevation = 40\nangular_diameter = 5\nvisible = true\n",
+        {"test.toml:19:", "a sun that the camera sees"});
     refused(fog + "[[surface]]\nplane = {}\n", {"an infinite plane"});
     refused(fog + "[[surface]]\nsphere = {}\nmatte = true\n", {"matte"});
     refused(fog +
                 "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\n[[surface]]\nsphere = "
                 "{}\nmaterial = \"glass\"\n",
             {"replaces volume[0]"});
+}
+
+TEST(BlenderAddOn, MapsCyclesParameters) {
+    if (!fs::exists("/usr/bin/python3")) GTEST_SKIP() << "no python3";
+    const ProgramResult result =
+        runProgram({(sourceDir() / "tests/programs/blender_mapping.py").string(),
+                    (sourceDir() / "tools/blender/woodcock_addon").string()},
+                   {}, "/usr/bin/python3");
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.err.find("Ran 9 tests"), std::string::npos) << result.err;
+}
+
+TEST(Ladder, ScenesParse) {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(sourceDir() / "data/scenes/ladder")) {
+        if (entry.path().extension() != ".toml") continue;
+        EXPECT_NO_THROW(parseScene(entry.path())) << entry.path();
+        ++count;
+    }
+    EXPECT_GE(count, 8);
 }
 
 // ---- with the Blender of this machine
