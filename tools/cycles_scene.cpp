@@ -95,7 +95,7 @@ private:
 json lightJson(const SunDescription& sun, const std::string& place) {
     if (sun.visible)
         throw cyclesRefusal(place, "a sun that the camera sees; leave out its 'visible'");
-    const CyclesColour light = cyclesSun(sun.irradiance, sun.angularDiameter);
+    const CyclesColour light = cyclesColour(sun.irradiance);
     return {{"type", "sun"},
             {"direction", toJson(normalize(sun.direction))},
             {"strength", light.strength},

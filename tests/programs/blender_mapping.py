@@ -62,10 +62,12 @@ class Mapping(unittest.TestCase):
         # The same flux all around: 4 pi r^2 pi L.
         radiance = mapping.sphere_radiance((1, 1, 1), 10, 0.5)[0]
         self.assertAlmostEqual(4 * math.pi * 0.25 * math.pi * radiance, 10)
-        half = math.radians(30)
-        radiance = 3 / (math.pi * math.tan(half) ** 2)
-        self.near(mapping.sun_irradiance((1, 1, 0), 3, 2 * half),
-                  [math.pi * math.sin(half) ** 2 * radiance] * 2 + [0])
+        # As pixels of a white floor under a sun of pi had it.
+        for degrees, share in ((0, 1), (20, 0.99235), (60, 0.92820), (120, 0.66667)):
+            angle = math.radians(degrees)
+            self.assertAlmostEqual(mapping.sun_share((3, 4, 1), angle), share, places=4)
+            self.near(mapping.sun_irradiance((5, 0, 1), (1, 2, 0), 3, angle), (3, 6, 0))
+        self.near(mapping.area_radiance((1, 0, 2), 8, 0.5), (4, 0, 8))
 
     def test_environment(self):
         self.assertAlmostEqual(mapping.environment_rotation(0), -90)

@@ -217,7 +217,6 @@ protected:
         return readBack(dir / "out.exr");
     }
 
-private:
     std::string blender_;
 };
 
@@ -282,24 +281,54 @@ spp = 256
     EXPECT_NEAR(found.y / found.sum, expected.y / expected.sum, 0.05);
 }
 
+/// Their means over all pixels agree within their noise, which the pixels' differences show.
+void expectSameMeans(const ReadBack& theirs, const ReadBack& ours, double largestError) {
+    for (const char* channel : {"R", "G", "B"}) {
+        double a = 0, b = 0, squares = 0;
+        for (int y = 0; y < ours.height; ++y)
+            for (int x = 0; x < ours.width; ++x) {
+                const double p = theirs.at(x, y, channel), q = ours.at(x, y, channel);
+                a += p, b += q, squares += (p - q) * (p - q);
+            }
+        const double error = std::sqrt(squares) / b;
+        EXPECT_LT(error, largestError) << channel;
+        EXPECT_NEAR(a / b, 1, 4 * error) << channel;
+    }
+}
+
 TEST_F(WithBlender, FogIsAsBright) {
     const ReadBack theirs = draw(fogScene, {"--seed", "5"});
     const ProgramResult result =
         runProgram({"render", file("fog.toml"), "-o", file("ours.exr"), "-q", "--spp", "1024"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    const ReadBack ours = readBack(dir / "ours.exr");
-    double a = 0, b = 0, squares = 0;
-    for (int y = 0; y < 24; ++y)
-        for (int x = 0; x < 24; ++x) {
-            const double p = theirs.at(x, y, "R"), q = ours.at(x, y, "R");
-            a += p, b += q, squares += (p - q) * (p - q);
-        }
-    // Pixels that agree differ by noise alone, which their differences show.
-    const double error = std::sqrt(squares) / b;
-    EXPECT_LT(error, 0.002);
-    EXPECT_NEAR(a / b, 1, 4 * error);
+    expectSameMeans(theirs, readBack(dir / "ours.exr"), 0.002);
     EXPECT_TRUE(theirs.attributes.contains("woodcock/blender"));
     EXPECT_TRUE(theirs.attributes.contains("woodcock/cyclesMode"));
+}
+
+TEST_F(WithBlender, ExportsWhatCyclesDraws) {
+    GridSpec grid;
+    grid.name = "density";
+    grid.worldFromIndex = Affine3d::scale({0.1, 0.1, 0.1});
+    grid.box = {{-10, -10, -10}, {10, 10, 10}};
+    grid.value = [](Vec3i p) {
+        return std::max(0.0, 1 - (p.x * p.x + p.y * p.y + p.z * p.z) / 100.0);
+    };
+    writeVdb(dir / "ball.vdb", {grid});
+    const EnvironmentVariable woodcock("WOODCOCK", program().string());
+    const ProgramResult made =
+        runProgram({"-b", "--factory-startup", "--python-exit-code", "1", "-P",
+                    (sourceDir() / "tests/programs/blender_export.py").string(), "--",
+                    (sourceDir() / "tools/blender").string(), dir.path().string()},
+                   {}, blender_);
+    ASSERT_EQ(made.exitCode, 0) << made.out << made.err;
+    EXPECT_NE(made.out.find("CANCELLED 130 True True"), std::string::npos) << made.out;
+    EXPECT_NE(readText(dir / "scene.toml").find("odd: left out: the surface shader"),
+              std::string::npos);
+    const ProgramResult drawn =
+        runProgram({"render", file("scene.toml"), "-o", file("ours.exr"), "-q", "--spp", "1024"});
+    ASSERT_EQ(drawn.exitCode, 0) << drawn.err;
+    expectSameMeans(readBack(dir / "cycles.exr"), readBack(dir / "ours.exr"), 0.002);
 }
 
 }  // namespace

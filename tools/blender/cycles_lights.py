@@ -4,6 +4,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 from cycles_nodes import Nodes
+from mapping import sun_share
 
 
 def place(scene, name, data, matrix):
@@ -15,7 +16,7 @@ def place(scene, name, data, matrix):
 
 def add_sun(scene, name, light):
     sun = bpy.data.lights.new(name, "SUN")
-    sun.energy = light["strength"]
+    sun.energy = light["strength"] / sun_share(bpy.app.version, light["angle"])
     sun.color = light["colour"]
     sun.angle = light["angle"]
     direction = Vector(light["direction"])

@@ -30,13 +30,6 @@ CyclesColour cyclesColour(Rgb light) {
     return largest > 0 ? CyclesColour{largest, light * (1 / largest)} : CyclesColour{};
 }
 
-CyclesColour cyclesSun(Rgb irradiance, double angularDiameter) {
-    CyclesColour sun = cyclesColour(irradiance);
-    const double cosine = std::cos(angularDiameter * pi / 360);
-    sun.strength = static_cast<float>(sun.strength / (cosine * cosine));
-    return sun;
-}
-
 CyclesColour cyclesPoint(Rgb intensity) {
     CyclesColour point = cyclesColour(intensity);
     point.strength = static_cast<float>(point.strength * (4 * pi));

@@ -38,10 +38,6 @@ struct CyclesColour {
 };
 CyclesColour cyclesColour(Rgb light);
 
-/// Of a sun lamp: irradiance on a surface that faces it. Cycles spreads it over the disc of an
-/// angular diameter (degrees) as if the sky were flat there: by the tangent, not the sine.
-CyclesColour cyclesSun(Rgb irradiance, double angularDiameter);
-
 /// Of a point lamp: power, 4 pi times the intensity.
 CyclesColour cyclesPoint(Rgb intensity);
 

@@ -23,8 +23,8 @@ class Exporter:
         self.file = os.path.abspath(file)
         self.problems = []
         self.sections = []
-        self.materials = {}
-        self.mesh_count = 0
+        self.materials = set()
+        self.meshes = {}  # files by object: instances share one
 
     def report(self, what, problem):
         line = "%s: %s" % (what, problem)
@@ -63,7 +63,8 @@ class Exporter:
             self.add_volume(shown, placed)
         elif shown.type == "LIGHT":
             report = lambda problem: self.report(shown.name, problem)
-            self.sections.append(lights.lamp(shown.data, placed, report))
+            self.sections += lights.lamp(
+                shown.data, placed, "lamp %d" % len(self.sections), report)
         elif shown.type in ("MESH", "CURVE", "SURFACE", "META", "FONT"):
             self.add_mesh(shown, placed)
         elif shown.type not in IGNORED:
@@ -147,15 +148,13 @@ class Exporter:
             raise Untranslatable("a volume inside a surface that lets no light in")
         if surface is None:
             report("its medium replaces what is around it, instead of adding to it")
-        name = material.name if material else "default"
-        if name not in self.materials:
-            self.materials[name] = True
-            self.sections.append(materials.section(name, kind, keys))
-        file = "%s.%d.ply" % (os.path.splitext(self.file)[0], self.mesh_count)
-        self.mesh_count += 1
-        meshes.write_ply(mesh, file, textured)
-        section = Section("[[surface]]").set("name", quoted(shown.name))
-        section.set("file", path(os.path.basename(file))).set("material", quoted(name))
+        section = Section("[[surface]]")
+        section.set("file", path(self.mesh_file(shown, mesh, textured)))
+        if material:
+            if material.name not in self.materials:
+                self.materials.add(material.name)
+                self.sections.append(materials.section(material.name, kind, keys))
+            section.set("material", quoted(material.name))
         smooth = any(p.use_smooth for p in mesh.polygons)
         section.set("smooth", 180 if smooth else quoted("flat"))
         section.set("matrix", matrix(placed))
@@ -164,6 +163,14 @@ class Exporter:
         if not shown.original.visible_camera:
             section.set("camera_visible", False)
         self.sections.append(section)
+
+    def mesh_file(self, shown, mesh, textured):
+        key = shown.original.name_full
+        if key not in self.meshes:
+            file = "%s.%d.ply" % (os.path.splitext(self.file)[0], len(self.meshes))
+            meshes.write_ply(mesh, file, textured)
+            self.meshes[key] = os.path.basename(file)
+        return self.meshes[key]
 
     # ---- the rest
 
@@ -220,7 +227,7 @@ class Exporter:
         section.set("spp", cycles.samples)
         section.set("max_scatterings",
                     mapping.max_scatterings(cycles.volume_bounces, cycles.max_bounces))
-        if self.mesh_count:
+        if self.meshes:
             section.set("max_bounces", cycles.max_bounces)
         return section
 

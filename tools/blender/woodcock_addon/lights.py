@@ -3,11 +3,11 @@
 import os
 
 import bpy
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
 from . import mapping
 from .sockets import Untranslatable, named, product, scalar, source
-from .toml_text import Section, colour, path, quoted, value
+from .toml_text import Section, colour, matrix, path, quoted, value
 
 
 def lamp_colour(lamp):
@@ -27,18 +27,45 @@ def lamp_colour(lamp):
     return tint
 
 
-def lamp(lamp, placed, report):
+def area(lamp, placed, name, report):
+    """Sections of a surface that emits, and its material of this name."""
+    width, depth = lamp.size, lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size
+    if lamp.spread < 3.1415:
+        report("an area lamp's spread is left out")
+    report("an area lamp becomes a surface, which stands in the way of light")
+    round_one = lamp.shape in ("DISK", "ELLIPSE")
+    # Woodcock's shapes lie in y = 0 and face +y, lamps shine along -z.
+    turned = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+    where = placed @ turned @ Matrix.Diagonal((width, 1, depth, 1))
+    x, z = where.col[0].to_3d(), where.col[2].to_3d()
+    size = x.cross(z).length * (0.25 * 3.141592653589793 if round_one else 1)
+    radiance = colour(mapping.area_radiance(lamp_colour(lamp), lamp.energy, size))
+    material = Section("[[material]]").set("name", quoted(name))
+    material.set("type", quoted("emissive")).set("radiance", radiance)
+    surface = Section("[[surface]]").set("material", quoted(name))
+    if round_one:
+        surface.set("disk", {"radius": 0.5})
+    else:
+        surface.set("plane", {"size": [1, 1]})
+    return [material, surface.set("matrix", matrix(where)).set("camera_visible", False)]
+
+
+def lamp(lamp, placed, name, report):
+    """Sections of a scene file; `name` is one that nothing else in it has."""
+    if not getattr(lamp, "normalize", True):
+        raise Untranslatable("a lamp whose power grows with its size")
+    if lamp.type == "AREA":
+        return area(lamp, placed, name, report)
     tint = lamp_colour(lamp)
     section = Section("[[light]]")
     if lamp.type == "SUN":
         direction = placed.to_3x3() @ Vector((0, 0, -1))
         section.set("type", quoted("sun")).set("direction", value(direction.normalized()))
-        section.set("irradiance", colour(mapping.sun_irradiance(tint, lamp.energy, lamp.angle)))
+        section.set("irradiance", colour(mapping.sun_irradiance(
+            bpy.app.version, tint, lamp.energy, lamp.angle)))
         if lamp.angle > 0:
             section.set("angular_diameter", lamp.angle * 57.29577951308232)
     elif lamp.type == "POINT":
-        if not getattr(lamp, "normalize", True):
-            raise Untranslatable("a lamp whose power grows with its size")
         radius = lamp.shadow_soft_size
         position = value(placed.translation)
         if radius > 0:
@@ -51,7 +78,7 @@ def lamp(lamp, placed, report):
             section.set("intensity", colour(mapping.point_intensity(tint, lamp.energy)))
     else:
         raise Untranslatable("lamps of type %s" % lamp.type.lower())
-    return section
+    return [section]
 
 
 def world(world, report):

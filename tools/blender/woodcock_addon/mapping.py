@@ -56,10 +56,17 @@ def voxel_offset(version):
     return 0.0 if tuple(version) >= (5, 0, 0) else -0.5
 
 
-def sun_irradiance(colour, strength, angle):
-    """On a surface that faces it. Cycles spreads the strength over the disc of an angular diameter
-    (radians) by the tangent of half of it; by the sine it is less."""
-    return [c * strength * math.cos(angle / 2) ** 2 for c in colour]
+def sun_share(version, angle):
+    """What a sun's strength is to be multiplied by for the irradiance on a surface that faces it.
+    Blender 3.4 gives less the larger the angular diameter (radians) is, 5.0 does not; from when on
+    is not known, and matters from some 10 degrees on."""
+    cosine = math.cos(angle / 2)
+    return 1.0 if tuple(version) >= (4, 0, 0) else 2 * cosine / (1 + cosine)
+
+
+def sun_irradiance(version, colour, strength, angle):
+    """On a surface that faces it."""
+    return [c * strength * sun_share(version, angle) for c in colour]
 
 
 def point_intensity(colour, power):
@@ -70,6 +77,11 @@ def point_intensity(colour, power):
 def sphere_radiance(colour, power, radius):
     """Of a point lamp with a radius."""
     return [c * power / (4 * math.pi ** 2 * radius ** 2) for c in colour]
+
+
+def area_radiance(colour, power, area):
+    """Of an area lamp, to its front."""
+    return [c * power / (4 * area) for c in colour]
 
 
 def environment_rotation(mapping_z):

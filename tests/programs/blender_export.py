@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a scene in Blender, exports it and renders it with Cycles:
+
+blender -b -P blender_export.py -- ADD_ON'S_PARENT DIRECTORY, which holds ball.vdb. Writes scene.toml
+and cycles.exr there, and prints what could not be translated.
+"""
+import os
+import sys
+
+parent, directory = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:]
+sys.path.insert(0, parent)
+
+import bpy  # before bmesh, where it is a Python's module
+
+import bmesh
+import woodcock_addon
+from woodcock_addon.render_process import RenderProcess
+
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+scene.render.engine = "CYCLES"
+
+
+def place(name, data, **where):
+    placed = bpy.data.objects.new(name, data)
+    scene.collection.objects.link(placed)
+    for key, value in where.items():
+        setattr(placed, key, value)
+    return placed
+
+
+def material(name, kind, output, **inputs):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    made.node_tree.nodes.clear()
+    shader = made.node_tree.nodes.new(kind)
+    for key, value in inputs.items():
+        shader.inputs[key.replace("_", " ")].default_value = value
+    end = made.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    made.node_tree.links.new(shader.outputs[0], end.inputs[output])
+    return made, shader
+
+
+def mesh(name, make, made, **where):
+    data = bpy.data.meshes.new(name)
+    shape = bmesh.new()
+    make(shape)
+    shape.to_mesh(data)
+    shape.free()
+    data.materials.append(made)
+    place(name, data, **where)
+
+
+smoke = bpy.data.volumes.new("smoke")
+smoke.filepath = os.path.join(directory, "ball.vdb")
+smoke.render.clipping = 0
+made, shader = material("smoke", "ShaderNodeVolumePrincipled", "Volume",
+                        Color=(0.8, 0.8, 0.8, 1), Anisotropy=0.2, Density_Attribute="")
+grid = made.node_tree.nodes.new("ShaderNodeAttribute")
+grid.attribute_name = "density"
+times = made.node_tree.nodes.new("ShaderNodeMath")
+times.operation = "MULTIPLY"
+times.inputs[1].default_value = 6
+made.node_tree.links.new(grid.outputs["Fac"], times.inputs[0])
+made.node_tree.links.new(times.outputs[0], shader.inputs["Density"])
+smoke.materials.append(made)
+place("smoke", smoke, scale=(0.5, 0.4, 0.3), rotation_euler=(0.3, 0.2, 0.5), location=(0.1, 0, 0.2))
+
+floor = material("floor", "ShaderNodeBsdfDiffuse", "Surface", Color=(0.7, 0.4, 0.3, 1))[0]
+mesh("floor", lambda shape: bmesh.ops.create_grid(shape, x_segments=2, y_segments=2, size=4), floor,
+     location=(0, 0, -0.8))
+toon = material("toon", "ShaderNodeBsdfToon", "Surface")[0]
+mesh("odd", lambda shape: bmesh.ops.create_cube(shape, size=1), toon, location=(0, 50, 0))
+
+sun = bpy.data.lights.new("sun", "SUN")
+sun.energy, sun.color, sun.angle = 3, (1, 0.9, 0.7), 0.1
+place("sun", sun, rotation_euler=(0.7, 0.2, 0.4))
+lamp = bpy.data.lights.new("lamp", "POINT")
+lamp.energy, lamp.shadow_soft_size = 200, 0
+place("lamp", lamp, location=(2, -1, 2.5))
+world = bpy.data.worlds.new("world")
+world.use_nodes = True
+world.node_tree.nodes["Background"].inputs[0].default_value = (0.2, 0.3, 0.5, 1)
+scene.world = world
+
+camera = bpy.data.cameras.new("camera")
+camera.lens, camera.shift_x, camera.shift_y = 55, 0.1, -0.05
+scene.camera = place("camera", camera, location=(5, -6, 4), rotation_euler=(1.1, 0, 0.69))
+render, cycles = scene.render, scene.cycles
+render.resolution_x, render.resolution_y, render.resolution_percentage = 96, 64, 50
+cycles.samples = 256
+cycles.use_adaptive_sampling = cycles.use_denoising = False
+cycles.max_bounces = cycles.volume_bounces = cycles.diffuse_bounces = 64
+cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0
+cycles.pixel_filter_type, cycles.filter_width = "BOX", 1
+cycles.volume_step_rate, cycles.volume_max_steps = 0.2, 4096
+
+target = os.path.join(directory, "scene.toml")
+woodcock_addon.register()
+bpy.ops.export_scene.woodcock(filepath=target)
+woodcock_addon.unregister()
+render.image_settings.file_format = "OPEN_EXR"
+render.image_settings.color_depth = "32"
+render.image_settings.color_mode = "RGB"
+render.filepath = os.path.join(directory, "cycles.exr")
+bpy.ops.render.render(write_still=True)
+
+# A render that is cancelled writes what it has.
+if "WOODCOCK" in os.environ:
+    image = os.path.join(directory, "cancelled.exr")
+    process = RenderProcess(os.environ["WOODCOCK"], target, image)
+    while process.poll() is None and process.fraction == 0:
+        pass
+    process.cancel()
+    print("CANCELLED", process.poll(), process.fraction < 1, os.path.exists(image))
