@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cycles_scene.h"
 
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 
 #include "cycles_json.h"
@@ -147,9 +149,32 @@ json cameraJson(const SceneDescription& scene) {
     return out;
 }
 
-json renderJson(const RenderDescription& render, const CyclesSettings& settings) {
+/// Cycles bounds diffuse, glossy and transmitted bounces each by itself, or all kinds together.
+json bouncesJson(const SceneDescription& scene) {
+    const RenderDescription& render = scene.render;
+    bool media = !scene.volumes.empty();
+    for (const SurfaceDescription& surface : scene.surfaces) media |= surface.interior.has_value();
+    json out{{"volume", render.maxScatterings == 0 ? 0 : cyclesBounces(render.maxScatterings)},
+             {"surface", cyclesMostBounces},
+             {"all", cyclesMostBounces}};
+    if (scene.surfaces.empty() || !render.maxBounces) return out;
+    const std::string place = findPlace(scene.places, "render.max_bounces");
+    if (*render.maxBounces == 0)
+        throw cyclesRefusal(place, "surfaces that reflect nothing, max_bounces = 0");
+    out["surface"] = cyclesBounces(render.maxBounces);
+    if (media)
+        spdlog::warn(
+            "{}: Cycles bounds diffuse, glossy and transmitted bounces by {} each, not "
+            "together",
+            place, *render.maxBounces);
+    else
+        out["all"] = out["surface"];
+    return out;
+}
+
+json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
     constexpr std::uint64_t seeds = 0x7fffffff;
-    const bool scatters = render.maxScatterings != 0;
+    const RenderDescription& render = scene.render;
     return {{"resolution", {render.width, render.height}},
             {"spp", render.spp},
             {"seed", render.seed % seeds},
@@ -157,8 +182,7 @@ json renderJson(const RenderDescription& render, const CyclesSettings& settings)
             {"step_rate", settings.stepRate},
             {"threads", settings.threads},
             {"draw", settings.draw},
-            {"volume_bounces", scatters ? cyclesVolumeBounces(render.maxScatterings) : 0},
-            {"max_bounces", cyclesMostBounces}};
+            {"bounces", bouncesJson(scene)}};
 }
 
 }  // namespace
@@ -177,7 +201,7 @@ std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded
                    {"lights", std::move(lights)},
                    {"surfaces", cyclesSurfaces(scene, loaded)},
                    {"camera", cameraJson(scene)},
-                   {"render", renderJson(scene.render, settings)},
+                   {"render", renderJson(scene, settings)},
                    {"save", settings.save}};
     return out.dump(1);
 }

@@ -43,11 +43,11 @@ TEST(CyclesMapping, MediaKeepTheirCoefficients) {
 }
 
 TEST(CyclesMapping, OneBounceLessThanScatterings) {
-    EXPECT_EQ(cyclesVolumeBounces(1), 0);
-    EXPECT_EQ(cyclesVolumeBounces(8), 7);
-    EXPECT_EQ(cyclesVolumeBounces(1025), 1024);
-    EXPECT_EQ(cyclesVolumeBounces(5000), 1024);
-    EXPECT_EQ(cyclesVolumeBounces(std::nullopt), 1024);
+    EXPECT_EQ(cyclesBounces(1), 0);
+    EXPECT_EQ(cyclesBounces(8), 7);
+    EXPECT_EQ(cyclesBounces(1025), 1024);
+    EXPECT_EQ(cyclesBounces(5000), 1024);
+    EXPECT_EQ(cyclesBounces(std::nullopt), 1024);
 }
 
 TEST(CyclesMapping, Lamps) {

@@ -146,8 +146,16 @@ nlohmann::json written(const std::string& text) {
 
 TEST(CyclesScene, ScatteringsBecomeBounces) {
     const std::string fog = fogScene;
-    EXPECT_EQ(written(fog)["render"]["volume_bounces"], 1024);
-    EXPECT_EQ(written(fog + "max_scatterings = 5\n")["render"]["volume_bounces"], 4);
+    EXPECT_EQ(written(fog)["render"]["bounces"]["volume"], 1024);
+    EXPECT_EQ(written(fog + "max_scatterings = 5\n")["render"]["bounces"]["volume"], 4);
+    // Those off surfaces are bounded together only where nothing else bounces.
+    const std::string bounded = fog + "max_bounces = 3\n";
+    EXPECT_EQ(written(bounded)["render"]["bounces"]["surface"], 1024);
+    const std::string floor = "[[surface]]\nplane = { size = [4, 4] }\n";
+    EXPECT_EQ(written(bounded + floor)["render"]["bounces"]["surface"], 2);
+    EXPECT_EQ(written(bounded + floor)["render"]["bounces"]["all"], 1024);
+    const std::string empty = bounded.substr(bounded.find("[[light]]"));
+    EXPECT_EQ(written(empty + floor)["render"]["bounces"]["all"], 2);
     // Without any, what would scatter is lost.
     const auto none = written(fog + "max_scatterings = 0\n")["volumes"][0];
     EXPECT_FALSE(none["scatters"]);

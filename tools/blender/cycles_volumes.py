@@ -9,13 +9,16 @@ from mapping import voxel_offset
 
 def medium(nodes, description, density=None, albedo=None):
     """Sockets of shaders that scatter and absorb: sigma_s = density x scatter_colour,
-    sigma_a = density x (1 - absorb_colour). The sockets `density` and `albedo` multiply the
-    description's own numbers."""
+    sigma_a = density x (1 - absorb_colour). The sockets `density` (a number, or a colour) and
+    `albedo` multiply the description's own numbers."""
     amount = description["density"]
-    if density is not None:
-        amount = nodes.multiply(density, amount)
     scatter_colour = description["scatter_colour"]
     absorb_colour = description["absorb_colour"]
+    if density is not None and density.type == "VALUE":
+        amount = nodes.multiply(density, amount)
+    elif density is not None:
+        scatter_colour = nodes.multiply_add(density, scatter_colour, (0, 0, 0))
+        absorb_colour = nodes.multiply_add(density, [a - 1 for a in absorb_colour], (1, 1, 1))
     if albedo is not None:
         # What an albedo's grid takes from scattering is absorbed.
         scatter_colour = nodes.multiply_add(albedo, description["scatter_colour"], (0, 0, 0))
@@ -45,6 +48,16 @@ def grid_socket(nodes, volume, name, output):
     return nodes.add("ShaderNodeAttribute", {"attribute_name": name}).outputs[output]
 
 
+def check_alike(description):
+    """Before 5.0, both grids are moved by half of the density's voxel."""
+    both = [description[key] for key in ("object_from_index", "albedo_from_index")]
+    voxels = [[row[:3] for row in matrix[:3]] for matrix in both]
+    if voxel_offset(bpy.app.version) and voxels[0] != voxels[1]:
+        raise Refused("Blender %s draws the grids '%s' and '%s' aside, as their voxels differ; "
+                      "5.0 does not" % (bpy.app.version_string, description["grid"],
+                                        description["albedo_grid"]))
+
+
 def add_grid(scene, name, description):
     volume = bpy.data.volumes.new(name)
     volume.filepath = description["file"]
@@ -56,10 +69,15 @@ def add_grid(scene, name, description):
     material = bpy.data.materials.new(name)
     nodes = Nodes(material)
     output = nodes.add("ShaderNodeOutputMaterial")
-    density = grid_socket(nodes, volume, description["grid"], "Fac")
+    density = grid_socket(nodes, volume, description["grid"],
+                          "Color" if description["colour"] else "Fac")
     albedo = description["albedo_grid"]
     if albedo:
+        if description["colour"]:
+            raise Refused("the density grid '%s' is of colours, and so is '%s'"
+                          % (description["grid"], albedo))
         albedo = grid_socket(nodes, volume, albedo, "Color")
+        check_alike(description)
     fill(nodes, output, medium(nodes, description, density, albedo))
     volume.materials.append(material)
     placed = bpy.data.objects.new(name, volume)

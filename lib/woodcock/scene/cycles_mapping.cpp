@@ -21,8 +21,8 @@ CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
     return medium;
 }
 
-int cyclesVolumeBounces(std::optional<int> maxScatterings) {
-    return std::min(maxScatterings.value_or(cyclesMostBounces + 1) - 1, cyclesMostBounces);
+int cyclesBounces(std::optional<int> events) {
+    return std::min(events.value_or(cyclesMostBounces + 1) - 1, cyclesMostBounces);
 }
 
 CyclesColour cyclesColour(Rgb light) {

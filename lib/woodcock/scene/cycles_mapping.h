@@ -27,9 +27,9 @@ constexpr float cyclesLargestG = 0.999f;
 
 /// The most bounces of any kind that Blender counts.
 constexpr int cyclesMostBounces = 1024;
-/// Cycles' m volume bounces are m + 1 scatterings: the last one is still lit by lamps. Needs
-/// maxScatterings > 0.
-int cyclesVolumeBounces(std::optional<int> maxScatterings);
+/// Cycles' m bounces are m + 1 scatterings, or reflections: the last one is still lit by lamps.
+/// Absent: unlimited. Needs `events` > 0.
+int cyclesBounces(std::optional<int> events);
 
 /// A colour of which the largest channel is 1, and what it is to be multiplied by.
 struct CyclesColour {

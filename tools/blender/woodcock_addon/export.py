@@ -228,8 +228,13 @@ class Exporter:
         section.set("max_scatterings",
                     mapping.max_scatterings(cycles.volume_bounces, cycles.max_bounces))
         if self.meshes:
-            section.set("max_bounces", cycles.max_bounces)
+            section.set("max_bounces", mapping.max_scatterings(
+                max(self.surface_bounces()), cycles.max_bounces))
         return section
+
+    def surface_bounces(self):
+        cycles = self.scene.cycles
+        return cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces
 
     def check_settings(self):
         """What in Cycles' settings changes its picture's mean."""
@@ -239,6 +244,10 @@ class Exporter:
             report("Cycles clamps bright samples, Woodcock none")
         if cycles.light_sampling_threshold > 0:
             report("Cycles leaves out weak light (Light Threshold), Woodcock none")
+        bounces = self.surface_bounces()
+        if self.meshes and min(bounces) < min(cycles.max_bounces, max(bounces)):
+            report("Cycles bounds diffuse, glossy and transmitted bounces each, %d, %d and %d; "
+                   "Woodcock takes the most for all" % bounces)
         if cycles.pixel_filter_type != "BOX" or cycles.filter_width != 1:
             report("Cycles filters pixels (%s), Woodcock's are boxes of one"
                    % cycles.pixel_filter_type.lower())

@@ -45,7 +45,8 @@ def clamped_g(g):
 
 
 def max_scatterings(volume_bounces, max_bounces):
-    """m bounces allow m + 1 scatterings: light is sampled at the last one too."""
+    """m bounces allow m + 1 scatterings: light is sampled at the last one too. The same holds for
+    surfaces."""
     return min(volume_bounces, max_bounces) + 1
 
 
