@@ -44,4 +44,7 @@ def main():
         print("wrote " + file)
 
 
-main()
+try:
+    main()
+except OSError as error:
+    sys.exit("export_scene.py: %s" % error)

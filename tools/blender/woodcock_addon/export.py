@@ -75,6 +75,8 @@ class Exporter:
         if not volume.grids.load():
             raise Untranslatable("its file does not load: %s" % volume.grids.error_message)
         names = [grid.name for grid in volume.grids]
+        if not names:
+            raise Untranslatable("it has no grids at frame %d" % self.scene.frame_current)
         file = volume.grids.frame_filepath or bpy.path.abspath(volume.filepath)
         if not os.path.isfile(file):
             raise Untranslatable("its grids are not those of a file")
