@@ -129,7 +129,7 @@ ChildResult runChild(const std::vector<std::string>& command,
             kill(-child, SIGKILL);
         }
     }
-    if (result.stopped) kill(-child, SIGKILL);  // what it left behind
+    kill(-child, SIGKILL);  // what it left behind
     if (!started) throw usageError("cannot start '{}': {}", command[0], std::strerror(reason));
     while (readSome(output.reading(), lines, 0)) {
     }

@@ -189,6 +189,9 @@ json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
 
 std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded,
                         const CyclesSettings& settings) {
+    if (scene.render.transparentShadows)
+        throw cyclesRefusal(findPlace(scene.places, "render.transparent_shadows"),
+                            "Woodcock's transparent shadows");
     json volumes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         VolumeWriter(scene, loaded, i).addTo(volumes);

@@ -175,6 +175,7 @@ TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
     refused(
         fog + "[[light]]\ntype = \"sun\"\nelevation = 40\nangular_diameter = 5\nvisible = true\n",
         {"test.toml:19:", "a sun that the camera sees"});
+    refused(fog + "transparent_shadows = true\n", {"test.toml:15:", "transparent shadows"});
     refused(fog + "[[surface]]\nplane = {}\n", {"an infinite plane"});
     refused(fog + "[[surface]]\nsphere = {}\nmatte = true\n", {"matte"});
     refused(fog +
