@@ -10,7 +10,7 @@ namespace woodcock::tool {
 // reports what goes wrong by throwing, and another exit code than 0 by throwing CLI::RuntimeError.
 
 CLI::App& addBakeCommand(CLI::App& app);
-CLI::App& addCompareCommand(CLI::App& app);
+CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine);
 CLI::App& addConvertCommand(CLI::App& app);
 CLI::App& addInfoCommand(CLI::App& app);
 CLI::App& addVerifyCommand(CLI::App& app);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "commands.h"
 #include "compare_command.h"
+#include "compare_cycles.h"
 #include "compare_report.h"
 #include "option_kinds.h"
 #include "woodcock/base/whole_file.h"
@@ -129,6 +131,23 @@ std::pair<PictureSource*, std::string> forImage(std::vector<PictureSource>& sour
 struct CompareWords {
     std::vector<std::string> files, more, colourSpaces;
     CompareOptions options;
+    std::filesystem::path scene;  ///< of --cycles
+    BothOptions cycles;
+
+    /// The options of --cycles that were given beside files.
+    void check() const {
+        const bool both = !scene.empty();
+        if (!both && files.empty())
+            throw usageError(
+                "there is nothing to compare; name two images or more, or a scene after --cycles");
+        if (both && !(files.empty() && more.empty() && colourSpaces.empty()))
+            throw usageError(
+                "--cycles renders both images itself; give images or --cycles, not both");
+        if (!both && (cycles.spp || cycles.seeds || cycles.mode || cycles.stepRate ||
+                      !cycles.blender.empty() || !cycles.input.overrides.empty()))
+            throw usageError(
+                "--spp, --seeds, --mode, --step-rate, --blender and --set belong to --cycles");
+    }
 
     CompareOptions sorted() const {
         CompareOptions o = options;
@@ -149,16 +168,58 @@ void write(const std::filesystem::path& file, const std::string& text) {
     writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
 }
 
+void makeDirectory(const std::filesystem::path& directory) {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error)
+        throw usageError("--report: cannot make the directory '{}': {}", directory.string(),
+                         error.message());
+}
+
 /// Makes the report's directory.
 void prepareReport(const CompareOptions& o) {
     if (o.report.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(o.report, error);
-    if (error)
-        throw usageError("--report: cannot make the directory '{}': {}", o.report.string(),
-                         error.message());
+    makeDirectory(o.report);
     checkWritable(jsonFile(o));
     checkWritable(htmlFile(o));
+}
+
+/// A directory that is gone with everything in it at the end.
+class ScratchDirectory {
+public:
+    ScratchDirectory() {
+        std::string name =
+            (std::filesystem::temp_directory_path() / "woodcock-compare-XXXXXX").string();
+        if (!mkdtemp(name.data())) throw failure("cannot make the directory '{}'", name);
+        path_ = name;
+    }
+    ~ScratchDirectory() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    ScratchDirectory(const ScratchDirectory&) = delete;
+    ScratchDirectory& operator=(const ScratchDirectory&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+int run(const CompareWords& words, const std::string& commandLine) {
+    words.check();
+    CompareOptions o = words.sorted();
+    if (words.scene.empty()) return runCompare(o);
+    BothOptions both = words.cycles;
+    both.input.files = {words.scene};
+    for (const std::string& limit : o.failAbove) parseLimit(limit);
+    if (!o.report.empty()) {
+        makeDirectory(o.report);
+        o.sources = renderBoth(both, o.report, commandLine);
+        return runCompare(o);
+    }
+    const ScratchDirectory scratch;
+    o.sources = renderBoth(both, scratch.path(), commandLine);
+    return runCompare(o);
 }
 
 }  // namespace
@@ -183,7 +244,7 @@ int runCompare(const CompareOptions& o) {
     return exceeds(comparison, o.failAbove) ? 1 : 0;
 }
 
-CLI::App& addCompareCommand(CLI::App& app) {
+CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
     CLI::App* command = app.add_subcommand(
         "compare",
         "Holds images against the first of them: metrics, tests against noise, a page to look at");
@@ -193,8 +254,33 @@ CLI::App& addCompareCommand(CLI::App& app) {
         ->add_option("FILE", words->files,
                      "images, any that OpenImageIO reads: the first is the reference A, the others "
                      "are B, C, ...")
-        ->required()
         ->type_name("FILE");
+    command
+        ->add_option(
+            "--cycles", words->scene,
+            "instead of images: renders this scene (.toml, or .vdb) by Woodcock (A) and by "
+            "Blender's Cycles (B), into the report's directory where there is one")
+        ->type_name("SCENE");
+    addCount(*command, "--spp", words->cycles.spp, 1, 16777216,
+             "of --cycles: samples per pixel of each seed (the scene's)");
+    addCount(*command, "--seeds", words->cycles.seeds, 2, 64,
+             "of --cycles: renders by each program, whose scatter is the error (2)");
+    addChoice(*command, "--mode", words->cycles.mode, {"null", "biased"},
+              "of --cycles: null-collision tracking or ray marching:")
+        ->type_name("MODE");
+    addParsed(
+        *command, "--step-rate", words->cycles.stepRate,
+        [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
+        "of --cycles --mode biased")
+        ->type_name("NUMBER");
+    command
+        ->add_option("--blender", words->cycles.blender,
+                     "of --cycles: Blender's program, or a Python with bpy; else $BLENDER, else on "
+                     "the PATH")
+        ->type_name("PROGRAM");
+    addList(*command, "--set", words->cycles.input.overrides,
+            "of --cycles: sets a value of the scene, such as volume[0].scale=2")
+        ->type_name("KEY=VALUE");
     addList(*command, "--more", words->more,
             "another seed of an image, as in A=second.exr: their mean is compared, and their "
             "scatter is the error where the files have no layer 'error'")
@@ -230,8 +316,8 @@ CLI::App& addCompareCommand(CLI::App& app) {
         ->add_option("--ocio", o.ocio,
                      "OpenColorIO config ($OCIO, or the one that comes with the program)")
         ->type_name("FILE");
-    command->callback([words] {
-        if (const int code = runCompare(words->sorted())) throw CLI::RuntimeError(code);
+    command->callback([words, commandLine] {
+        if (const int code = run(*words, commandLine)) throw CLI::RuntimeError(code);
     });
     return *command;
 }

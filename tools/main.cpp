@@ -96,7 +96,7 @@ int run(int argc, char** argv) {
     tool::addBakeCommand(app);
     tool::addConvertCommand(app);
     tool::addInfoCommand(app);
-    tool::addCompareCommand(app);
+    tool::addCompareCommand(app, commandLine(argc, argv));
     tool::addVerifyCommand(app);
     tool::addCyclesCommand(app, commandLine(argc, argv));
     for (CLI::App* command : app.get_subcommands(nullptr))

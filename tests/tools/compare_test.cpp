@@ -181,7 +181,7 @@ TEST_F(CompareCommand, WhatCannotBeCompared) {
     expectFailure({a, small}, 3, {"is 16 x 12 pixels", "is 8 x 12", "--resample"});
     expectFailure({a, depth}, 3, {"no channel in common", "has R, G, B", "has Z"});
     expectFailure({a}, 2, {"2 to 26 images, not 1"});
-    expectFailure({}, 2, {"no FILE is given"});
+    expectFailure({}, 2, {"nothing to compare"});
     expectFailure({a, a, "--more", "C=x.exr"}, 2, {"--more: 'C=x.exr'", "A to B"});
     expectFailure({a, a, "--more", "B=" + small}, 3, {"small.exr", "is no other seed of"});
     expectFailure({a, a, "--colour-space", "B=foo"}, 3, {"'foo'", "ACEScg"});

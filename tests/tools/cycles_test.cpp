@@ -122,6 +122,21 @@ TEST_F(Cycles, RefusesWrongUsage) {
     expectFailure({"cycles", file("none.toml"), "-o", file("out.exr")}, 3, {"none.toml"});
 }
 
+TEST_F(Cycles, CompareRefusesWrongUsage) {
+    const auto expectRefused = [](const std::vector<std::string>& arguments, const char* part) {
+        const ProgramResult run = runProgram(arguments);
+        EXPECT_EQ(run.exitCode, 2) << run.err;
+        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    };
+    expectRefused({"compare"}, "nothing to compare");
+    expectRefused({"compare", "a.exr", "--cycles", file("fog.toml")}, "not both");
+    expectRefused({"compare", "a.exr", "b.exr", "--spp", "4"}, "belong to --cycles");
+    expectRefused({"compare", "--cycles", file("fog.toml"), "--blender", file("none"), "--report",
+                   file("report")},
+                  "none");
+    EXPECT_FALSE(fs::exists(dir / "report/compare.html"));
+}
+
 TEST_F(Cycles, EndsWhatItStartedWhenInterrupted) {
     writeText(dir / "pid", "");
     RunningProgram program(
@@ -313,6 +328,19 @@ TEST_F(WithBlender, FogIsAsBright) {
     expectSameMeans(theirs, readBack(dir / "ours.exr"), 0.002);
     EXPECT_TRUE(theirs.attributes.contains("woodcock/blender"));
     EXPECT_TRUE(theirs.attributes.contains("woodcock/cyclesMode"));
+}
+
+TEST_F(WithBlender, CompareRendersBoth) {
+    const ProgramResult run =
+        runProgram({"compare", "--cycles", file("fog.toml"), "--blender", blender_, "--spp", "16",
+                    "--report", file("report"), "--json"});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_NE(run.err.find("B: Cycles of Blender"), std::string::npos) << run.err;
+    for (const char* name : {"woodcock.exr", "woodcock_2.exr", "cycles.exr", "cycles_2.exr",
+                             "compare.html", "compare.json"})
+        EXPECT_TRUE(fs::exists(dir / "report" / name)) << name;
+    const auto json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json.at("images").size(), 2u) << run.out;
 }
 
 TEST_F(WithBlender, ExportsWhatCyclesDraws) {

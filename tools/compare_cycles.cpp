@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compare_cycles.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cycles_render.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "woodcock/image/outputs.h"
+#include "woodcock/render/session.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/write.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int interruptedCode = 130, fewestSeeds = 2;
+
+[[noreturn]] void stop() {
+    spdlog::warn("interrupted: nothing is compared");
+    throw CLI::RuntimeError(interruptedCode);
+}
+
+double renderOurs(const Scene& scene, const SceneDescription& description,
+                  const std::filesystem::path& file, const std::string& commandLine,
+                  ProgressStyle style) {
+    const RenderDescription& render = description.render;
+    OutputSettings outputSettings;
+    outputSettings.files = {file};
+    outputSettings.layers = layersFromNames({"error"});
+    const Outputs outputs(std::move(outputSettings));
+    RenderSettings settings;
+    settings.width = render.width, settings.height = render.height;
+    settings.endSample = render.spp;
+    settings.seed = render.seed;
+    settings.maxScatterings = render.maxScatterings;
+    settings.maxBounces = render.maxBounces;
+    settings.transparentShadows = render.transparentShadows;
+    Progress progress(style);
+    progress.start(settings);
+    const RenderResult result = woodcock::render(scene, settings, [&](const RenderProgress& now) {
+        progress.update(now);
+        return !interrupted();
+    });
+    progress.finish(result);
+    if (result.reason == StopReason::Interrupted) stop();
+    outputs.write(result.film, {0, result.endSample, render.seed, result.seconds,
+                                sceneDigest(description), commandLine});
+    return result.seconds;
+}
+
+CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene& loaded,
+                          const BothOptions& o, const std::filesystem::path& file,
+                          const std::string& commandLine, ProgressStyle style) {
+    CyclesOptions cycles;
+    cycles.settings.mode = o.mode.value_or("");
+    cycles.settings.stepRate = o.stepRate.value_or(cycles.settings.stepRate);
+    cycles.blender = o.blender;
+    cycles.image = file;
+    cycles.commandLine = commandLine;
+    cycles.shouldStop = interrupted;
+    WorkProgress progress(style, "cycles");
+    cycles.onProgress = [&](double fraction) { progress.update(fraction); };
+    CyclesResult result = renderWithCycles(description, loaded, cycles);
+    if (result.stopped) stop();
+    return result;
+}
+
+}  // namespace
+
+std::vector<PictureSource> renderBoth(const BothOptions& o, const std::filesystem::path& directory,
+                                      const std::string& commandLine) {
+    const ProgressStyle style = progressStyle("auto");
+    catchInterrupts();
+    checkInput(o.input);
+    SceneDescription description = parseInput(o.input);
+    description.render.spp = o.spp.value_or(description.render.spp);
+    const LoadedScene loaded = loadAndComplete(description);
+    const Scene scene = buildScene(description, loaded);
+
+    std::vector<PictureSource> sources(2);
+    double ours = 0, theirs = 0;
+    CyclesResult last;
+    const std::uint64_t firstSeed = description.render.seed;
+    const int seeds = o.seeds.value_or(fewestSeeds);
+    for (int i = 0; i < seeds; ++i) {
+        description.render.seed = firstSeed + static_cast<std::uint64_t>(i);
+        const std::string suffix = i == 0 ? ".exr" : fmt::format("_{}.exr", i + 1);
+        const auto a = directory / ("woodcock" + suffix), b = directory / ("cycles" + suffix);
+        // Cycles first: what it cannot express, or a Blender that is not there, is known at once.
+        last = renderTheirs(description, loaded, o, b, commandLine, style);
+        theirs += last.seconds;
+        ours += renderOurs(scene, description, a, commandLine, style);
+        if (i == 0) {
+            sources[0].file = a, sources[1].file = b;
+        } else {
+            sources[0].more.push_back(a), sources[1].more.push_back(b);
+        }
+    }
+    spdlog::info("A: Woodcock, {:.1f} s; B: Cycles of Blender {} ({}), {:.1f} s; {} x {} samples",
+                 ours, last.version, last.mode, theirs, seeds, description.render.spp);
+    if (last.mode == "biased" && o.mode != "biased")
+        spdlog::warn("Blender {} only marches through volumes, which is biased", last.version);
+    return sources;
+}
+
+}  // namespace woodcock::tool
