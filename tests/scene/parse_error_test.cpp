@@ -243,7 +243,7 @@ TEST(ParseErrors, OfCameras) {
     EXPECT_EQ(
         sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
         "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, eye, "
-        "look_at, up, matrix, height");
+        "look_at, up, matrix, height, shift");
     EXPECT_EQ(
         sectionMistake(
             "[camera]\nmatrix = [[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
