@@ -53,6 +53,9 @@ struct Setting {
     double scale;
     Vec3d place;
 };
+void PrintTo(const Setting& s, std::ostream* out) {
+    *out << "scale " << s.scale << " at " << s.place.x;
+}
 
 class GeometryOracle : public testing::TestWithParam<Setting> {};
 
