@@ -149,7 +149,8 @@ defect "refracted light stays in the medium it came from" 'SurfaceLayers*' "plat
 
 defect "lamps with a shape counted in full by both samplings" 'SurfaceLayers*' "emissive surfaces" \
     $surfaces \
-    'static_cast<float>(hitWeight(p, pdf))' '1.0f'
+    'static_cast<float>(hitWeight(p, pdf))' \
+    'static_cast<float>(hitWeight(p, [&] { return 0 * pdf(); }))'
 
 defect "roulette of bounces without factor" 'SurfaceLayers*' "emissive surfaces" \
     $surfaces \

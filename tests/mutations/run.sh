@@ -90,7 +90,7 @@ printf -- '-%.0s' {1..140}; echo
 defect() {
     local name=$1 tests=$2 checks=$3 file=$copy/$4 old=$5 new=$6
     chosen "$name" || return 0
-    local text byTest byCase
+    local text byTest= byCase=
     text=$(cat "$file"; echo x)
     text=${text%x}
     printf '%s' "${text/"$old"/"$new"}" >"$file"
