@@ -154,7 +154,7 @@ defect "lamps with a shape counted in full by both samplings" 'SurfaceLayers*' "
 
 defect "roulette of bounces without factor" 'SurfaceLayers*' "emissive surfaces" \
     $surfaces \
-    'p.throughput *= 1 / survival;' ''
+    'p.throughput *= 1 / survival;' 'p.throughput *= 1.0f;'
 
 defect "shadow catchers forget the sky" 'SurfaceLayers*' "" \
     $surfaces \
