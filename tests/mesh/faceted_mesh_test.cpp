@@ -6,17 +6,11 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/mesh_volume.h"
 
 namespace woodcock::test {
 namespace {
 
-double volumeOf(const TriangleMesh& m) {
-    double six = 0;
-    for (const auto& t : m.triangles)
-        six += dot(m.points[t[0]].as<double>(),
-                   cross(m.points[t[1]].as<double>(), m.points[t[2]].as<double>()));
-    return six / 6;
-}
 double areaOf(const TriangleMesh& m) {
     double area = 0;
     for (const auto& t : m.triangles) {
@@ -29,7 +23,7 @@ double areaOf(const TriangleMesh& m) {
 TEST(FacetedMesh, CubeOctahedronAndPrism) {
     const SurfaceMesh cube =
         facetedMesh(std::vector<FacetRing>{{0, 1, 1, 0}, {180, 1, 1, 0}, {90, 4, 1, 0}});
-    EXPECT_NEAR(volumeOf(cube.mesh), 8, 1e-5);
+    EXPECT_NEAR(volume(cube.mesh), 8, 1e-5);
     EXPECT_EQ(cube.mesh.triangles.size(), 12U);
     EXPECT_EQ(cube.mesh.points.size(), 8U);
 
@@ -37,13 +31,13 @@ TEST(FacetedMesh, CubeOctahedronAndPrism) {
     const SurfaceMesh octahedron =
         facetedMesh(std::vector<FacetRing>{{diagonal, 4, 1, 45}, {180 - diagonal, 4, 1, 45}});
     // All facets at distance 1 from the centre: V = A / 3.
-    EXPECT_NEAR(volumeOf(octahedron.mesh), 4 * std::sqrt(3.0), 1e-5);
+    EXPECT_NEAR(volume(octahedron.mesh), 4 * std::sqrt(3.0), 1e-5);
     EXPECT_EQ(octahedron.mesh.points.size(), 6U);
     EXPECT_EQ(octahedron.mesh.triangles.size(), 8U);
 
     const SurfaceMesh prism =
         facetedMesh(std::vector<FacetRing>{{0, 1, 2, 0}, {180, 1, 2, 0}, {90, 16, 1, 10}});
-    EXPECT_NEAR(volumeOf(prism.mesh), 4 * 16 * std::tan(pi / 16), 1e-4);
+    EXPECT_NEAR(volume(prism.mesh), 4 * 16 * std::tan(pi / 16), 1e-4);
 }
 
 /// A brilliant: all facets of one kind touch a sphere, others cut it; whatever the cut, the mesh is
@@ -56,12 +50,12 @@ TEST(FacetedMesh, BrilliantIsClosed) {
     EXPECT_EQ(findOpenEdges(gem.mesh).count, 0U);
     const auto v = gem.mesh.points.size(), f = gem.mesh.triangles.size();
     EXPECT_EQ(v + f - f * 3 / 2, 2U);
-    EXPECT_GT(volumeOf(gem.mesh), 0);
+    EXPECT_GT(volume(gem.mesh), 0);
 
     std::vector<FacetRing> round = brilliant;
     for (FacetRing& ring : round) ring.distance = 1;
     const TriangleMesh ball = facetedMesh(round).mesh;
-    EXPECT_NEAR(volumeOf(ball) / areaOf(ball), 1.0 / 3, 1e-6);
+    EXPECT_NEAR(volume(ball) / areaOf(ball), 1.0 / 3, 1e-6);
 }
 
 TEST(FacetedMesh, RefusesWhatIsOpenOrSenseless) {

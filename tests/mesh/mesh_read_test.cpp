@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/mesh_volume.h"
 #include "tests/support/temp_dir.h"
 #include "woodcock/base/random.h"
 #include "woodcock/mesh/triangle_mesh.h"
@@ -24,15 +25,6 @@ const std::string cubeObj =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "usemtl none\n"
     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-
-/// Of the solid that the triangles enclose, by the divergence theorem.
-double volume(const TriangleMesh& mesh) {
-    double six = 0;
-    for (const auto& [a, b, c] : mesh.triangles)
-        six += dot(mesh.points[a].as<double>(),
-                   cross(mesh.points[b].as<double>(), mesh.points[c].as<double>()));
-    return six / 6;
-}
 
 void expectUnitCube(const TriangleMesh& mesh) {
     EXPECT_EQ(mesh.points.size(), 8u);

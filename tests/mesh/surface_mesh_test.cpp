@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/mesh_volume.h"
 #include "tests/support/temp_dir.h"
 #include "woodcock/base/random.h"
 
@@ -15,14 +16,6 @@ namespace {
 
 #define NEEDS_ASSIMP() \
     if (!canReadMeshes()) GTEST_SKIP() << "this build has no Assimp"
-
-double volume(const TriangleMesh& mesh) {
-    double six = 0;
-    for (const auto& [a, b, c] : mesh.triangles)
-        six += dot(mesh.points[a].as<double>(),
-                   cross(mesh.points[b].as<double>(), mesh.points[c].as<double>()));
-    return six / 6;
-}
 
 std::vector<std::array<double, 2>> circle(int steps) {
     std::vector<std::array<double, 2>> profile;

@@ -4,22 +4,14 @@
 #include <cstdlib>
 
 #include "tests/support/paths.h"
+#include "tests/support/scene_mistake.h"
 #include "woodcock/base/error.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock {
 namespace {
 
-/// What is wrong with `text`, as the user reads it; empty when nothing is.
-std::string mistakeIn(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    try {
-        parseSceneText(text, "scene.toml", ".", overrides);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::Input);
-        return e.what();
-    }
-    return "";
-}
+using test::mistakeIn;
 
 std::string volumeMistake(const std::string& lines) {
     return mistakeIn("[[volume]]\nfile = \"a.vdb\"\n" + lines);

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "tests/support/scene_mistake.h"
 #include "woodcock/base/error.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock {
 namespace {
 
-/// What is wrong with `text`, as the user reads it; empty when nothing is.
-std::string mistakeIn(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    try {
-        parseSceneText(text, "scene.toml", ".", overrides);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::Input);
-        return e.what();
-    }
-    return "";
-}
+using test::mistakeIn;
+
 /// Its lines start at line 3 of the file.
 std::string materialMistake(const std::string& lines) {
     return mistakeIn("[[material]]\nname = \"m\"\n" + lines + "\n[[surface]]\nplane = {}");
@@ -103,7 +96,8 @@ TEST(SurfaceErrors, OfShapes) {
     EXPECT_EQ(
         surfaceMistake("name = \"a\""),
         "scene.toml:7:1: surface[0] has no shape; give one of file, sphere, box, disk, plane, "
-        "lathe, facets, such as file = \"mesh.obj\" or sphere = { centre = [0, 0, 0], radius = 1 }");
+        "lathe, facets, such as file = \"mesh.obj\" or sphere = { centre = [0, 0, 0], radius = 1 "
+        "}");
     EXPECT_EQ(surfaceMistake("file = \"a.obj\"\ndisk = {}"),
               "scene.toml:9:8: surface[0].disk stands beside file; give one of them: a surface has "
               "one shape, and others are surfaces too");
