@@ -154,7 +154,7 @@ CLI::App& addVerifyCommand(CLI::App& app) {
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick, "two digits, in about a minute (the default)");
     command->add_flag("--full", options->full,
-                      "three digits for tables of slabs; takes many times as long");
+                      "three digits for tables of slabs; takes an hour or more on two cores");
     command
         ->add_option("--only", options->only,
                      "checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")

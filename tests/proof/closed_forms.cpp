@@ -274,7 +274,7 @@ void sphereDisc(Lab& lab) {
                                      "eye = [{}, {}, {}]\nlook_at = [0, 0, 0]\n",
                                      sigma, 2 * half, 0.3 * radius, 0.2 * radius, 3 * radius));
         const RgbEstimate square = test::meanOverSeeds(
-            scene, {16, 16, lab.pick(depth < 5 ? 16 : 128, depth < 5 ? 256 : 1024), lab.seed(name)},
+            scene, {16, 16, lab.pick(depth < 5 ? 16 : 128, depth < 2 ? 256 : 1024), lab.seed(name)},
             lab.pick(32, 64));
         const double discs = 4 * half * half / (pi * r2);
         const Precision precision{lab.pick(1e-2, 1e-3), lab.pick(0.0, 5e-5)};
