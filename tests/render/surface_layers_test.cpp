@@ -117,6 +117,15 @@ TEST(SurfaceLayers, ShadowCatcherKeepsTheShadowAlone) {
     EXPECT_NEAR(film(sun + grey + ground(caught) + fog).alpha(1, 1), 0.5, 1e-5);
 }
 
+/// What glows before the catcher is no light on it.
+TEST(SurfaceLayers, ShadowCatcherLeavesWhatStandsInFront) {
+    const std::string lamp =
+        "[[light]]\ntype = \"sphere\"\nposition = [3, 3, 0]\nradius = 0.1\nradiance = 5\n";
+    const Film f = film(sun + grey + ground("shadow_catcher = true") + lamp);
+    EXPECT_NEAR(f.radiance(1, 1)[1], 5, 1e-5);
+    EXPECT_NEAR(f.alpha(1, 1), 0, 1e-5);
+}
+
 /// Half of the sky is hidden by a wall that touches the ground: the catcher's alpha is the part of
 /// the light that is gone, (1 - cos 90) / 2 of a horizontal surface, plus what a black wall adds:
 /// 0.

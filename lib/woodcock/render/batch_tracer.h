@@ -188,7 +188,9 @@ private:
                 if (!(arrived.maximum() > 0)) continue;
                 ShadowRay<Surfaces> s = shadows_[i];
                 if (!s.secondLeg) {
-                    paths_[s.path].radiance += s.colour * toRgb(arrived);
+                    Path& p = paths_[s.path];
+                    (s.inFront ? p.result->film.radiance : p.radiance) +=
+                        s.colour * toRgb(arrived);
                     continue;
                 }
                 s.secondLeg = false;
@@ -212,7 +214,7 @@ private:
             if (p.result->catcher.weight > 0)
                 p.result->catcher.lit = p.radiance.mean();
             else
-                p.result->film.radiance = p.radiance;
+                p.result->film.radiance += p.radiance;
         }
         paths_.resize(left, paths_.front());
     }

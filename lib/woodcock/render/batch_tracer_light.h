@@ -83,10 +83,11 @@ bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d d
     const float brightest = light.maximum();
     const Spectrum<N> contribution = p.throughput * brightest;
     if (!(contribution.maximum() > 0)) return false;
-    shadows_.push_back({i, light * (1 / brightest), false, false, {}, {}, 0, {}});
+    shadows_.push_back({i, light * (1 / brightest), false, false, false, {}, {}, 0, {}});
     if constexpr (Surfaces) {
         shadows_.back().place = p.surfaces.place;
         shadows_.back().transparent = mayPass && options_.transparentShadows;
+        shadows_.back().inFront = p.surfaces.seen;
     }
     shadowQueries_.push_back({origin, direction, tMax, RandomStream(p.random.bits()),
                               shadowRoulette * typicalRadiance_, contribution});

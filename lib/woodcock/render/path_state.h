@@ -82,6 +82,7 @@ struct ShadowRay {
     Rgb colour;
     bool secondLeg = false;
     bool transparent = false;  // passes dielectrics
+    bool inFront = false;      // brings light of the camera's own flight, before any surface
     Vec3d origin, direction;   // of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, Interiors::Place, Nothing> place = {};
