@@ -37,6 +37,8 @@ public:
             throw cyclesRefusal(place("repair"),
                                 "a volume that is repaired as it is loaded: it reads the "
                                 "file as it is; save it repaired with woodcock convert --repair");
+        if (volume_.emission) throw cyclesRefusal(place("emission"), "a volume that emits");
+        if (volume_.blackbody) throw cyclesRefusal(place("blackbody"), "a volume that emits");
         std::visit([&](const auto& c) { add(list, c); }, volume_.coefficients);
     }
 

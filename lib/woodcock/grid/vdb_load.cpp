@@ -72,7 +72,7 @@ std::string describeFaults(const GridStatistics& statistics, bool nonNegative) {
 
 LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOptions& options) {
     requireUse(file, grid, options.use);
-    const GridSource source =
+    GridSource source =
         readGridSource(file, grid, {.faulty = options.repair, .negative = options.nonNegative});
     requireContent(file, grid, source.statistics);
 
@@ -86,7 +86,9 @@ LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOpti
                         "voxels, but are drawn at their index positions",
                         place(file, grid)));
     Storage storage = options.storage;
-    if (storage == Storage::Auto)
+    if (options.convert)
+        source.field = options.convert(std::move(source.field));
+    else if (storage == Storage::Auto)
         storage = source.statistics.voxels.exactAsHalf ? Storage::Half : Storage::Float;
     try {
         loaded.field = buildField(source.field, storage);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,8 @@ struct LoadOptions {
     bool nonNegative =
         true;             ///< a coefficient: values below zero are faults, as NaN and infinity are
     bool repair = false;  ///< faults become zero, and a note, instead of an error
+    /// Makes other voxels of those that were found sound; null: they stay.
+    std::function<FieldSource(FieldSource)> convert = {};
 };
 
 struct LoadedGrid {

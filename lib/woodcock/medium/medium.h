@@ -9,6 +9,7 @@
 #include "woodcock/grid/cell_walk.h"
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
+#include "woodcock/medium/emission.h"
 
 namespace woodcock {
 
@@ -80,6 +81,7 @@ private:
 /// The sum of its parts.
 struct Medium {
     std::vector<MediumPart> parts;
+    std::vector<EmissionPart> emission = {};
 
     /// World box of all parts' supports (the background, where not zero, reaches beyond it).
     Box3d worldBounds() const;

@@ -82,14 +82,15 @@ private:
         paths_.push_back(p);
         const std::size_t i = paths_.size() - 1;
         addSphereHits(i, nullptr);
+        if (needs_.emission) paths_[i].equiangular = u[3];
         if (needs_.localLights) {
             paths_[i].equiangular = u[3];
             paths_[i].lamp = paths_[i].random.uniform();
         }
     }
 
-    /// What is known of a flight before it is tracked: the surface at its end, and the equiangular
-    /// point on it.
+    /// What is known of a flight before it is tracked: the surface at its end, what glows along it,
+    /// and the equiangular point on it.
     void lookAhead(std::size_t i) {
         Path& p = paths_[i];
         if constexpr (Surfaces) {
@@ -99,6 +100,7 @@ private:
             s.tMax = s.hitsAhead ? s.ahead.t : infinity;
             ++counters_.surfaceRays;
         }
+        if (needs_.emission) addMediumEmission(i, p.equiangular);
         if (needs_.localLights) addEquiangular(i, p.equiangular, p.lamp);
     }
 
@@ -309,6 +311,8 @@ private:
     /// Without an event (`share` null) it is the camera that sees them.
     void addSphereHits(std::size_t i, const FlightShare* share);
     void addEquiangular(std::size_t i, double u, double pick);
+    /// What the media of the flight ahead emit along it, in the mean.
+    void addMediumEmission(std::size_t i, double u);
     /// Adds a shadow ray that brings `light` times the path's throughput, unless that is nothing.
     /// `mayPass`: transparent shadows concern it.
     bool addShadowRay(std::size_t i, Vec3d origin, Vec3d direction, double tMax, Rgb light,
@@ -382,6 +386,7 @@ private:
     const float typicalRadiance_;
     std::vector<MediumSummary> media_;  // of the outside, and of what surfaces hold
     LightChoice choice_;
+    EmissionSampler emission_;
     RenderCounters counters_;
     std::vector<Path> paths_;
     std::vector<DistanceQuery<N>> walks_;

@@ -76,6 +76,17 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
 }
 
 template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::addMediumEmission(std::size_t i, double u) {
+    const Path& p = paths_[i];
+    const Flight flight = flightOf(p);
+    const auto point =
+        emission_.sample(flight.medium->medium->emission, flight.origin, flight.direction,
+                         flight.tMax, flight.medium->meanExtinction, u);
+    if (!point || !addShadowRay(i, p.origin, p.direction, point->t, point->light, false)) return;
+    shadows_.back().withinFlight = true;
+}
+
+template <int N, bool Surfaces>
 bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d direction,
                                             double tMax, Rgb light, bool mayPass) {
     Path& p = paths_[i];
@@ -83,7 +94,7 @@ bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d d
     const float brightest = light.maximum();
     const Spectrum<N> contribution = p.throughput * brightest;
     if (!(contribution.maximum() > 0)) return false;
-    shadows_.push_back({i, light * (1 / brightest), false, false, false, {}, {}, 0, {}});
+    shadows_.push_back({.path = i, .colour = light * (1 / brightest)});
     if constexpr (Surfaces) {
         shadows_.back().place = p.surfaces.place;
         shadows_.back().transparent = mayPass && options_.transparentShadows;

@@ -165,8 +165,9 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
     SurfaceHit hit;
     Rgb passed(1.0f);
     while (true) {
-        ++counters_.surfaceRays;
+        counters_.surfaceRays += !shadow.withinFlight;
         const bool hits =
+            !shadow.withinFlight &&
             interiors_->nearest(origin, q.direction, left * beforeLight, place, false, hit);
         pieces_.push_back({origin, hits ? hit.t : left, interiors_->medium(place.inside)});
         if (!hits) break;

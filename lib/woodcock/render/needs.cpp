@@ -14,6 +14,7 @@ Needs findNeeds(const Scene& scene) {
             n.scattering |= p.scatters();
         }
         n.overlap |= medium.parts.size() > 1;
+        n.emission |= !medium.emission.empty();
         const Box3d box = medium.worldBounds();
         if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
     };
@@ -41,6 +42,7 @@ std::string Needs::describe() const {
     tell(chromatic, "three colour channels");
     tell(overlap, "overlapping media");
     tell(scattering, "scattering");
+    tell(emission, "emission");
     tell(lightSampling, "light sampling");
     tell(localLights, "equiangular sampling");
     tell(surfaces, "surfaces");

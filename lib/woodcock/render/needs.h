@@ -15,6 +15,7 @@ struct Needs {
     bool scattering = false;     ///< sigma_s > 0 somewhere: otherwise camera rays only
     bool lightSampling = false;  ///< a light that phase sampling alone would miss or sample badly
     bool surfaces = false;       ///< rays look for surfaces, and media lie within them
+    bool emission = false;       ///< media that glow: a point of every flight is looked at
     bool localLights = false;    ///< lights near or inside the medium: equiangular sampling
 
     /// One line: what the scene needs and what was left out.

@@ -81,9 +81,10 @@ struct ShadowRay {
     std::size_t path;
     Rgb colour;
     bool secondLeg = false;
-    bool transparent = false;  // passes dielectrics
-    bool inFront = false;      // brings light of the camera's own flight, before any surface
-    Vec3d origin, direction;   // of the second leg
+    bool transparent = false;   // passes dielectrics
+    bool inFront = false;       // brings light of the camera's own flight, before any surface
+    bool withinFlight = false;  // no surface lies in its way
+    Vec3d origin = {}, direction = {};  // of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, Interiors::Place, Nothing> place = {};
 };

@@ -55,6 +55,27 @@ std::vector<Part> parts(const VolumeDescription& volume, const HomogeneousBox& c
     return {part};
 }
 
+/// Parts that emit nothing are left out.
+std::vector<EmissionPart> emission(const VolumeDescription& volume, const LoadedVolume& loaded) {
+    std::vector<EmissionPart> all;
+    const auto add = [&](const LoadedField& field, Rgb scale) {
+        EmissionPart::Description part;
+        part.worldFromIndex = volume.worldFromObject;
+        if (field) {
+            part.field = field.field;
+            part.worldFromIndex = volume.worldFromObject * field.objectFromIndex;
+        } else {
+            part.box = std::get<HomogeneousBox>(volume.coefficients).box;
+        }
+        part.scale = scale;
+        if (scale.maximum() > 0) all.emplace_back(std::move(part));
+    };
+    if (volume.emission) add(loaded.emission, volume.emission->scale);
+    if (const auto& b = volume.blackbody)
+        add(loaded.blackbody, b->colour * static_cast<float>(b->intensity));
+    return all;
+}
+
 }  // namespace
 
 Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
@@ -72,6 +93,8 @@ Medium buildMedium(const SceneDescription& description, const LoadedScene& loade
             part.majorantScale = description.render.majorantScale;
             medium.parts.emplace_back(std::move(part));
         }
+        for (EmissionPart& part : emission(volume, loaded.volumes[i]))
+            medium.emission.push_back(std::move(part));
     }
     return medium;
 }

@@ -151,7 +151,7 @@ private:
             part.g = surface.interior->g;
             medium.parts.emplace_back(std::move(part));
         }
-        if (!medium.parts.empty()) {
+        if (!medium.parts.empty() || !medium.emission.empty()) {
             built_.interiors.push_back(std::move(medium));
             return static_cast<std::uint32_t>(built_.interiors.size());
         }

@@ -84,6 +84,7 @@ Choice nameDensity(VolumeDescription& volume, const LoadedVolume& loaded) {
         if (separate->sigmaA) name(separate->sigmaA->grid, loaded.sigmaA);
         if (separate->sigmaS) name(separate->sigmaS->grid, loaded.sigmaS);
     }
+    if (volume.emission && loaded.emission) name(volume.emission->grid, loaded.emission);
     return choice;
 }
 

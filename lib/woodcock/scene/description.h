@@ -49,7 +49,7 @@ struct DensityCoefficients {
 
 /// sigma_a and sigma_s each from a grid; either may be absent (zero). sigma_a = [..] without a grid
 /// in a scene file means "times the density grid" and arrives here with that grid's name (or empty,
-/// for the role).
+/// for the role). Without both, the volume does nothing but emit.
 struct SeparateCoefficients {
     std::optional<GridCoefficient> sigmaA, sigmaS;
     bool operator==(const SeparateCoefficients&) const = default;
@@ -62,9 +62,23 @@ struct HomogeneousBox {
     bool operator==(const HomogeneousBox&) const = default;
 };
 
+/// A medium that glows as a black body of T = scale x grid + offset kelvins would:
+/// q = intensity x colour x blackbodyRadiance(T), per world unit (see medium/blackbody.h).
+struct BlackbodyDescription {
+    std::string temperature;  ///< grid name; empty: found by its role
+    double scale = 1, offset = 0;
+    double intensity = 1;
+    Rgb colour{1.0f};
+    bool operator==(const BlackbodyDescription&) const = default;
+};
+
 struct VolumeDescription {
     std::filesystem::path file;  ///< empty for a HomogeneousBox
     std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
+    /// q = scale x grid: radiance per world unit. Its grid is that of a GridCoefficient; in a box,
+    /// none.
+    std::optional<GridCoefficient> emission = {};
+    std::optional<BlackbodyDescription> blackbody = {};
     float g = 0;               ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     Affine3d worldFromObject;  ///< applied after the grid's own transform
     std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all

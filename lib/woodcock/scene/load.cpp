@@ -9,6 +9,7 @@
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/vdb_load.h"
 #include "woodcock/image/read_image.h"
+#include "woodcock/medium/blackbody_field.h"
 #include "woodcock/scene/load_albedo.h"
 #include "woodcock/scene/load_textures.h"
 
@@ -46,6 +47,31 @@ public:
         return fields_[key] = loaded;
     }
 
+    /// What glows of a temperature grid. Each volume has its own scale, so nothing is shared.
+    LoadedField blackbody(const VolumeDescription& volume) {
+        const BlackbodyDescription& b = *volume.blackbody;
+        const VdbFile& vdb = file(volume.file);
+        FoundGrid found = b.temperature.empty() ? findGrid(vdb, GridRole::Temperature)
+                                                : findGrid(vdb, b.temperature);
+        note(std::move(found.note));
+        LoadOptions options{
+            .storage = volume.storage, .nonNegative = false, .repair = volume.repair};
+        options.convert = [&b](FieldSource source) {
+            return blackbodySource(std::move(source), b.scale, b.offset);
+        };
+        LoadedGrid grid = loadGrid(vdb, found.grid, options);
+        for (std::string& text : grid.notes) note(std::move(text));
+        const double brightest = double{grid.field.range().max} * b.intensity * b.colour.maximum();
+        if (!(brightest < std::numeric_limits<float>::max()))
+            throw inputError(
+                "grid '{}' in {} is too hot: up to {:.6g} kelvins, whose light no "
+                "float holds; scale and offset turn its values into kelvins",
+                found.grid.uniqueName, vdb.path.string(),
+                b.scale * double{grid.statistics.voxels.max[0]} + b.offset);
+        return {std::make_shared<Field>(std::move(grid.field)), grid.worldFromIndex,
+                found.grid.uniqueName};
+    }
+
     std::vector<std::string> takeNotes() { return std::move(notes_); }
 
 private:
@@ -68,6 +94,16 @@ bool writtenByBlender(const VdbFile& file) {
             if (key == "file_base_resolution" || value.find("Blender") != std::string::npos)
                 return true;
     return false;
+}
+
+/// What glows everywhere is infinitely bright.
+void requireDarkBackground(const VdbFile& file, const LoadedField& emission) {
+    for (int c = 0; c < emission.field->channels(); ++c)
+        if (emission.field->background(c) != 0)
+            throw inputError(
+                "grid '{}' in {} has a background of {}; one that emits needs 0, or all "
+                "of space would glow",
+                emission.grid, file.path.string(), emission.field->background(c));
 }
 
 LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader) {
@@ -100,6 +136,16 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
             loaded.sigmaS =
                 load(sigma->grid, Purpose::Coefficient, {"sigma_s.grid", "density", "file"});
     }
+    if (const auto& emission = volume.emission) {
+        const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+        const bool density = c && c->density == emission->grid;
+        const std::initializer_list<std::string_view> keys{"emission.grid", "emission"};
+        loaded.emission =
+            load(emission->grid, density ? Purpose::Density : Purpose::Coefficient, keys);
+        inPlace(placeOf("emission"), [&] { requireDarkBackground(file, loaded.emission); });
+    }
+    if (volume.blackbody)
+        loaded.blackbody = inPlace(placeOf("blackbody"), [&] { return loader.blackbody(volume); });
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
 }

@@ -26,6 +26,8 @@ struct LoadedField {
 /// What a volume's description names; the rest is null.
 struct LoadedVolume {
     LoadedField density, albedo;  ///< of DensityCoefficients
+    LoadedField emission;         ///< of the emission, where it has a grid
+    LoadedField blackbody;        ///< radiance of the temperature grid, as blackbodySource() says
     LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
     UpAxis up = UpAxis::Y;        ///< Z where the file's metadata say that Blender wrote it
 };

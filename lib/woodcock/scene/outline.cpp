@@ -89,7 +89,8 @@ std::vector<Vec3d> sceneOutline(const SceneDescription& description, const Loade
         const LoadedVolume& fields = loaded.volumes[i];
         if (const auto* box = std::get_if<HomogeneousBox>(&volume.coefficients))
             addCorners(box->box, volume.worldFromObject, points);
-        for (const LoadedField* grid : {&fields.density, &fields.sigmaA, &fields.sigmaS})
+        for (const LoadedField* grid :
+             {&fields.density, &fields.sigmaA, &fields.sigmaS, &fields.emission, &fields.blackbody})
             if (*grid)
                 addField(*grid->field, volume.worldFromObject * grid->objectFromIndex, points);
     }

@@ -21,10 +21,11 @@ void write(SceneWriter& out, const DensityCoefficients& c) {
     if (!c.albedoGrid.empty()) out.line("albedo_grid", tomlText(c.albedoGrid));
 }
 
-void write(SceneWriter& out, std::string_view key, const std::optional<GridCoefficient>& c) {
+void write(SceneWriter& out, std::string_view key, const std::optional<GridCoefficient>& c,
+           std::string_view comment = "x density, 1/unit") {
     if (!c) return;
     if (c->grid.empty())
-        out.line(key, tomlColour(c->scale), "x density, 1/unit");
+        out.line(key, tomlColour(c->scale), comment);
     else
         out.line(key, fmt::format("{{ grid = {}, scale = {} }}", tomlText(c->grid),
                                   tomlColour(c->scale)));
@@ -33,6 +34,7 @@ void write(SceneWriter& out, std::string_view key, const std::optional<GridCoeff
 void write(SceneWriter& out, const SeparateCoefficients& c) {
     write(out, "sigma_a", c.sigmaA);
     write(out, "sigma_s", c.sigmaS);
+    if (!c.sigmaA && !c.sigmaS) out.line("sigma_a", "0", "it only emits");
 }
 
 void write(SceneWriter& out, const HomogeneousBox& c) {
@@ -42,11 +44,25 @@ void write(SceneWriter& out, const HomogeneousBox& c) {
     out.line("sigma_s", tomlColour(c.sigmaS), "1/unit");
 }
 
+void write(SceneWriter& out, const BlackbodyDescription& b) {
+    std::string temperature;
+    if (!b.temperature.empty())
+        temperature = fmt::format("temperature = {}, ", tomlText(b.temperature));
+    out.line("blackbody",
+             fmt::format("{{ {}scale = {}, offset = {}, intensity = {}, colour = {} }}",
+                         temperature, tomlNumber(b.scale), tomlNumber(b.offset),
+                         tomlNumber(b.intensity), tomlColour(b.colour)),
+             "scale and offset make kelvins");
+}
+
 void write(SceneWriter& out, const VolumeDescription& volume) {
     const VolumeDescription defaults;
     out.heading("[[volume]]");
     if (!volume.file.empty()) out.path("file", volume.file);
     std::visit([&](const auto& c) { write(out, c); }, volume.coefficients);
+    write(out, "emission", volume.emission,
+          volume.file.empty() ? "radiance per unit" : "x density, radiance per unit");
+    if (volume.blackbody) write(out, *volume.blackbody);
     if (volume.g != defaults.g) out.line("g", fmt::format("{}", volume.g), "mean cosine");
     if (volume.worldFromObject != identity) out.line("matrix", tomlMatrix(volume.worldFromObject));
     if (!volume.inside.empty()) out.line("inside", tomlText(volume.inside));

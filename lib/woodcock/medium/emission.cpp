@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/emission.h"
+
+#include "woodcock/base/error.h"
+
+namespace woodcock {
+
+EmissionPart::EmissionPart(Description description) : d_(std::move(description)) {
+    const double determinant = d_.worldFromIndex.determinant();
+    if (!std::isfinite(determinant) || determinant == 0)
+        throw inputError("a volume's transform is singular: its determinant is {}", determinant);
+    for (int c = 0; c < 3; ++c)
+        if (!(d_.scale[c] >= 0 && std::isfinite(d_.scale[c])))
+            throw inputError("emission is {}; expected finite numbers >= 0", d_.scale[c]);
+    indexFromWorld_ = d_.worldFromIndex.inverse();
+    largestScale_ = d_.scale.maximum();
+    if (!d_.field) {
+        support_ = d_.box;
+        return;
+    }
+    const Field& field = *d_.field;
+    for (int c = 0; c < field.channels(); ++c)
+        if (field.background(c) != 0)
+            throw inputError(
+                "an emission grid's background is {}; expected 0, as what glows everywhere is "
+                "infinitely bright",
+                field.background(c));
+    support_ = field.support();
+    // As if the brightest voxel were one collision wide: cells that tell bright from dark, and not
+    // many more.
+    const double largest = std::max(std::abs(field.range().min), std::abs(field.range().max));
+    majorants_ = MajorantGrid(field, {largest > 0 ? 1 / largest : 1, 1, 1});
+}
+
+Rgb EmissionPart::value(Vec3d world) const {
+    const Vec3d p = indexFromWorld_.point(world);
+    if (!d_.field) return support_.contains(p) ? d_.scale : Rgb(0.0f);
+    if (support_.empty()) return Rgb(0.0f);
+    const Vec3d near = d_.field->nearSupport(p);
+    if (d_.field->channels() == 1) return d_.scale * d_.field->trilinear(near);
+    return Rgb::map([&](int c) { return d_.scale[c] * d_.field->trilinear(near, c); });
+}
+
+std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPart> parts,
+                                                     Vec3d origin, Vec3d direction, double tMax,
+                                                     double extinction, double u) {
+    pieces_.clear();
+    double first = std::numeric_limits<double>::infinity();
+    for (const EmissionPart& part : parts)
+        part.walk(origin, direction, tMax, [&](double t0, double t1, double bound) {
+            pieces_.push_back({&part, t0, t1, bound, 0, 0});
+            first = std::min(first, t0);
+        });
+    double even = 0, dimmed = 0;
+    for (Piece& p : pieces_) {
+        const double length = p.t1 - p.t0;
+        p.even = p.bound * length;
+        p.dimmed = extinction > 0 ? p.bound * std::exp(-extinction * (p.t0 - first)) *
+                                        -std::expm1(-extinction * length) / extinction
+                                  : p.even;
+        even += p.even, dimmed += p.dimmed;
+    }
+    if (!(even > 0 && dimmed > 0)) return {};
+
+    const bool byDimmed = u >= 0.5;
+    double left = (byDimmed ? 2 * u - 1 : 2 * u) * (byDimmed ? dimmed : even);
+    const auto weightOf = [&](const Piece& p) { return byDimmed ? p.dimmed : p.even; };
+    const Piece* piece = nullptr;
+    for (const Piece& p : pieces_) {
+        if (!(weightOf(p) > 0)) continue;
+        piece = &p;
+        if (left < weightOf(p)) break;
+        left -= weightOf(p);
+    }
+    const double length = piece->t1 - piece->t0;
+    const double v = std::clamp(left / weightOf(*piece), 0.0, 1.0);
+    const double along = byDimmed && extinction > 0
+                             ? -std::log1p(v * std::expm1(-extinction * length)) / extinction
+                             : v * length;
+    const double t = piece->t0 + std::min(along, length);
+    // Over the bound, which is a factor of the light as well.
+    const double density = 0.5 / even + 0.5 * std::exp(-extinction * (t - first)) / dimmed;
+    const double weight = 1 / (density * piece->bound);
+    const Rgb q = piece->part->value(origin + direction * t);
+    return EmissionPoint{
+        t, Rgb::map([&](int c) { return static_cast<float>(double{q[c]} * weight); })};
+}
+
+}  // namespace woodcock

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "woodcock/base/affine.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/grid/cell_walk.h"
+#include "woodcock/grid/field.h"
+#include "woodcock/grid/majorants.h"
+
+namespace woodcock {
+
+/// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It is
+/// found whether or not there is anything that absorbs. Outside of its field's support it is zero.
+class EmissionPart {
+public:
+    struct Description {
+        std::shared_ptr<const Field> field;  ///< 1 or 3 channels; null: 1 inside `box`, 0 outside
+        Box3d box;                           ///< of object space; only without a field
+        Affine3d worldFromIndex;             ///< or world from object, without a field
+        Rgb scale{1.0f};                     ///< q where f is 1
+    };
+    /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
+    /// field's background not zero: what glows everywhere is infinitely bright.
+    explicit EmissionPart(Description description);
+
+    const Description& description() const { return d_; }
+    Box3d worldBounds() const { return d_.worldFromIndex.box(support_); }
+    /// q at a world position, by full trilinear interpolation.
+    Rgb value(Vec3d world) const;
+    /// Calls visit(t0, t1, bound) for the pieces of a ray before tMax where q may differ from 0;
+    /// no channel of |q| exceeds `bound` there.
+    template <class F>
+    void walk(Vec3d origin, Vec3d direction, double tMax, F&& visit) const {
+        const IndexRay ray{indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
+        double t0 = 0, t1 = tMax;
+        if (support_.empty() || !clip(ray, support_, t0, t1)) return;
+        if (!d_.field) {
+            visit(t0, t1, largestScale_);
+            return;
+        }
+        CellWalk cells(majorants_, support_, ray, t0, t1);
+        for (Segment s; cells.next(s);) {
+            const double bound = std::max(std::abs(s.range.min), std::abs(s.range.max));
+            if (bound > 0 && s.t1 > s.t0) visit(s.t0, s.t1, bound * largestScale_);
+        }
+    }
+
+private:
+    Description d_;
+    Affine3d indexFromWorld_;
+    Box3d support_;
+    double largestScale_ = 0;
+    MajorantGrid majorants_;
+};
+
+/// A point of a ray, and what its emission brings: the mean of `light` times the transmittance to
+/// `t` is all that the ray's emission adds.
+struct EmissionPoint {
+    double t;
+    Rgb light;
+};
+
+/// Draws one point on a straight piece of a path by what may be emitted there, whatever becomes of
+/// the path: Villemin and Hery 2013, "Practical Illumination from Flames"; Simon et al. 2017, "Line
+/// Integration for Rendering Heterogeneous Emissive Volumes".
+///
+/// The density is an even mixture of two: the bounds of q alone, which keeps every weight bounded,
+/// and the same with the transmittance of a homogeneous stand-in, which does not look for light
+/// where none comes through.
+class EmissionSampler {
+public:
+    /// `extinction`: of the stand-in. `u` in [0, 1).
+    std::optional<EmissionPoint> sample(std::span<const EmissionPart> parts, Vec3d origin,
+                                        Vec3d direction, double tMax, double extinction, double u);
+
+private:
+    struct Piece {
+        const EmissionPart* part;
+        double t0, t1, bound;
+        double even, dimmed;  ///< integrals of both densities, up to their norms
+    };
+    std::vector<Piece> pieces_;  // of one ray
+};
+
+}  // namespace woodcock
