@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of straight light: transmittance that has a formula, as radiance, as alpha and as
-// the layer. Emission and refraction have their formulas too, and no place in the renderer.
+// the layer.
 #include "tests/oracle/closed_forms.h"
 
 #include <fmt/format.h>

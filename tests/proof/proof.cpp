@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/proof/proof.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -73,9 +74,12 @@ std::uint64_t Lab::seed(const std::string& name) const {
 const std::vector<Check>& checks() {
     static const std::vector<Check> all = [] {
         std::vector<Check> list;
-        for (const auto& subject : {closedForms(), singleScattering(), slabs(), surfaces(),
-                                    properties(), sampling(), lightSampling(), extremes()})
+        for (const auto& subject :
+             {closedForms(), singleScattering(), slabs(), surfaces(), properties(), sampling(),
+              lightSampling(), extremes(), emission()})
             list.insert(list.end(), subject.begin(), subject.end());
+        std::stable_sort(list.begin(), list.end(),
+                         [](const Check& a, const Check& b) { return a.kind < b.kind; });
         return list;
     }();
     return all;

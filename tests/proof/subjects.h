@@ -16,5 +16,6 @@ std::vector<Check> properties();
 std::vector<Check> sampling();
 std::vector<Check> lightSampling();
 std::vector<Check> extremes();
+std::vector<Check> emission();
 
 }  // namespace woodcock::proof
