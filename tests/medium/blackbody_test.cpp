@@ -11,7 +11,7 @@
 namespace woodcock::test {
 namespace {
 
-double luminance(Rgb c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+double luminance(Rgb c) { return 0.2126390059 * c[0] + 0.7151686788 * c[1] + 0.0721923154 * c[2]; }
 
 /// The CIE's chromaticity of a colour of linear Rec.709.
 std::array<double, 2> chromaticity(Rgb c) {
@@ -54,9 +54,9 @@ TEST(Blackbody, IsNearCycles) {
 
 TEST(Blackbody, HasLuminanceOneAndRadiatesByStefanAndBoltzmann) {
     for (const double kelvin : {300.0, 777.0, 1234.5, 5000.0, 1e5, 1e9}) {
-        EXPECT_NEAR(luminance(blackbodyColour(kelvin)), 1, 1e-4) << kelvin;
+        EXPECT_NEAR(luminance(blackbodyColour(kelvin)), 1, 2e-6) << kelvin;
         const double watts = 1.80493627e-14 * kelvin * kelvin * kelvin * kelvin;
-        EXPECT_NEAR(luminance(blackbodyRadiance(kelvin)) / watts, 1, 1e-4) << kelvin;
+        EXPECT_NEAR(luminance(blackbodyRadiance(kelvin)) / watts, 1, 2e-6) << kelvin;
     }
     for (const double kelvin : {0.0, -1.0}) EXPECT_EQ(blackbodyRadiance(kelvin), Rgb(0));
 }

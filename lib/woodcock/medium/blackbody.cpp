@@ -39,9 +39,9 @@ Vec3d exactColour(double inverse) {
         nm += 10;
     }
     xyz = xyz / xyz.y;
-    return {3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
-            -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
-            0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z};
+    return {3.2409699419 * xyz.x - 1.5373831776 * xyz.y - 0.4986107603 * xyz.z,
+            -0.9692436363 * xyz.x + 1.8759675015 * xyz.y + 0.0415550574 * xyz.z,
+            0.0556300797 * xyz.x - 0.2039769589 * xyz.y + 1.0569715142 * xyz.z};
 }
 
 }  // namespace
