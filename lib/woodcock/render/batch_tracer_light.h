@@ -84,6 +84,9 @@ void BatchTracer<N, Surfaces>::addMediumEmission(std::size_t i, double u) {
                          flight.tMax, flight.medium->meanExtinction, u);
     if (!point || !addShadowRay(i, p.origin, p.direction, point->t, point->light, false)) return;
     shadows_.back().withinFlight = true;
+    // Beyond a depth of 9 hardly anything is left of what was drawn deep within dense media.
+    TransmittanceQuery<N>& query = shadowQueries_.back();
+    query.roulette = std::max(query.roulette, 1e-4f * query.contribution.maximum());
 }
 
 template <int N, bool Surfaces>
