@@ -27,18 +27,11 @@ constexpr int interruptedCode = 130, fewestSeeds = 2;
 double renderOurs(const Scene& scene, const SceneDescription& description,
                   const std::filesystem::path& file, const std::string& commandLine,
                   ProgressStyle style) {
-    const RenderDescription& render = description.render;
     OutputSettings outputSettings;
     outputSettings.files = {file};
     outputSettings.layers = layersFromNames({"error"});
     const Outputs outputs(std::move(outputSettings));
-    RenderSettings settings;
-    settings.width = render.width, settings.height = render.height;
-    settings.endSample = render.spp;
-    settings.seed = render.seed;
-    settings.maxScatterings = render.maxScatterings;
-    settings.maxBounces = render.maxBounces;
-    settings.transparentShadows = render.transparentShadows;
+    const RenderSettings settings = renderSettings(description.render);
     Progress progress(style);
     progress.start(settings);
     const RenderResult result = woodcock::render(scene, settings, [&](const RenderProgress& now) {
@@ -47,7 +40,7 @@ double renderOurs(const Scene& scene, const SceneDescription& description,
     });
     progress.finish(result);
     if (result.reason == StopReason::Interrupted) stop();
-    outputs.write(result.film, {0, result.endSample, render.seed, result.seconds,
+    outputs.write(result.film, {0, result.endSample, settings.seed, result.seconds,
                                 sceneDigest(description), commandLine});
     return result.seconds;
 }

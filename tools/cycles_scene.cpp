@@ -191,7 +191,7 @@ json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
 
 std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded,
                         const CyclesSettings& settings) {
-    if (scene.render.transparentShadows)
+    if (scene.render.approximations.transparentShadows)
         throw cyclesRefusal(findPlace(scene.places, "render.transparent_shadows"),
                             "Woodcock's transparent shadows");
     json volumes = json::array(), lights = json::array();

@@ -41,16 +41,31 @@ CLI::Option* addCount(CLI::App& command, const std::string& name, std::optional<
     return addParsed(command, name, value, parse, help)->type_name("COUNT");
 }
 
+/// The place of `word` among the words `known`.
+inline std::size_t indexOfWord(const std::string& word, const std::vector<std::string>& known) {
+    const auto found = std::find(known.begin(), known.end(), word);
+    if (found == known.end())
+        throw usageError("unknown word '{}'{}", word, suggestName(word, "known", known));
+    return static_cast<std::size_t>(found - known.begin());
+}
+
 /// An option with one of the words `known`.
 template <class T>
 CLI::Option* addChoice(CLI::App& command, const std::string& name, T& value,
                        const std::vector<std::string>& known, const std::string& help) {
-    const auto parse = [known](const std::string& word) {
-        if (std::find(known.begin(), known.end(), word) == known.end())
-            throw usageError("unknown word '{}'{}", word, suggestName(word, "known", known));
-        return word;
-    };
+    const auto parse = [known](const std::string& word) { return known[indexOfWord(word, known)]; };
     return addParsed(command, name, value, parse, fmt::format("{} {}", help, joinNames(known)));
+}
+
+/// An option with one of the words `known`, which name the values of an enum in their order.
+template <class Enum, std::size_t n>
+CLI::Option* addEnum(CLI::App& command, const std::string& name, std::optional<Enum>& value,
+                     const std::array<std::string, n>& known, const std::string& help) {
+    const std::vector<std::string> words(known.begin(), known.end());
+    const auto parse = [words](const std::string& word) {
+        return static_cast<Enum>(indexOfWord(word, words));
+    };
+    return addParsed(command, name, value, parse, fmt::format("{} {}", help, joinNames(words)));
 }
 
 /// An option that may be given again, for one more value each time.

@@ -29,14 +29,10 @@ namespace {
 
 constexpr int interruptedCode = 130;
 
-Storage storageOf(const std::string& name) {
-    return name == "half" ? Storage::Half : name == "float" ? Storage::Float : Storage::Auto;
-}
-
 SceneDescription describeScene(const RenderOptions& options) {
     SceneDescription scene = parseInput({options.inputs, options.overrides, options.size});
     for (VolumeDescription& volume : scene.volumes) {
-        if (options.storage) volume.storage = storageOf(*options.storage);
+        if (options.storage) volume.storage = *options.storage;
         volume.repair |= options.repair;
     }
     RenderDescription& render = scene.render;
@@ -162,9 +158,7 @@ void checkMemory(const RenderSettings& settings, const SceneDescription& scene) 
 
 RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions& options) {
     const RenderDescription& render = scene.render;
-    RenderSettings settings;
-    settings.width = render.width;
-    settings.height = render.height;
+    RenderSettings settings = woodcock::renderSettings(render);
     if (options.crop) {
         const PixelRectangle& p = *options.crop;
         if (p.x1 > render.width || p.y1 > render.height)
@@ -175,13 +169,7 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
     const SampleRange samples = options.samples.value_or(SampleRange{0, render.spp});
     settings.firstSample = samples.first;
     settings.endSample = samples.end;
-    settings.seed = render.seed;
-    settings.maxScatterings = render.maxScatterings;
-    settings.maxBounces = render.maxBounces;
-    settings.transparentShadows = render.transparentShadows;
     settings.threads = options.threads.value_or(0);
-    settings.timeLimit = render.timeLimit;
-    settings.noise = render.noise;
     const ExrLayers layers = layersOf(scene);
     settings.depthLayers = layers.depth || layers.normal || layers.transmittance;
     checkMemory(settings, scene);

@@ -59,7 +59,6 @@ void addRendering(CLI::App& command, RenderOptions& o) {
 }
 
 void addScene(CLI::App& command, RenderOptions& o) {
-    const std::vector<std::string> storages{"auto", "half", "float"};
     std::vector<CLI::Option*> options{
         addList(command, "--set", o.overrides,
                 "Set a value of the scene, such as volume[0].scale=2")
@@ -71,7 +70,7 @@ void addScene(CLI::App& command, RenderOptions& o) {
             ->type_name("FILE"),
         command.add_flag("--repair", o.repair,
                          "Set NaN, infinite and negative voxels to zero instead of stopping"),
-        addChoice(command, "--storage", o.storage, storages, "Of voxels in memory:")
+        addEnum(command, "--storage", o.storage, storageNames, "Of voxels in memory:")
             ->type_name("KIND")};
     for (CLI::Option* option : options) option->group("Scene");
 }

@@ -26,7 +26,7 @@ struct RenderOptions {
     std::optional<double> timeLimit, noise;
     std::optional<int> threads;
     std::vector<std::string> overrides;
-    std::optional<std::string> storage;
+    std::optional<Storage> storage;
     bool repair = false;
 
     std::optional<std::string> display, view, look;

@@ -27,7 +27,7 @@ RgbEstimate ground(const std::string& sun, bool transparent, int samples) {
     RenderSettings settings;
     settings.width = settings.height = 16;
     settings.endSample = samples;
-    settings.transparentShadows = transparent;
+    settings.approximations.transparentShadows = transparent;
     return evenRadiance(render(scene, settings).film);
 }
 

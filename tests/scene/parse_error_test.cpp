@@ -127,7 +127,7 @@ TEST(ParseErrors, OfBoxes) {
     const std::string box = "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n";
     EXPECT_EQ(mistakeIn(box),
               "scene.toml:1:1: volume[0] is a box of nothing; give sigma_a and "
-              "sigma_s, or scale and albedo");
+              "sigma_s, or scale and albedo, or emission");
     EXPECT_EQ(mistakeIn(box + "albedo = 1"),
               "scene.toml:3:10: volume[0].albedo needs a scale: here sigma_t = scale");
     EXPECT_EQ(mistakeIn(box + "scale = 1\ndensity = \"d\""),
@@ -264,6 +264,11 @@ TEST(ParseErrors, OfRenderSettings) {
     EXPECT_EQ(
         sectionMistake("[render]\nmax_scatterings = -1"),
         "scene.toml:4:19: render.max_scatterings is -1; it must lie between 0 and 2147483647");
+    EXPECT_EQ(sectionMistake("[render]\nmarch_estimate = \"jackknife\""),
+              "scene.toml:2:18: render.march_estimate needs march_step: tracking takes no steps");
+    EXPECT_EQ(sectionMistake("[render]\noctaves = 3\nsimilarity_after = 2"),
+              "scene.toml:2:11: render.octaves contradicts similarity_after: octaves have no paths "
+              "that go on");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 0.5"),
               "scene.toml:4:18: render.majorant_scale is 0.5; it must lie between 1 and 1000");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 1001"),

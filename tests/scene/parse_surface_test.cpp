@@ -140,7 +140,7 @@ TEST(ParseSurface, RenderAndOutput) {
         "[[surface]]\nplane = {}\n[render]\nmax_bounces = 7\ntransparent_shadows = true\n"
         "[output]\nlayers = [\"normal\", \"depth\"]");
     EXPECT_EQ(scene.render.maxBounces, 7);
-    EXPECT_TRUE(scene.render.transparentShadows);
+    EXPECT_TRUE(scene.render.approximations.transparentShadows);
     EXPECT_EQ(scene.output.layers, (std::vector<std::string>{"normal", "depth"}));
 }
 

@@ -210,6 +210,28 @@ TEST(Parse, RenderSettings) {
     EXPECT_EQ(numbers.noise, 0.02);
 }
 
+TEST(Parse, BiasedChoices) {
+    const RenderDescription none = section("[render]\nspp = 1").render;
+    EXPECT_EQ(none.approximations, Approximations());
+    const RenderDescription render =
+        section(
+            "[render]\nmarch_step = 0.5\nmarch_estimate = \"exponential\"\nsimilarity_after = 0\n"
+            "clamp = 10\ntransparent_shadows = true\nstorage = \"half\"\nlookup = \"nearest\"\n"
+            "level_of_detail = 1.5\nadaptive = true")
+            .render;
+    const Approximations& a = render.approximations;
+    EXPECT_EQ(a.marchStep, 0.5);
+    EXPECT_FALSE(a.jackknife);
+    EXPECT_EQ(a.similarityAfter, 0);
+    EXPECT_EQ(a.clamp, 10);
+    EXPECT_TRUE(a.transparentShadows);
+    EXPECT_EQ(render.storage, Storage::Half);
+    EXPECT_EQ(render.lookup, Lookup::Nearest);
+    EXPECT_EQ(render.levelOfDetail, 1.5);
+    EXPECT_TRUE(render.adaptive);
+    EXPECT_EQ(section("[render]\noctaves = 4").render.approximations.octaves, 4);
+}
+
 TEST(Parse, OutputSettings) {
     const SceneDescription scene = parse(
         "ocio = \"config.ocio\"\n[[volume]]\nfile = \"a.vdb\"\n[output]\nfiles = [\"a.exr\", "

@@ -106,7 +106,24 @@ SceneDescription fullScene() {
                     {},
                     {1.0 / 3, -2}};
     addSurfaces(scene);
-    scene.render = {321, 123, 7, 42, 0, 9, true, 1.5, 0.01, 2.5};
+    scene.render = {.width = 321,
+                    .height = 123,
+                    .spp = 7,
+                    .seed = 42,
+                    .maxScatterings = 0,
+                    .maxBounces = 9,
+                    .approximations = {.marchStep = 0.3,
+                                       .jackknife = false,
+                                       .similarityAfter = 0,
+                                       .clamp = 1.0 / 3,
+                                       .transparentShadows = true},
+                    .storage = Storage::Half,
+                    .lookup = Lookup::Nearest,
+                    .levelOfDetail = 1.25,
+                    .adaptive = true,
+                    .timeLimit = 1.5,
+                    .noise = 0.01,
+                    .majorantScale = 2.5};
     scene.output = {{"a.exr", "b.png"}, {"error", "depth"}, true, "d", "v\\w", "l\n", -0.5};
     return scene;
 }
@@ -203,7 +220,12 @@ TEST(SceneDigest, ChangesWithAllThatTheImageShows) {
     EXPECT_TRUE(changed([](S s) { s.surfaces[0].interior->g = 0.2f; }));
     EXPECT_TRUE(changed([](S s) { s.surfaces[2].instanceFile = "x"; }));
     EXPECT_TRUE(changed([](S s) { s.render.maxBounces = 10; }));
-    EXPECT_TRUE(changed([](S s) { s.render.transparentShadows = false; }));
+    EXPECT_TRUE(changed([](S s) { s.render.approximations.transparentShadows = false; }));
+    EXPECT_TRUE(changed([](S s) { s.render.approximations.marchStep = 0; }));
+    EXPECT_TRUE(changed([](S s) { s.render.approximations.octaves = 3; }));
+    EXPECT_TRUE(changed([](S s) { s.render.storage = Storage::Float; }));
+    EXPECT_TRUE(changed([](S s) { s.render.lookup = Lookup::Trilinear; }));
+    EXPECT_TRUE(changed([](S s) { s.render.levelOfDetail = 0; }));
     EXPECT_TRUE(changed([](S s) { s.camera.fovY = 30; }));
     EXPECT_TRUE(changed([](S s) { s.camera.shift = {0, 0.5}; }));
     EXPECT_TRUE(changed([](S s) { s.render.width = 1; }));

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "woodcock/base/affine.h"
@@ -14,6 +15,14 @@ namespace woodcock {
 /// How a field keeps its voxels. Auto takes half where every value survives it exactly (grids that
 /// were saved as half, say), float otherwise.
 enum class Storage { Auto, Half, Float };
+/// Their names in scene files and options, in the same order.
+inline const std::array<std::string, 3> storageNames{"auto", "half", "float"};
+
+/// How a field is read between its voxels.
+enum class Lookup {
+    Trilinear,  ///< the definition of a medium
+    Nearest     ///< biased: the voxel next to the point
+};
 
 /// A constant cube of voxels: `size` (8, 128 or 4096) voxels wide, at a multiple of its size.
 struct FieldTile {

@@ -191,8 +191,7 @@ private:
                 ShadowRay<Surfaces> s = shadows_[i];
                 if (!s.secondLeg) {
                     Path& p = paths_[s.path];
-                    (s.inFront ? p.result->film.radiance : p.radiance) +=
-                        s.colour * toRgb(arrived);
+                    (s.inFront ? p.result->film.radiance : p.radiance) += s.colour * toRgb(arrived);
                     continue;
                 }
                 s.secondLeg = false;

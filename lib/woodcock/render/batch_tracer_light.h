@@ -100,7 +100,7 @@ bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d d
     shadows_.push_back({.path = i, .colour = light * (1 / brightest)});
     if constexpr (Surfaces) {
         shadows_.back().place = p.surfaces.place;
-        shadows_.back().transparent = mayPass && options_.transparentShadows;
+        shadows_.back().transparent = mayPass && options_.approximations.transparentShadows;
         shadows_.back().inFront = p.surfaces.seen;
     }
     shadowQueries_.push_back({origin, direction, tMax, RandomStream(p.random.bits()),

@@ -84,7 +84,8 @@ AmongSurfaces::Sought BatchTracer<N, Surfaces>::soughtAfter(AmongSurfaces::Sough
     using enum AmongSurfaces::Sought;
     if (!b.delta) return ByChance;
     // Where a smooth part was lit, a delta part's direction still is its own alone.
-    const bool straight = options_.transparentShadows && b.transmitted && !bsdf.smooth();
+    const bool straight =
+        options_.approximations.transparentShadows && b.transmitted && !bsdf.smooth();
     return straight && before != Never ? Straight : Never;
 }
 

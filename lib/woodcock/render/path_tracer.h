@@ -8,6 +8,7 @@
 #include <span>
 
 #include "woodcock/image/film.h"
+#include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
 
@@ -37,7 +38,7 @@ public:
         std::uint64_t seed = 0;
         std::optional<int> maxScatterings;
         std::optional<int> maxBounces;
-        bool transparentShadows = false;
+        Approximations approximations;
         bool depthLayers = false;
     };
 

@@ -194,7 +194,7 @@ private:
         const auto tracer = PathTracer::make(
             scene_, needs_,
             {settings_.width, settings_.height, settings_.seed, settings_.maxScatterings,
-             settings_.maxBounces, settings_.transparentShadows, settings_.depthLayers});
+             settings_.maxBounces, settings_.approximations, settings_.depthLayers});
         if (!tracer->trace(jobs, results, stopping)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);

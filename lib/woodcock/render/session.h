@@ -8,6 +8,7 @@
 #include <string>
 
 #include "woodcock/image/film.h"
+#include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
 
@@ -20,11 +21,12 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
-    bool transparentShadows = false;    ///< see RenderDescription
-    int threads = 0;                    ///< 0: all cores
-    double timeLimit = 0;               ///< seconds; 0: none. The first sample is always whole.
-    double noise = 0;                   ///< stop once Film::noise() is below it; 0: never
-    bool depthLayers = false;           ///< also sample transmittance and depth of camera rays
+    Approximations approximations;
+    bool adaptive = false;     ///< samples go where the error is largest
+    int threads = 0;           ///< 0: all cores
+    double timeLimit = 0;      ///< seconds; 0: none. The first sample is always whole.
+    double noise = 0;          ///< stop once Film::noise() is below it; 0: never
+    bool depthLayers = false;  ///< also sample transmittance and depth of camera rays
 };
 
 struct RenderProgress {

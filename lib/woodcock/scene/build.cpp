@@ -52,6 +52,21 @@ Camera buildCamera(const CameraDescription& description) {
 
 }  // namespace
 
+RenderSettings renderSettings(const RenderDescription& render) {
+    RenderSettings settings;
+    settings.width = render.width;
+    settings.height = render.height;
+    settings.endSample = render.spp;
+    settings.seed = render.seed;
+    settings.maxScatterings = render.maxScatterings;
+    settings.maxBounces = render.maxBounces;
+    settings.approximations = render.approximations;
+    settings.adaptive = render.adaptive;
+    settings.timeLimit = render.timeLimit;
+    settings.noise = render.noise;
+    return settings;
+}
+
 Affine3d worldFromCamera(const CameraPose& pose) {
     if (const auto* matrix = std::get_if<Affine3d>(&pose)) return *matrix;
     const LookAt& lookAt = std::get<LookAt>(pose);

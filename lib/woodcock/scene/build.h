@@ -2,6 +2,7 @@
 #pragma once
 
 #include "woodcock/render/scene.h"
+#include "woodcock/render/session.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load.h"
 
@@ -10,6 +11,9 @@ namespace woodcock {
 /// The scene that a render draws, from a complete description (see completeScene) and what was
 /// loaded for it. Throws Error{Usage} where the description is not complete.
 Scene buildScene(const SceneDescription& description, LoadedScene loaded);
+
+/// What the session is told of a scene file's [render]: all of the image, by all cores.
+RenderSettings renderSettings(const RenderDescription& render);
 
 Affine3d worldFromCamera(const CameraPose& pose);
 

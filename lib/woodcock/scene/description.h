@@ -14,6 +14,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/field_source.h"
 #include "woodcock/mesh/faceted_mesh.h"
+#include "woodcock/render/approximations.h"
 #include "woodcock/scene/places.h"
 
 namespace woodcock {
@@ -260,8 +261,13 @@ struct RenderDescription {
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
-    /// Biased: shadow rays go straight through dielectrics, dimmed by Fresnel's transmittance.
-    bool transparentShadows = false;
+    Approximations approximations;
+    Storage storage = Storage::Auto;    ///< of volumes that say nothing
+    Lookup lookup = Lookup::Trilinear;  ///< Nearest is biased
+    /// Biased: grids are coarsened by powers of two as long as their voxels, where they are next to
+    /// the camera, stay below so many pixels; 0: never.
+    double levelOfDetail = 0;
+    bool adaptive = false;     ///< samples go where the error is largest
     double timeLimit = 0;      ///< seconds; 0: none
     double noise = 0;          ///< mean relative standard error to stop at; 0: none
     double majorantScale = 1;  ///< 1 to 1000; loosens the majorants: for experiments

@@ -22,6 +22,9 @@ enum class Purpose { Density, Coefficient, Albedo };
 /// Reads files and grids, each once.
 class Loader {
 public:
+    /// `usual`: the storage of volumes that say nothing.
+    explicit Loader(Storage usual) : usual_(usual) {}
+
     const VdbFile& file(const std::filesystem::path& path) {
         const auto found = files_.find(path);
         return found != files_.end() ? found->second : files_[path] = listGrids(path);
@@ -31,13 +34,13 @@ public:
         const VdbFile& vdb = file(volume.file);
         FoundGrid found = name.empty() ? findGrid(vdb, GridRole::Density) : findGrid(vdb, name);
         const bool albedo = purpose == Purpose::Albedo;
-        const auto key =
-            std::tuple(volume.file, found.grid.uniqueName, volume.storage, volume.repair, purpose);
+        const auto key = std::tuple(volume.file, found.grid.uniqueName, storageOf(volume),
+                                    volume.repair, purpose);
         if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
         note(std::move(found.note));
         const LoadOptions options{
             .use = purpose == Purpose::Density ? GridUse::Scalar : GridUse::Colour,
-            .storage = volume.storage,
+            .storage = storageOf(volume),
             .repair = volume.repair};
         LoadedGrid grid = loadGrid(vdb, found.grid, options);
         for (std::string& text : grid.notes) note(std::move(text));
@@ -55,7 +58,7 @@ public:
                                                 : findGrid(vdb, b.temperature);
         note(std::move(found.note));
         LoadOptions options{
-            .storage = volume.storage, .nonNegative = false, .repair = volume.repair};
+            .storage = storageOf(volume), .nonNegative = false, .repair = volume.repair};
         options.convert = [&b](FieldSource source) {
             return blackbodySource(std::move(source), b.scale, b.offset);
         };
@@ -75,11 +78,15 @@ public:
     std::vector<std::string> takeNotes() { return std::move(notes_); }
 
 private:
+    Storage storageOf(const VolumeDescription& volume) const {
+        return volume.storage == Storage::Auto ? usual_ : volume.storage;
+    }
     void note(std::string text) {
         const bool known = std::find(notes_.begin(), notes_.end(), text) != notes_.end();
         if (!text.empty() && !known) notes_.push_back(std::move(text));
     }
 
+    Storage usual_;
     std::map<std::filesystem::path, VdbFile> files_;
     std::map<std::tuple<std::filesystem::path, std::string, Storage, bool, Purpose>, LoadedField>
         fields_;
@@ -161,7 +168,7 @@ EnvironmentMap loadMap(const LightDescription& light) {
 
 LoadedScene loadScene(const SceneDescription& scene) {
     LoadedScene loaded;
-    Loader loader;
+    Loader loader(scene.render.storage);
     for (size_t i = 0; i < scene.volumes.size(); ++i)
         loaded.volumes.push_back(loadVolume(scene, i, loader));
     for (size_t i = 0; i < scene.lights.size(); ++i)

@@ -38,12 +38,34 @@ std::filesystem::path parseOutputFile(const TomlValue& value, const std::filesys
     return value.path(base);
 }
 
+Approximations parseApproximations(const TomlTable& table) {
+    Approximations a;
+    if (const auto v = table.find("transparent_shadows")) a.transparentShadows = v->flag();
+    if (const auto v = table.find("march_step")) a.marchStep = v->number({0, 1000});
+    if (const auto v = table.find("march_estimate")) {
+        if (!(a.marchStep > 0)) throw v->error("needs march_step: tracking takes no steps");
+        a.jackknife =
+            v->choice("estimate", std::array<std::string, 2>{"jackknife", "exponential"}) == 0;
+    }
+    if (const auto v = table.find("similarity_after"))
+        a.similarityAfter = v->integer(0, largestCount);
+    if (const auto v = table.find("octaves")) {
+        a.octaves = v->integer(0, 16);
+        if (a.octaves > 0 && a.similarityAfter)
+            throw v->error("contradicts similarity_after: octaves have no paths that go on");
+    }
+    if (const auto v = table.find("clamp")) a.clamp = v->number(notNegative);
+    return a;
+}
+
 }  // namespace
 
 RenderDescription parseRender(const TomlTable& table) {
-    table.allowOnly({"resolution", "spp", "seed", "max_scatterings", "max_bounces",
-                     "transparent_shadows", "time_limit", "noise", "majorant_scale"},
-                    "[render]");
+    table.allowOnly(
+        {"resolution", "spp", "seed", "max_scatterings", "max_bounces", "transparent_shadows",
+         "march_step", "march_estimate", "similarity_after", "octaves", "clamp", "storage",
+         "lookup", "level_of_detail", "adaptive", "time_limit", "noise", "majorant_scale"},
+        "[render]");
     RenderDescription render;
     if (const auto v = table.find("resolution")) {
         const auto sides = v->elements("[width, height]", 2);
@@ -55,7 +77,13 @@ RenderDescription parseRender(const TomlTable& table) {
     if (const auto v = table.find("max_scatterings"))
         render.maxScatterings = v->integer(0, largestCount);
     if (const auto v = table.find("max_bounces")) render.maxBounces = v->integer(0, largestCount);
-    if (const auto v = table.find("transparent_shadows")) render.transparentShadows = v->flag();
+    render.approximations = parseApproximations(table);
+    if (const auto v = table.find("storage")) render.storage = parseStorage(*v);
+    if (const auto v = table.find("lookup"))
+        render.lookup = std::array{Lookup::Trilinear, Lookup::Nearest}[v->choice(
+            "lookup", std::array<std::string, 2>{"trilinear", "nearest"})];
+    if (const auto v = table.find("level_of_detail")) render.levelOfDetail = v->number({0, 1000});
+    if (const auto v = table.find("adaptive")) render.adaptive = v->flag();
     if (const auto v = table.find("time_limit"))
         render.timeLimit = v->isText() ? readText(*v, parseDuration) : v->number(notNegative);
     if (const auto v = table.find("noise"))

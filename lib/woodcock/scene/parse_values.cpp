@@ -20,6 +20,10 @@ float parseG(const TomlValue& value) {
     return static_cast<float>(g);
 }
 
+Storage parseStorage(const TomlValue& value) {
+    return static_cast<Storage>(value.choice("storage", storageNames));
+}
+
 Box3d parseBounds(const TomlValue& value) {
     const TomlTable table = value.table();
     table.allowOnly({"min", "max"}, value.name());

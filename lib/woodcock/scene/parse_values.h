@@ -5,6 +5,7 @@
 
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/grid/field_source.h"
 
 namespace woodcock {
 
@@ -14,6 +15,9 @@ inline constexpr NumberRange zeroToOne{0, 1};
 
 /// The mean cosine of a phase function.
 float parseG(const TomlValue& value);
+
+/// One of storageNames.
+Storage parseStorage(const TomlValue& value);
 
 /// { min = [x, y, z], max = [x, y, z] }
 Box3d parseBounds(const TomlValue& value);

@@ -97,9 +97,7 @@ VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::pat
     if (const auto v = table.find("g")) volume.g = parseG(*v);
     volume.worldFromObject = parsePlacement(table, "volume");
     if (const auto v = table.find("inside")) volume.inside = v->text();
-    if (const auto v = table.find("storage"))
-        volume.storage = std::array{Storage::Auto, Storage::Half, Storage::Float}[v->choice(
-            "storage", std::array<std::string, 3>{"auto", "half", "float"})];
+    if (const auto v = table.find("storage")) volume.storage = parseStorage(*v);
     if (const auto v = table.find("repair")) volume.repair = v->flag();
     return volume;
 }

@@ -67,7 +67,7 @@ void write(SceneWriter& out, const VolumeDescription& volume) {
     if (volume.worldFromObject != identity) out.line("matrix", tomlMatrix(volume.worldFromObject));
     if (!volume.inside.empty()) out.line("inside", tomlText(volume.inside));
     if (volume.storage != defaults.storage)
-        out.line("storage", volume.storage == Storage::Half ? "\"half\"" : "\"float\"");
+        out.line("storage", tomlText(storageNames[static_cast<std::size_t>(volume.storage)]));
     if (volume.repair) out.line("repair", "true");
 }
 
@@ -155,7 +155,21 @@ void write(SceneWriter& out, const RenderDescription& render) {
     if (render.maxScatterings)
         out.line("max_scatterings", fmt::format("{}", *render.maxScatterings));
     if (render.maxBounces) out.line("max_bounces", fmt::format("{}", *render.maxBounces));
-    if (render.transparentShadows) out.line("transparent_shadows", "true");
+    const Approximations& a = render.approximations;
+    if (a.transparentShadows) out.line("transparent_shadows", "true");
+    if (a.marchStep != 0) {
+        out.line("march_step", tomlNumber(a.marchStep), "voxels");
+        if (!a.jackknife) out.line("march_estimate", "\"exponential\"");
+    }
+    if (a.similarityAfter) out.line("similarity_after", fmt::format("{}", *a.similarityAfter));
+    if (a.octaves != 0) out.line("octaves", fmt::format("{}", a.octaves));
+    if (a.clamp != 0) out.line("clamp", tomlNumber(a.clamp));
+    if (render.storage != Storage::Auto)
+        out.line("storage", tomlText(storageNames[static_cast<std::size_t>(render.storage)]));
+    if (render.lookup == Lookup::Nearest) out.line("lookup", "\"nearest\"");
+    if (render.levelOfDetail != 0)
+        out.line("level_of_detail", tomlNumber(render.levelOfDetail), "pixels");
+    if (render.adaptive) out.line("adaptive", "true");
     if (render.timeLimit != 0) out.line("time_limit", tomlNumber(render.timeLimit), "seconds");
     if (render.noise != 0) out.line("noise", tomlNumber(render.noise));
     if (render.majorantScale != 1) out.line("majorant_scale", tomlNumber(render.majorantScale));
@@ -227,7 +241,10 @@ std::string sceneDigest(const SceneDescription& scene) {
     content.render.height = scene.render.height;
     content.render.maxScatterings = scene.render.maxScatterings;
     content.render.maxBounces = scene.render.maxBounces;
-    content.render.transparentShadows = scene.render.transparentShadows;
+    content.render.approximations = scene.render.approximations;
+    content.render.storage = scene.render.storage;
+    content.render.lookup = scene.render.lookup;
+    content.render.levelOfDetail = scene.render.levelOfDetail;
     content.render.majorantScale = scene.render.majorantScale;
     for (std::filesystem::path* file : sceneFiles(content))
         *file = std::filesystem::absolute(*file).lexically_normal();
