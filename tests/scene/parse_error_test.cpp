@@ -37,8 +37,8 @@ TEST(ParseErrors, NamePlaceValueAndRange) {
 TEST(ParseErrors, NameTheNearestKnownKey) {
     EXPECT_EQ(volumeMistake("albdo = 1"),
               "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
-              "keys: file, box, density, scale, albedo, albedo_grid, sigma_a, sigma_s, g, "
-              "transform, matrix, inside, storage, repair");
+              "keys: file, box, density, scale, albedo, albedo_grid, sigma_a, sigma_s, emission, "
+              "blackbody, g, transform, matrix, inside, storage, repair");
     EXPECT_EQ(
         sectionMistake("[rendr]\nspp = 1"),
         "scene.toml:3:2: unknown key 'rendr' in the scene; did you mean 'render'? known keys: "

@@ -4,6 +4,7 @@
 #include "woodcock/base/parse.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/scene/parse_sections.h"
+#include "woodcock/scene/parse_values.h"
 
 namespace woodcock {
 namespace {
