@@ -29,8 +29,11 @@ function axis({label, log}, values) {
     low -= room, high += room;
     const marks = count => {
         if (!log || high - low < 0.4) return ticks(back(low), back(high), count).map(v => [v, number(v, 4)]);
-        const step = Math.ceil((high - low) / count), decades = [];
-        for (let n = step * Math.ceil(low / step); n <= high; n += step) decades.push(n);
+        const decades = [];
+        for (let step = Math.ceil((high - low) / count); step > 0 && decades.length < 2; --step) {
+            decades.length = 0;
+            for (let n = step * Math.ceil(low / step); n <= high; n += step) decades.push(n);
+        }
         if (high - low > 1.7 && decades.length > 1) {
             const plain = decades.every(n => n >= -4 && n <= 5);
             return decades.map(n => [back(n), plain ? number(back(n)) : powerOfTen(n)]);
@@ -75,7 +78,7 @@ function chart(parent, {title, x, y, series, height = 300, extent = {x: [], y: [
         const px = v => left + xAxis.place(v) * (right - left), py = v => bottom - yAxis.place(v) * (bottom - top);
         const least = yAxis.log ? Math.pow(10, yAxis.low - 1) : -Infinity;  // what is not positive goes below the frame
         frame = {left, right, top, bottom, px, py: v => py(Math.max(v, least)), xAxis, yAxis};
-        const xMarks = xAxis.marks(Math.max(2, Math.floor((right - left) / 90))), yMarks = yAxis.marks(Math.max(2, Math.floor((bottom - top) / 45)));
+        const xMarks = xAxis.marks(Math.max(2, Math.floor((right - left) / 60))), yMarks = yAxis.marks(Math.max(2, Math.floor((bottom - top) / 45)));
         // The last label must not run into what comes before it.
         let end = -Infinity;
         const xTexts = xMarks.map(([v, text]) => {
@@ -84,7 +87,7 @@ function chart(parent, {title, x, y, series, height = 300, extent = {x: [], y: [
             end = at + wide / 2;
             return label(at.toFixed(1), bottom + 16, text);
         });
-        const curves = visible().map(s => s.line ? path(s.line.map(([u, v]) => [px(u), frame.py(v)]), `curve c${s.index % colourCount}${s.dashed ? " dashed" : ""}`) : "");
+        const curves = visible().map(s => s.line.length ? path(s.line.map(([u, v]) => [px(u), frame.py(v)]), `curve c${s.index % colourCount}${s.dashed ? " dashed" : ""}`) : "");
         const bar = (s, p) => p.se > 0 ? line(px(p.x).toFixed(1), frame.py(p.y + p.se).toFixed(1), px(p.x).toFixed(1), frame.py(p.y - p.se).toFixed(1), `bar c${s.index % colourCount}`) : "";
         const marks = visible().map(s => s.points.map(p => `<g class="point">${bar(s, p)}${mark(px(p.x), frame.py(p.y), s)}</g>`).join(""));
         const ring = chosen && !hidden.has(chosen.series) ? `<circle cx="${px(chosen.point.x)}" cy="${frame.py(chosen.point.y)}" r="9" class="ring"/>` : "";
@@ -95,7 +98,7 @@ function chart(parent, {title, x, y, series, height = 300, extent = {x: [], y: [
     };
     // The keys at the lines' right ends, moved apart.
     const endKeys = () => {
-        const ends = visible().filter(s => s.line && s.line.length).map(s => ({s, y: frame.py(s.line[s.line.length - 1][1])}))
+        const ends = visible().filter(s => s.line.length).map(s => ({s, y: frame.py(s.line[s.line.length - 1][1])}))
             .filter(e => e.y <= frame.bottom + 4).sort((a, b) => a.y - b.y);
         const places = spread(ends.map(e => e.y), 13, frame.top, frame.bottom);
         return ends.map((e, i) => `<text x="${frame.right + 6}" y="${places[i] + 4}" class="end c${e.s.index % colourCount}">${escape(e.s.key)}</text>`).join("");
