@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -8,11 +6,12 @@
 #include <string_view>
 
 #include "compare_report.h"
+#include "page.h"
 #include "woodcock/base/error.h"
 #include "woodcock/compare/pack.h"
 
 namespace woodcock {
-extern const std::string_view comparePage;        // compare_page.html
+extern const std::string_view comparePageStyle;   // compare_page.css
 extern const std::string_view comparePageImages;  // compare_page_images.js
 extern const std::string_view comparePageViewer;
 extern const std::string_view comparePageTables;
@@ -23,13 +22,6 @@ namespace woodcock::tool {
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-/// JSON has < in strings only, where it may be written so: no name can end the script.
-std::string insideScript(const std::string& json) {
-    std::string text;
-    for (const char c : json) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-    return text;
-}
 
 /// The planes that are shown: the colour, or else what comes first.
 std::vector<std::size_t> shownPlanes(const Picture& p) {
@@ -80,12 +72,6 @@ Json pixelsJson(const Comparison& all, const std::vector<BakedView>& views) {
             {"tiles", tiles}};
 }
 
-/// The text with this in place of that.
-std::string with(std::string_view text, std::string_view place, std::string_view by) {
-    const std::size_t at = text.find(place);
-    return fmt::format("{}{}{}", text.substr(0, at), by, text.substr(at + place.size()));
-}
-
 }  // namespace
 
 std::vector<BakedView> bakeViews(const ColorConfig& config) {
@@ -105,14 +91,11 @@ std::vector<BakedView> bakeViews(const ColorConfig& config) {
 
 std::string compareHtml(const Comparison& comparison, const std::vector<BakedView>& views) {
     const Json pixels = pixelsJson(comparison, views);
-    // The last place first: what is put in cannot be mistaken for one.
-    std::string page =
-        with(comparePage, "@SCRIPT@",
-             fmt::format("{}{}{}", comparePageImages, comparePageViewer, comparePageTables));
-    page = with(page, "@PIXELS@",
-                insideScript(pixels.dump(-1, ' ', false, Json::error_handler_t::replace)));
-    page = with(page, "@REPORT@", insideScript(compareJson(comparison)));
-    return page;
+    return makePage({"woodcock compare",
+                     {comparePageStyle},
+                     {{"report", compareJson(comparison)},
+                      {"pixels", pixels.dump(-1, ' ', false, Json::error_handler_t::replace)}},
+                     {comparePageImages, comparePageViewer, comparePageTables}});
 }
 
 }  // namespace woodcock::tool

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page knows, and its images as the canvas wants them.
 
-const report = JSON.parse(document.getElementById("report").textContent);
-const packed = JSON.parse(document.getElementById("pixels").textContent);
+const report = dataOf("report");
+const packed = dataOf("pixels");
 const {width, height} = report, pixelCount = width * height;
 const channels = packed.channels, letters = report.images.map(image => image.letter);
-
-const escape = text => String(text).replace(/[&<>"']/g, c => `&#${c.charCodeAt(0)};`);
-const number = (v, digits = 5) => {
-    if (v === null || Number.isNaN(v)) return "–";
-    if (Math.abs(v) === Infinity) return v < 0 ? "−∞" : "∞";
-    const tiny = v !== 0 && (Math.abs(v) < 1e-4 || Math.abs(v) >= 1e7);
-    const text = tiny ? v.toExponential(digits - 1).replace(/\.?0*e/, "e").replace("e+", "e") : String(Number(v.toPrecision(digits)));
-    return text.replaceAll("-", "−");
-};
 
 // ---- pixels
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Verdicts, tables and plots, and the page's beginning.
 
-const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
-
 function summary() {
     const differing = report.comparisons.filter(c => c.verdict === "differ").map(c => c.image), a = letters[0];
     const title = differing.length ? `<h1 class="bad">${differing.join(", ")} differ${differing.length === 1 ? "s" : ""} from ${a}</h1>`
@@ -54,25 +52,7 @@ function tables(section) {
     });
 }
 
-// ---- plots: each is drawn at the width that it has, so that letters keep their size
-
-const plots = [];
-function plot(parent, title, legend, drawn) {
-    const card = document.createElement("div");
-    card.className = "card";
-    card.innerHTML = `<h3>${escape(title)}</h3><div></div><p class="legend">${legend}</p>`;
-    parent.append(card);
-    plots.push({box: card.children[1], title, drawn});
-}
-function drawPlots() {
-    for (const {box, title, drawn} of plots) {
-        const w = Math.max(200, box.clientWidth);
-        box.innerHTML = `<svg viewBox="0 0 ${w} 200" height="200" role="img" aria-label="${escape(title)}">${drawn(w, 200)}</svg>`;
-    }
-}
-const line = (x0, y0, x1, y1, style) => `<line x1="${x0}" y1="${y0}" x2="${x1}" y2="${y1}" class="${style}"/>`;
-const label = (x, y, text, anchor = "middle") => `<text x="${x}" y="${y}" text-anchor="${anchor}">${escape(text)}</text>`;
-const path = (points, style) => `<polyline points="${points.map(p => p.map(v => v.toFixed(1)).join(",")).join(" ")}" class="${style}"/>`;
+// ---- plots
 
 /** Counts as a stairs' outline. */
 function stairs(counts, x, y) {
@@ -99,7 +79,7 @@ function valueHistogram(section, c, a, b) {
     const low = Math.min(...ends.map(s => Math.log2(s[Math.floor(0.001 * s.length)]))) - 0.1;
     const high = Math.max(low + 0.2, ...ends.map(s => Math.log2(s[s.length - 1]) + 0.1));
     const place = v => v > 0 ? (Math.log2(v) - low) / (high - low) * bins : -1, counts = [a, b].map(i => countIn(of(i), place)), most = Math.max(1, ...counts.flat());
-    plot(section, `${channels[c]}: values`, `<span><i></i>${letters[a]}</span><span><i class="b"></i>${letters[b]}</span><span>pixels (logarithmic) by stops</span>`, (w, h) => {
+    plot(section, `${channels[c]}: values`, {legend: `<span><i></i>${letters[a]}</span><span><i class="b"></i>${letters[b]}</span><span>pixels (logarithmic) by stops</span>`}, (w, h) => {
         const x = i => 8 + i / bins * (w - 16), y = n => h - 24 - Math.log1p(n) / Math.log1p(most) * (h - 32);
         const marks = [0, 1, 2, 3].map(i => low + (i + 0.5) / 4 * (high - low));
         return line(8, h - 24, w - 8, h - 24, "axis") + path(stairs(counts[0], x, y), "a") + path(stairs(counts[1], x, y), "b") +
@@ -114,7 +94,7 @@ function differenceHistogram(section, c, a, b) {
     const mean = sum / n, deviation = Math.sqrt(squares / n - mean * mean);
     const counts = countIn(d, v => (v / reach + 1) / 2 * bins), normal = v => n * (2 * reach / bins) / (deviation * Math.sqrt(2 * Math.PI)) * Math.exp(-0.5 * Math.pow((v - mean) / deviation, 2));
     const most = Math.max(1, ...counts, deviation > 0 ? Math.min(normal(mean), 2 * Math.max(...counts)) : 0);
-    plot(section, `${channels[c]}: ${letters[b]} − ${letters[a]}`, `<span><i></i>pixels (logarithmic)</span><span><i class="theory"></i>normal curve of the same width</span>`, (w, h) => {
+    plot(section, `${channels[c]}: ${letters[b]} − ${letters[a]}`, {legend: `<span><i></i>pixels (logarithmic)</span><span><i class="theory"></i>normal curve of the same width</span>`}, (w, h) => {
         const x = i => 8 + i / bins * (w - 16), y = v => h - 24 - Math.min(Math.log1p(v), Math.log1p(most)) / Math.log1p(most) * (h - 32);
         const curve = Array.from({length: 129}, (_, i) => [x(i / 2), y(normal((i / 64 - 1) * reach))]);
         return line(8, h - 24, w - 8, h - 24, "axis") + line(x(bins / 2), 4, x(bins / 2), h - 24, "grid") + path(stairs(counts, x, y), "a") + (deviation > 0 ? path(curve, "theory") : "") +
@@ -132,7 +112,7 @@ function histograms(section) {
 function convergencePlot(section, points, unit) {
     const xs = points.map(p => Math.log2(p.x)), ys = points.map(p => Math.log2(p.y));
     const x0 = Math.min(...xs) - 0.3, x1 = Math.max(...xs) + 0.3, y0 = Math.min(...ys) - 0.5, y1 = Math.max(...ys) + 0.5, first = points[0];
-    plot(section, `RMSE against ${unit}`, `<span>points: images against ${letters[0]}</span><span><i class="theory"></i>as the square root of ${unit}</span>`, (w, h) => {
+    plot(section, `RMSE against ${unit}`, {legend: `<span>points: images against ${letters[0]}</span><span><i class="theory"></i>as the square root of ${unit}</span>`}, (w, h) => {
         const x = v => 56 + (Math.log2(v) - x0) / (x1 - x0) * (w - 72), y = v => h - 28 - (Math.log2(v) - y0) / (y1 - y0) * (h - 40);
         const expected = v => first.y * Math.sqrt(first.x / v), ends = [points[0].x, points[points.length - 1].x];
         const marks = [...new Set(points.map(p => p.x))];
@@ -158,12 +138,6 @@ function convergence(section) {
 
 // ---- the page
 
-const main = document.getElementById("main");
-function section(fill) {
-    const s = document.createElement("section");
-    main.append(s);
-    fill(s);
-}
 async function start() {
     main.innerHTML = "";
     section(s => { s.innerHTML = summary(); });
@@ -178,8 +152,7 @@ async function start() {
     section(tables);
     section(convergence);
     if (drawn) section(histograms);
-    drawPlots();
-    new ResizeObserver(drawPlots).observe(main);
+    keepPlots();
     document.documentElement.dataset.ready = drawn;
 }
 start();

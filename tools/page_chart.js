@@ -164,7 +164,8 @@ function rowChart(parent, title, rows, {unit = "", lines = [], bars = false, fro
     const known = rows.filter(r => Number.isFinite(r.value)), ends = known.flatMap(r => [r.value - 2 * (r.se || 0), r.value + 2 * (r.se || 0)]);
     const tall = 36, height = rows.length * tall + 44;
     const values = [...ends, ...lines.map(l => l[0]), from], scale = axis({label: "", log: false}, values);
-    plot(parent, title, width => {
+    const text = rows.map(r => `${r.name} ${r.text}`).join("; ");
+    plot(parent, title, {height, label: `${title}: ${text}`, legend: note}, width => {
         const left = 8, right = width - 14, px = v => left + scale.place(v) * (right - left);
         const top = 18, bottom = rows.length * tall + top;
         const marks = scale.marks(Math.max(2, Math.floor(width / 64)));
@@ -180,6 +181,6 @@ function rowChart(parent, title, rows, {unit = "", lines = [], bars = false, fro
         return marks.map(([v, text]) => line(px(v), top, px(v), bottom, "grid") + label(px(v), bottom + 16, text + unit)).join("") +
             lines.map(([v, text, style]) => line(px(v), top - 4, px(v), bottom, style) + (text ? label(px(v), 10, text, px(v) > width / 2 ? "end" : "start") : "")).join("") +
             line(left, bottom, right, bottom, "axis") + rows.map(row).join("");
-    }, {height, label: `${title}: ${rows.map(r => `${r.name} ${r.text}`).join("; ")}`, legend: note && `<p class="legend">${note}</p>`});
+    });
 }
 const fitted = (text, letters) => text.length <= letters ? text : text.slice(0, Math.max(3, Math.floor(letters) - 1)) + "…";

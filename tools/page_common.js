@@ -58,11 +58,11 @@ function sortableTable(box, rows, columns, sort, otherwise = () => 0) {
 
 const plots = [];
 
-/** A card with a plot, which draw(width, height) gives as SVG. */
-function plot(parent, title, draw, {height = 200, label = title, legend = ""} = {}) {
+/** A card with a plot, which draw(width, height) gives as SVG; the legend is HTML. */
+function plot(parent, title, {height = 200, label = title, legend = ""}, draw) {
     const card = document.createElement("div");
     card.className = "card";
-    card.innerHTML = `<h3>${escape(title)}</h3><div></div>${legend}`;
+    card.innerHTML = `<h3>${escape(title)}</h3><div></div>${legend && `<p class="legend">${legend}</p>`}`;
     parent.append(card);
     plots.push({box: card.children[1], height, label, draw});
 }

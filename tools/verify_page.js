@@ -1,97 +1,7 @@
-<!doctype html>
-<!-- SPDX-License-Identifier: Apache-2.0 -->
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<link rel="icon" href="data:,">
-<title>woodcock verify</title>
-<style>
-:root {
-    --page: #fbfaf7; --card: #ffffff; --ink: #1d1f21; --soft: #5d6166; --line: #d9d6cf;
-    --grid: #ebe8e1; --band: #e9f0f7; --pass: #1f66ad; --fail: #c0231d; --imprecise: #9a6200;
-    --second: #b0540e; --good: #1c7440;
-}
-@media (prefers-color-scheme: dark) {
-    :root {
-        --page: #15181b; --card: #1d2125; --ink: #e8e6e1; --soft: #a5abb2; --line: #3a4047;
-        --grid: #2a2f35; --band: #223140; --pass: #7db8f2; --fail: #ff8a80; --imprecise: #f0b955;
-        --second: #f2a36b; --good: #7bd49b;
-    }
-}
-* { box-sizing: border-box; }
-body {
-    margin: 0 auto; padding: 1.5rem 1rem 4rem; max-width: 76rem; background: var(--page);
-    color: var(--ink); font: 16px/1.5 system-ui, sans-serif;
-}
-h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 .3rem; }
-h2 { font-size: 1.2rem; margin: 2.6rem 0 .4rem; }
-h3 { font-size: 1rem; margin: 0 0 .3rem; font-weight: 600; }
-p { margin: .3rem 0 .8rem; max-width: 46rem; }
-.soft { color: var(--soft); }
-.pass { color: var(--good); } .fail { color: var(--fail); } .imprecise { color: var(--imprecise); }
-.facts { display: grid; grid-template-columns: max-content 1fr; gap: .1rem 1rem; margin: 1rem 0; }
-.facts dt { color: var(--soft); }
-.facts dd { margin: 0; overflow-wrap: anywhere; }
-.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(10.5rem, 1fr)); gap: .75rem; }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr)); gap: .75rem; }
-.small { grid-template-columns: repeat(auto-fill, minmax(min(100%, 17rem), 1fr)); }
-.card { background: var(--card); border: 1px solid var(--line); border-radius: 6px; padding: .7rem .8rem; min-width: 0; }
-.card b { display: block; font-size: 1.5rem; line-height: 1.3; }
-svg { display: block; width: 100%; overflow: visible; }
-svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
-svg .axis { stroke: var(--line); } svg .grid { stroke: var(--grid); } svg .band { fill: var(--band); }
-svg .zero { stroke: var(--soft); } svg .limit { stroke: var(--fail); stroke-dasharray: 5 4; }
-svg .mark-pass { fill: var(--pass); stroke: var(--pass); }
-svg .mark-fail { fill: var(--fail); stroke: var(--fail); }
-svg .mark-imprecise { fill: var(--imprecise); stroke: var(--imprecise); }
-svg .bar { fill: var(--pass); opacity: .55; }
-svg .theory { fill: none; stroke: var(--ink); stroke-width: 1.5; }
-svg .wide { stroke-width: 1; opacity: .6; } svg .near { stroke-width: 2.5; }
-svg .series0 { fill: var(--pass); stroke: var(--pass); }
-svg .series1 { fill: var(--second); stroke: var(--second); }
-svg .line0, svg .line1 { fill: none; stroke-width: 1.5; }
-svg .line0 { stroke: var(--pass); } svg .line1 { stroke: var(--second); stroke-dasharray: 6 3; }
-.legend { font-size: .85rem; color: var(--soft); margin: 0; }
-.legend i { display: inline-block; width: 1.4em; height: 0; border-top: 2px solid var(--pass); vertical-align: middle; margin: 0 .35em 0 .8em; }
-.legend i:first-child { margin-left: 0; }
-.legend span { margin-left: .8em; }
-.legend i.second { border-top: 2px dashed var(--second); }
-form { display: flex; flex-wrap: wrap; gap: .6rem; margin: .6rem 0; align-items: end; }
-label { display: grid; font-size: .85rem; color: var(--soft); }
-input, select, th button {
-    font: inherit; color: var(--ink); background: var(--card); border: 1px solid var(--line); border-radius: 4px; padding: .35rem .5rem;
-}
-input { width: min(20rem, 80vw); }
-:focus-visible { outline: 2px solid var(--pass); outline-offset: 2px; }
-table { border-collapse: collapse; width: 100%; font-size: .875rem; background: var(--card); }
-th, td { text-align: left; padding: .3rem .5rem; border-bottom: 1px solid var(--line); vertical-align: top; }
-th { position: sticky; top: 0; background: var(--card); z-index: 1; }
-th button { border: 0; padding: 0; font-weight: 600; cursor: pointer; white-space: nowrap; text-align: inherit; }
-th[aria-sort=ascending] button::after { content: " \2191"; }
-th[aria-sort=descending] button::after { content: " \2193"; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td { overflow-wrap: anywhere; }
-td.verdict, td.kind { white-space: nowrap; overflow-wrap: normal; }
-td.verdict { font-weight: 600; }
-@media (max-width: 46rem) {
-    thead { position: absolute; clip-path: inset(50%); height: 1px; overflow: hidden; }
-    tr { display: block; padding: .6rem .7rem; border-bottom: 1px solid var(--line); }
-    td, td.number { display: flex; justify-content: space-between; gap: 1rem; padding: .05rem 0; border: 0; text-align: right; }
-    td::before { content: attr(data-label); color: var(--soft); flex: none; }
-    td.name { display: block; text-align: left; font-weight: 600; }
-    td.name::before { content: none; }
-    td:empty { display: none; }
-}
-</style>
-</head>
-<body>
-<main id="main"><noscript>The tables and plots of this page are drawn by its script.</noscript></main>
-<script type="application/json" id="report">@REPORT@</script>
-<script>
-"use strict";
-const report = JSON.parse(document.getElementById("report").textContent);
+// SPDX-License-Identifier: Apache-2.0
+// What the program was held against: verdicts, plots, and every case.
+
+const report = dataOf("report");
 const cases = report.cases.map((c, index) => ({
     ...c, index, name: c.case, verdict: c.verdict.toLowerCase(), note: c.note || "",
     // What is not finite came as null.
@@ -102,15 +12,7 @@ const kinds = ["closed form", "slab", "surface", "property", "sampling", "extrem
 const verdicts = ["fail", "imprecise", "pass"];
 const largestZ = report.largest_z;
 
-const escape = text => String(text).replace(/[&<>"']/g, c => `&#${c.charCodeAt(0)};`);
-const number = (v, digits = 6) => {
-    if (Number.isNaN(v)) return "not finite";
-    if (Math.abs(v) === Infinity) return "\u221e";
-    const tiny = v !== 0 && (Math.abs(v) < 1e-4 || Math.abs(v) >= 1e7);
-    const text = tiny ? v.toExponential(digits - 1).replace(/\.?0*e/, "e").replace("e+", "e") : String(Number(v.toPrecision(digits)));
-    return text.replaceAll("-", "\u2212");
-};
-const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
+const figure = v => Number.isNaN(v) ? "not finite" : number(v, 6);
 const duration = s => s < 90 ? `${s.toPrecision(3)} s` : `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`;
 const sum = list => list.reduce((a, b) => a + b, 0);
 const random = c => c.standardError > 0 && Number.isFinite(c.standardError) && Number.isFinite(c.measured);
@@ -166,24 +68,13 @@ function summary() {
 const columns = [
     {name: "Case", text: c => c.name, key: c => c.name, cell: "name"},
     {name: "Kind", text: c => c.kind, key: c => kinds.indexOf(c.kind), cell: "kind"},
-    {name: "Expected", text: c => number(c.expected), key: c => c.expected, cell: "number"},
-    {name: "Measured", text: c => number(c.measured), key: c => c.measured, cell: "number"},
+    {name: "Expected", text: c => figure(c.expected), key: c => c.expected, cell: "number"},
+    {name: "Measured", text: c => figure(c.measured), key: c => c.measured, cell: "number"},
     {name: "Standard error", text: c => c.standardError ? number(c.standardError, 2) : "0", key: c => c.standardError, cell: "number"},
     {name: "z", text: c => number(c.z, 3), key: c => Math.abs(c.z), cell: "number"},
-    {name: "Verdict", text: c => c.verdict, key: c => verdicts.indexOf(c.verdict), cell: "verdict"},
+    {name: "Verdict", text: c => c.verdict, key: c => verdicts.indexOf(c.verdict), cell: "verdict", mood: c => c.verdict},
     {name: "Note", text: c => c.note, key: c => c.note, cell: "note"},
 ];
-
-function table(list, shown, sort) {
-    const head = shown.map(c => {
-        const order = sort && sort.column === c ? ` aria-sort="${sort.down ? "descending" : "ascending"}"` : "";
-        const label = sort ? `<button type="button" data-column="${columns.indexOf(c)}">${c.name}</button>` : c.name;
-        return `<th scope="col" class="${c.cell}"${order}>${label}</th>`;
-    });
-    const rows = list.map(row => `<tr>${shown.map(c =>
-        `<td class="${c.cell}${c.cell === "verdict" ? " " + row.verdict : ""}" data-label="${c.name}">${escape(c.text(row))}</td>`).join("")}</tr>`);
-    return `<table><thead><tr>${head.join("")}</tr></thead><tbody>${rows.join("")}</tbody></table>`;
-}
 
 const failingFirst = (a, b) => verdicts.indexOf(a.verdict) - verdicts.indexOf(b.verdict) || a.index - b.index;
 
@@ -195,57 +86,19 @@ function caseTable(section) {
         <label>Verdict <select id="verdict">${options(verdicts.filter(v => cases.some(c => c.verdict === v)))}</select></label>
         </form><p class="soft" role="status"></p><div></div>`;
     const value = id => section.querySelector("#" + id).value;
-    const sort = {column: columns[6], down: false};
-    const draw = () => {
+    const filtered = () => {
         const text = value("text").toLowerCase();
         const list = cases.filter(c => (!value("kind") || c.kind === value("kind")) &&
             (!value("verdict") || c.verdict === value("verdict")) && (c.name + " " + c.note).toLowerCase().includes(text));
-        const key = sort.column.key, sign = sort.down ? -1 : 1;
-        list.sort((a, b) => sign * (key(a) < key(b) ? -1 : key(a) > key(b) ? 1 : 0) || failingFirst(a, b));
         section.querySelector("p").textContent = `${list.length} of ${plural(cases.length, "case")}`;
-        section.lastElementChild.innerHTML = table(list, columns, sort);
+        return list;
     };
+    const draw = sortableTable(section.lastElementChild, filtered, columns, {column: columns[6], down: false}, failingFirst);
     section.querySelector("form").addEventListener("input", draw);
     section.querySelector("form").addEventListener("submit", event => event.preventDefault());
-    section.lastElementChild.addEventListener("click", event => {
-        const chosen = event.target.dataset.column;
-        if (chosen === undefined) return;
-        sort.down = sort.column === columns[chosen] && !sort.down;
-        sort.column = columns[chosen];
-        draw();
-        section.querySelector(`[data-column="${chosen}"]`).focus();
-    });
-    draw();
 }
 
-// ---- plots: each is drawn at the width that it has, so that letters keep their size
-
-const plots = [];
-function plot(parent, title, height, label, draw, legend = "") {
-    const card = document.createElement("div");
-    card.className = "card";
-    card.innerHTML = `<h3>${escape(title)}</h3><div></div>${legend}`;
-    parent.append(card);
-    plots.push({box: card.children[1], height, label, draw});
-}
-function drawPlots() {
-    for (const {box, height, label, draw} of plots) {
-        const width = Math.max(200, box.clientWidth);
-        box.innerHTML = `<svg viewBox="0 0 ${width} ${height}" height="${height}" role="img" aria-label="${escape(label)}">${draw(width, height)}</svg>`;
-    }
-}
-
-const line = (x0, y0, x1, y1, style) => `<line x1="${x0}" y1="${y0}" x2="${x1}" y2="${y1}" class="${style}"/>`;
-const label = (x, y, text, anchor = "middle") => `<text x="${x}" y="${y}" text-anchor="${anchor}">${escape(text)}</text>`;
-
-/** About `count` round numbers from a to b. */
-function ticks(a, b, count) {
-    const raw = (b - a) / count, power = Math.pow(10, Math.floor(Math.log10(raw)));
-    const step = [1, 2, 5, 10].find(m => m * power >= raw * 0.999) * power;
-    const list = [];
-    for (let i = Math.ceil(a / step - 1e-9); i * step <= b + step * 1e-9; ++i) list.push(Number((i * step).toPrecision(12)));
-    return list;
-}
+// ---- plots
 
 /** A frame with a scale of y on its left; returns the drawing, and maps. */
 function frame(width, height, [low, high], unit = v => number(v, 3)) {
@@ -260,7 +113,7 @@ function frame(width, height, [low, high], unit = v => number(v, 3)) {
 /** A point: a disc where it passes, a square standing on its corner where not. */
 function mark(x, y, c, style = `mark-${c.verdict}`, radius = 3) {
     const shape = c.verdict === "pass" ? `<circle cx="${x}" cy="${y}" r="${radius}"` : `<path d="M${x - 6} ${y}L${x} ${y - 6}L${x + 6} ${y}L${x} ${y + 6}Z"`;
-    const title = `${c.name}\nexpected ${number(c.expected)}, measured ${number(c.measured)}, standard error ${number(c.standardError, 2)}, z ${number(c.z, 3)}`;
+    const title = `${c.name}\nexpected ${figure(c.expected)}, measured ${figure(c.measured)}, standard error ${number(c.standardError, 2)}, z ${number(c.z, 3)}`;
     return `${shape} class="${style}"><title>${escape(title)}</title></${c.verdict === "pass" ? "circle" : "path"}>`;
 }
 
@@ -302,10 +155,10 @@ function errorPlots(section) {
     let any = false;
     for (const kind of kinds) {
         const list = cases.filter(c => c.kind === kind && random(c)), scaled = list.filter(c => c.standardError < 0.05 * Math.abs(c.expected));
-        if (list.length) any = true, plot(section.lastElementChild, `${kind}: standard errors off`, 240,
-            `${kind}: difference over standard error of ${plural(list.length, "case")}`, standardErrors(list));
-        if (scaled.length) plot(section.lastElementChild, `${kind}: relative difference`, 240,
-            `${kind}: relative difference of ${plural(scaled.length, "case")}, with error bars`, relative(scaled));
+        if (list.length) any = true, plot(section.lastElementChild, `${kind}: standard errors off`,
+            {height: 240, label: `${kind}: difference over standard error of ${plural(list.length, "case")}`}, standardErrors(list));
+        if (scaled.length) plot(section.lastElementChild, `${kind}: relative difference`,
+            {height: 240, label: `${kind}: relative difference of ${plural(scaled.length, "case")}, with error bars`}, relative(scaled));
     }
     section.hidden = !any;
 }
@@ -319,7 +172,7 @@ function histogram(section) {
     const bins = 22, lowest = -5.5, wide = 0.5, counts = new Array(bins).fill(0);
     for (const c of list) ++counts[Math.max(0, Math.min(bins - 1, Math.floor((difference(c) / c.standardError - lowest) / wide)))];
     const normal = z => list.length * wide * Math.exp(-z * z / 2) / Math.sqrt(2 * Math.PI);
-    plot(section.lastElementChild, "Cases by z", 280, "Histogram of z against the normal curve", (width, height) => {
+    plot(section.lastElementChild, "Cases by z", {height: 280, label: "Histogram of z against the normal curve"}, (width, height) => {
         const f = frame(width, height, [0, 1.1 * Math.max(normal(0), ...counts)]);
         const x = z => f.left + (z - lowest) / (bins * wide) * (f.right - f.left);
         const curve = Array.from({length: 111}, (_, i) => `${x(lowest + i / 10)},${f.y(normal(lowest + i / 10))}`);
@@ -351,9 +204,9 @@ function curvePlots(section) {
         const a = scale(least), b = scale(largest), pad = 0.06 * (b - a);
         const ends = list.flatMap(c => [c.expected, c.measured - 4 * c.standardError, c.measured + 4 * c.standardError]);
         const low = Math.min(0, ...ends), high = Math.max(...ends), room = 0.06 * (high - low || 1);
-        const legend = `<p class="legend">${[...all.keys()].map((name, i) => `<i${i % 2 ? ' class="second"' : ""}></i>${escape(name)}`).join("")}
-            <span>against ${escape(list[0].x_name)}</span></p>`;
-        plot(section.lastElementChild, panel, 190, `${[...all.keys()].join(" and ")} against ${list[0].x_name}, at ${panel}`, (width, height) => {
+        const legend = `${[...all.keys()].map((name, i) => `<i${i % 2 ? ' class="second"' : ""}></i>${escape(name)}`).join("")}
+            <span>against ${escape(list[0].x_name)}</span>`;
+        plot(section.lastElementChild, panel, {height: 190, label: `${[...all.keys()].join(" and ")} against ${list[0].x_name}, at ${panel}`, legend}, (width, height) => {
             const f = frame(width, height, [low < 0 ? low - room : 0, high + room]);
             const x = v => f.left + (scale(v) - a + pad) / (b - a + 2 * pad) * (f.right - f.left);
             const steps = logarithmic ? ticks(Math.ceil(a - 0.05), Math.floor(b + 0.05), Math.min(3, Math.max(1, Math.floor(b + 0.05) - Math.ceil(a - 0.05))))
@@ -366,19 +219,13 @@ function curvePlots(section) {
                         mark(x(c.x), f.y(c.measured), c, c.verdict === "pass" ? `series${i % 2}` : undefined)).join("");
             }).join("");
             return f.svg + seriesSvg + marks.map(v => label(x(v), height - 8, number(v, 3))).join("");
-        }, legend);
+        });
     }
     section.hidden = !any;
 }
 
 // ---- the page
 
-const main = document.getElementById("main");
-function section(fill) {
-    const s = document.createElement("section");
-    main.append(s);
-    fill(s);
-}
 main.innerHTML = "";
 section(s => s.innerHTML = summary());
 const failing = cases.filter(c => c.verdict !== "pass");
@@ -389,8 +236,5 @@ section(curvePlots);
 const extremes = cases.filter(c => c.kind === "extreme");
 if (extremes.length) section(s => s.innerHTML = `<h2>Extremes</h2>` + table([...extremes].sort(failingFirst), columns.filter(c => c.name !== "Kind")));
 section(caseTable);
-drawPlots();
-new ResizeObserver(drawPlots).observe(main);
-</script>
-</body>
-</html>
+keepPlots();
+document.documentElement.dataset.ready = true;
