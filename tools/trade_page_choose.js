@@ -5,13 +5,16 @@ const badge = c => `<span class="badge ${c.biased ? "biased" : "unbiased"}">${c.
 const nameOf = c => `<span class="who"><b class="key c${c.index % colourCount}">${c.key}</b> ${escape(c.name)}</span>`;
 const relmseText = (v, se) => `${withError(v, se)}`;
 
+const sizeText = size => size ? `${size.join(" × ")} pixels` : "–";
+
 function head() {
     const r = report.reference || {};
     const facts = {
         "Budget": `${seconds(report.budget)}, of which ${seconds(report.seconds)} were used`,
-        "Reference": `unbiased, ${plural(r.seeds ?? 1, "seed")} of ${plural(r.samples ?? 0, "sample")}, ${seconds(r.seconds)}; its own relMSE is ${withError(r.relmse, r.relmse_se)}
+        "Reference": `unbiased, ${plural(r.samples ?? 0, "sample")} per pixel of ${plural(r.seeds ?? 1, "seed")}, ${seconds(r.seconds)}; its own relMSE is ${withError(r.relmse, r.relmse_se)}
             (${rms(r.relmse)} rms)`,
-        "Image": `${report.resolution ? report.resolution.join(" × ") + " pixels" : "–"}, ${plural(report.threads ?? 1, "thread")}`,
+        "Image": `${sizeText(report.resolution)}${sizeText(report.measured_resolution ?? report.resolution) === sizeText(report.resolution) ? "" : `, measured at ${sizeText(report.measured_resolution)}`},
+            ${plural(report.threads ?? 1, "thread")}`,
         "Made by": `woodcock ${escape(report.woodcock?.version ?? "")}: <code>${escape(report.command ?? "")}</code>`,
     };
     const notes = report.notes || [];
@@ -41,6 +44,7 @@ async function copy(button) {
 // ---- the answer to a time or an error
 
 const target = () => settings[settings.kind];
+const rangeText = (kind, a, b) => kind === "time" ? `${seconds(a)} to ${seconds(b)}` : `${number(a, 2)} to ${number(b, 2)} (${rms(a)} to ${rms(b)} rms)`;
 const targetText = (kind, v) => kind === "time" ? seconds(v) : `relMSE ${number(v, 2)} (${rms(v)} rms)`;
 
 function expectation(kind, r) {
@@ -49,9 +53,9 @@ function expectation(kind, r) {
 }
 
 function answer() {
-    const kind = settings.kind, list = ranking(kind, target()), best = list[0];
+    const kind = settings.kind, list = ranking(kind, target()), best = recommended(list), first = list[0];
     if (!best) return `<p class="answer">For ${targetText(kind, target())}: <b>none${settings.unbiasedOnly ? " of the unbiased ones" : ""}</b>: ${kind === "time" ? "it is too short for one sample of every pixel." : "every one's bias alone exceeds it."}</p>`;
-    const tied = list.filter(r => r.tied), without = best.c.biased && list.find(r => !r.c.biased);
+    const tied = list.filter(r => r !== best && (r.tied || r === first)), without = best.c.biased && list.find(r => !r.c.biased);
     const longest = Math.max(...(best.c.points || []).map(p => p.samples), 0);
     return `<p class="answer">For ${targetText(kind, target())}: ${nameOf(best.c)} ${badge(best.c)}</p><p>${expectation(kind, best)}.
         ${longest && best.samples > 4 * longest ? `<span class="soft">Measured up to ${plural(longest, "sample")}; beyond, the model says so.</span>` : ""}</p>
@@ -72,7 +76,7 @@ function rankingTable() {
         unable.map(c => `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${kind === "time" ? "too slow" : "never: its bias"}</td></tr>`).join("") + `</tbody></table>`;
 }
 
-// ---- who is best when
+// ---- whom to take when
 
 const steps = 1000;
 const toSlider = (kind, v) => { const [a, b] = domain[kind].map(Math.log); return b > a ? steps * (Math.log(v) - a) / (b - a) : 0; };
@@ -81,14 +85,14 @@ const fromSlider = (kind, p) => { const [a, b] = domain[kind].map(Math.log); ret
 function strip(list, kind) {
     return list.map(s => {
         const from = toSlider(kind, s.from) / steps, to = toSlider(kind, s.to) / steps;
-        const text = s.c ? `${s.c.key} ${s.c.name}` : "none", title = `${text}: ${targetText(kind, s.from)} to ${targetText(kind, s.to)}`;
+        const text = s.c ? `${s.c.key} ${s.c.name}` : "none", title = `${text}: ${rangeText(kind, s.from, s.to)}`;
         return `<span class="${s.c ? `c${s.c.index % colourCount}${s.c.biased ? " biased" : ""}` : "nobody"}" style="flex:${Math.max(0, to - from).toFixed(4)} 1 0" title="${escape(title)}">${to - from > 0.04 ? s.c ? s.c.key : "–" : ""}</span>`;
     }).join("");
 }
 
-function whoIsBest(list, kind) {
-    const items = list.filter(s => s.to > s.from).map(s => `<li><span class="range">${targetText(kind, s.from)} to ${targetText(kind, s.to)}</span><span>${s.c ? `${nameOf(s.c)} ${badge(s.c)}` : "none"}</span></li>`);
-    return `<h3>Who is best when</h3><ul class="when">${items.join("")}</ul>`;
+function whomToTake(list, kind) {
+    const items = list.filter(s => s.to > s.from).map(s => `<li><span class="range">${rangeText(kind, s.from, s.to)}</span><span>${s.c ? `${nameOf(s.c)} ${badge(s.c)}` : "none"}</span></li>`);
+    return `<h3>Whom to take when</h3><ul class="when">${items.join("")}</ul>`;
 }
 
 function ownRecommendations() {
@@ -104,7 +108,7 @@ function choose(section, changed) {
         <div class="modes" role="group" aria-label="Asked for"><button type="button" data-kind="time">A time</button><button type="button" data-kind="error">An error</button></div>
         <label class="number"><span id="unit"></span><input type="number" id="target" step="any" min="0"></label>
         <label class="check"><input type="checkbox" id="unbiasedOnly"> unbiased ones only</label><label class="check"><input type="checkbox" id="loading"> count loading, too</label></div>
-        <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip" aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: who is best there; striped: biased</span><span></span></div>
+        <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip" aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: whom to take there; striped: biased</span><span></span></div>
         <div class="columns"><div><div id="answer" aria-live="polite"></div><div id="when"></div></div><div id="ranking" class="wide"></div></div></div><div id="own">${ownRecommendations()}</div>`;
     const find = id => section.querySelector("#" + id), slider = find("slider"), field = find("target");
     const draw = moved => {
@@ -118,7 +122,7 @@ function choose(section, changed) {
         section.querySelector(".strip").innerHTML = strip(list, kind);
         const ends = section.querySelectorAll(".ends span");
         ends[0].textContent = kind === "time" ? seconds(domain.time[0]) : number(domain.error[0], 2), ends[2].textContent = kind === "time" ? seconds(domain.time[1]) : number(domain.error[1], 2);
-        find("answer").innerHTML = answer(), find("when").innerHTML = whoIsBest(list, kind), find("ranking").innerHTML = rankingTable();
+        find("answer").innerHTML = answer(), find("when").innerHTML = whomToTake(list, kind), find("ranking").innerHTML = rankingTable();
         changed(moved);
     };
     section.addEventListener("input", event => {
