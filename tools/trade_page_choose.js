@@ -58,7 +58,7 @@ function answer() {
     const tied = list.filter(r => r !== best && (r.tied || r === first)), without = best.c.biased && list.find(r => !r.c.biased);
     const longest = Math.max(...(best.c.points || []).map(p => p.samples), 0);
     return `<p class="answer">For ${targetText(kind, target())}: ${nameOf(best.c)} ${badge(best.c)}</p><p>${expectation(kind, best)}.
-        ${longest && best.samples > 4 * longest ? `<span class="soft">Measured up to ${plural(longest, "sample")}; beyond, the model says so.</span>` : ""}</p>
+        ${longest && best.samples > 4 * longest ? `<span class="soft">Measured up to ${plural(longest, "sample")}; beyond that, it is the model that says so.</span>` : ""}</p>
         ${commandBox(commandFor(kind, target(), best))}` +
         (tied.length ? `<p>Cannot be told from it: ${tied.map(r => `${nameOf(r.c)} ${badge(r.c)}`).join(", ")}.</p>` : "") +
         (without && !without.tied ? `<p>Best without bias: ${nameOf(without.c)}, ${expectation(kind, without)}.</p>` : "");
@@ -73,10 +73,10 @@ function rankingTable() {
         list.map(r => `<tr><td>${nameOf(r.c)}</td><td>${kind === "time" ? relmseText(r.relmse, r.se) : seconds(r.seconds)}</td>
             <td>${r === best ? "<b>best</b>" : r.tied ? "tied" : `× ${number(figure(r) / figure(best), 3)}`}</td></tr>
             <tr class="share" aria-hidden="true"><td colspan="3"><i class="c${r.c.index % colourCount}" style="width:${(100 * share(r)).toFixed(1)}%"></i></td></tr>`).join("") +
-        unable.map(c => `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${kind === "time" ? "too slow" : "never: its bias"}</td></tr>`).join("") + `</tbody></table>`;
+        unable.map(c => `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${!isNumber(noiseOf(c).value) ? "not measured" : kind === "time" ? "too slow" : "never: its bias"}</td></tr>`).join("") + `</tbody></table>`;
 }
 
-// ---- whom to take when
+// ---- which to take when
 
 const steps = 1000;
 const toSlider = (kind, v) => { const [a, b] = domain[kind].map(Math.log); return b > a ? steps * (Math.log(v) - a) / (b - a) : 0; };
@@ -90,9 +90,9 @@ function strip(list, kind) {
     }).join("");
 }
 
-function whomToTake(list, kind) {
+function whichToTake(list, kind) {
     const items = list.filter(s => s.to > s.from).map(s => `<li><span class="range">${rangeText(kind, s.from, s.to)}</span><span>${s.c ? `${nameOf(s.c)} ${badge(s.c)}` : "none"}</span></li>`);
-    return `<h3>Whom to take when</h3><ul class="when">${items.join("")}</ul>`;
+    return `<h3>Which to take when</h3><ul class="when">${items.join("")}</ul>`;
 }
 
 function ownRecommendations() {
@@ -108,7 +108,7 @@ function choose(section, changed) {
         <div class="modes" role="group" aria-label="Asked for"><button type="button" data-kind="time">A time</button><button type="button" data-kind="error">An error</button></div>
         <label class="number"><span id="unit"></span><input type="number" id="target" step="any" min="0"></label>
         <label class="check"><input type="checkbox" id="unbiasedOnly"> unbiased ones only</label><label class="check"><input type="checkbox" id="loading"> count loading, too</label></div>
-        <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip" aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: whom to take there; striped: biased</span><span></span></div>
+        <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip" aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: which to take there; striped: biased</span><span></span></div>
         <div class="columns"><div><div id="answer" aria-live="polite"></div><div id="when"></div></div><div id="ranking" class="wide"></div></div></div><div id="own">${ownRecommendations()}</div>`;
     const find = id => section.querySelector("#" + id), slider = find("slider"), field = find("target");
     const draw = moved => {
@@ -122,7 +122,7 @@ function choose(section, changed) {
         section.querySelector(".strip").innerHTML = strip(list, kind);
         const ends = section.querySelectorAll(".ends span");
         ends[0].textContent = kind === "time" ? seconds(domain.time[0]) : number(domain.error[0], 2), ends[2].textContent = kind === "time" ? seconds(domain.time[1]) : number(domain.error[1], 2);
-        find("answer").innerHTML = answer(), find("when").innerHTML = whomToTake(list, kind), find("ranking").innerHTML = rankingTable();
+        find("answer").innerHTML = answer(), find("when").innerHTML = whichToTake(list, kind), find("ranking").innerHTML = rankingTable();
         changed(moved);
     };
     section.addEventListener("input", event => {

@@ -73,7 +73,7 @@ function ranking(kind, target, list = allowed()) {
     return ranked.map(r => ({...r, tied: r !== first && r[key] - first[key] <= 2 * errorOfDifference(r, first, kind, target)}));
 }
 
-/** Whom to take of a ranking: the best, or the best without bias that is tied with it. */
+/** Which to take of a ranking: the best, or the best without bias that is tied with it. */
 const recommended = list => list[0]?.c.biased && list.find(r => r.tied && !r.c.biased) || list[0];
 
 /** The times and errors that can be asked for. */
@@ -91,7 +91,7 @@ const [firstTime] = [...(report.recommendations || []).filter(r => r.kind === "t
 settings.time = firstTime ?? Math.sqrt(domain.time[0] * domain.time[1]);
 settings.error = (report.recommendations || []).find(r => r.kind === "error")?.target ?? Math.sqrt(domain.error[0] * domain.error[1]);
 
-/** Whom to take from where to where: [{from, to, c}], c null where nobody can. */
+/** Which to take from where to where: [{from, to, c}], c null where none can. */
 function segments(kind) {
     const [low, high] = domain[kind].map(Math.log), steps = 600, list = [];
     for (let i = 0; i <= steps; ++i) {
