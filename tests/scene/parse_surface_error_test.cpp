@@ -135,7 +135,7 @@ TEST(SurfaceErrors, OfMedia) {
     const std::string ball = "sphere = {}\nmaterial = \"glass\"\n";
     EXPECT_EQ(surfaceMistake(ball + "medium = {}"),
               "scene.toml:10:10: surface[0].medium holds nothing; give sigma_a and sigma_s, scale "
-              "and albedo, or colour and distance, or leave it out");
+              "and albedo, colour and distance, or emission, or leave it out");
     EXPECT_EQ(surfaceMistake(ball + "medium = { colour = [1, 0, 1], distance = 1 }"),
               "scene.toml:10:21: surface[0].medium.colour is 0 in its green channel, which would "
               "need infinite absorption; give what little comes through, such as 0.001");
@@ -148,6 +148,15 @@ TEST(SurfaceErrors, OfMedia) {
               "becomes over that distance");
     EXPECT_EQ(surfaceMistake(ball + "medium = { colour = 0.5, distance = 0 }"),
               "scene.toml:10:37: surface[0].medium.distance is 0; it must be positive");
+    EXPECT_EQ(surfaceMistake(ball + "medium = { emission = -1 }"),
+              "scene.toml:10:23: surface[0].medium.emission is -1; it must not be negative");
+    const std::string sea = "plane = {}\nmaterial = \"glass\"\n";
+    EXPECT_EQ(
+        surfaceMistake(sea + "medium = { emission = 1, sigma_a = [1, 0, 1] }"),
+        "scene.toml:10:23: surface[0].medium.emission would be infinitely bright: it fills all "
+        "below a plane and absorbs nothing in its green channel; give it a sigma_a, or the "
+        "plane a size");
+    EXPECT_EQ(surfaceMistake(sea + "medium = { emission = [1, 0, 1], sigma_a = [1, 0, 1] }"), "");
     EXPECT_EQ(surfaceMistake(ball + "medium = { colour = 0.5, distance = 1e-300 }"),
               "scene.toml:10:37: surface[0].medium.distance is 1e-300: too short for a float's "
               "sigma_a");

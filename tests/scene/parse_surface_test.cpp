@@ -112,6 +112,9 @@ TEST(ParseSurface, MediumByCoefficients) {
     EXPECT_EQ(surface("sphere = {}\nmaterial = \"glass\"\nmedium = { scale = 4, albedo = 0.75 }")
                   .interior,
               (InteriorDescription{Rgb(1), Rgb(3), 0}));
+    EXPECT_EQ(
+        surface("sphere = {}\nmaterial = \"glass\"\nmedium = { emission = [1, 2, 3] }").interior,
+        (InteriorDescription{Rgb(0), Rgb(0), 0, Rgb(1, 2, 3)}));
 }
 
 TEST(ParseSurface, MediumByColourAtADistance) {

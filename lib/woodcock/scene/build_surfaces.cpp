@@ -142,15 +142,7 @@ private:
         const SurfaceDescription& surface = description_.surfaces[index];
         Medium medium;
         if (!surface.name.empty()) medium = buildMedium(description_, loaded_, surface.name);
-        if (surface.interior &&
-            (surface.interior->sigmaA + surface.interior->sigmaS).maximum() > 0) {
-            MediumPart::Description part;
-            part.box = spaceAround(description_, loaded_, index);
-            part.absorption = surface.interior->sigmaA;
-            part.scattering = surface.interior->sigmaS;
-            part.g = surface.interior->g;
-            medium.parts.emplace_back(std::move(part));
-        }
+        if (surface.interior) fill(medium, *surface.interior, index);
         if (!medium.parts.empty() || !medium.emission.empty()) {
             built_.interiors.push_back(std::move(medium));
             return static_cast<std::uint32_t>(built_.interiors.size());
@@ -160,6 +152,25 @@ private:
             vacuum_ = static_cast<std::uint32_t>(built_.interiors.size());
         }
         return vacuum_;
+    }
+
+    /// Evenly.
+    void fill(Medium& medium, const InteriorDescription& interior, size_t index) const {
+        const Box3d space = spaceAround(description_, loaded_, index);
+        if ((interior.sigmaA + interior.sigmaS).maximum() > 0) {
+            MediumPart::Description part;
+            part.box = space;
+            part.absorption = interior.sigmaA;
+            part.scattering = interior.sigmaS;
+            part.g = interior.g;
+            medium.parts.emplace_back(std::move(part));
+        }
+        if (interior.emission.maximum() > 0) {
+            EmissionPart::Description part;
+            part.box = space;
+            part.scale = interior.emission;
+            medium.emission.emplace_back(std::move(part));
+        }
     }
 
     const SceneDescription& description_;

@@ -129,10 +129,21 @@ private:
                         "encloses nothing, so its material, '{}', cannot tell inside from outside; "
                         "give a closed shape, such as a thin box{}",
                         surface.material, plane ? ", or an infinite plane" : "");
+        if (infinite && surface.interior) endlessGlow(index, *surface.interior);
         if (nature.emits && infinite)
             throw error(value("plane"),
                         "is infinite and would emit without end ('{}' is emissive); give it a size",
                         surface.material);
+    }
+
+    /// Below an infinite plane.
+    void endlessGlow(size_t index, const InteriorDescription& interior) const {
+        for (int c = 0; c < 3; ++c)
+            if (interior.emission[c] > 0 && interior.sigmaA[c] == 0)
+                throw error(fmt::format("surface[{}].medium.emission", index),
+                            "would be infinitely bright: it fills all below a plane and absorbs "
+                            "nothing in its {} channel; give it a sigma_a, or the plane a size",
+                            std::array{"red", "green", "blue"}[static_cast<size_t>(c)]);
     }
 
     std::string noWayIn(const SurfaceDescription& surface) const {

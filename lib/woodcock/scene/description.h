@@ -207,6 +207,7 @@ struct FacetShape {
 struct InteriorDescription {
     Rgb sigmaA{0.0f}, sigmaS{0.0f};  ///< per world unit
     float g = 0;
+    Rgb emission{0.0f};  ///< radiance per world unit
     bool operator==(const InteriorDescription&) const = default;
 };
 

@@ -155,19 +155,21 @@ Rgb absorptionOf(const TomlTable& medium, const TomlValue& colour) {
 
 InteriorDescription parseInterior(const TomlValue& value) {
     const TomlTable table = value.table();
-    table.allowOnly({"sigma_a", "sigma_s", "scale", "albedo", "colour", "distance", "g"},
-                    value.name());
+    table.allowOnly(
+        {"sigma_a", "sigma_s", "scale", "albedo", "colour", "distance", "g", "emission"},
+        value.name());
     InteriorDescription interior;
     const auto colour = table.find("colour"), distance = table.find("distance");
     if (distance && !colour)
         throw distance->error("needs a colour beside it: what light becomes over that distance");
     if (table.keys().empty() || (table.has("g") && table.keys().size() == 1))
         throw value.error(
-            "holds nothing; give sigma_a and sigma_s, scale and albedo, or colour and distance, "
-            "or leave it out");
+            "holds nothing; give sigma_a and sigma_s, scale and albedo, colour and distance, or "
+            "emission, or leave it out");
     std::tie(interior.sigmaA, interior.sigmaS) = parseCoefficients(table);
     if (colour) interior.sigmaA = absorptionOf(table, *colour);
     if (const auto v = table.find("g")) interior.g = parseG(*v);
+    if (const auto v = table.find("emission")) interior.emission = v->colour(notNegative);
     return interior;
 }
 

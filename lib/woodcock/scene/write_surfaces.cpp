@@ -82,6 +82,7 @@ void write(SceneWriter& out, const InteriorDescription& interior) {
     std::string value = fmt::format("{{ sigma_a = {}, sigma_s = {}", tomlColour(interior.sigmaA),
                                     tomlColour(interior.sigmaS));
     if (interior.g != 0) value += fmt::format(", g = {}", interior.g);
+    if (interior.emission != Rgb(0)) value += ", emission = " + tomlColour(interior.emission);
     out.line("medium", value + " }", "1/unit");
 }
 
