@@ -16,14 +16,36 @@ using Json = nlohmann::json;
 Vec3d vectorOf(const Json& j) { return {j.at(0), j.at(1), j.at(2)}; }
 Rgb colourOf(const Json& j) { return {j.at(0), j.at(1), j.at(2)}; }
 
-VolumeDescription volumeOf(const Json& j) {
-    const Json& c = j.at("coefficients");
-    VolumeDescription volume;
-    volume.file = sharedDir() / "assets" / j.at("file").get<std::string>();
+void addCoefficients(const Json& c, VolumeDescription& volume) {
     volume.coefficients =
         SeparateCoefficients{GridCoefficient{c.at("grid"), colourOf(c.at("sigma_a"))},
                              GridCoefficient{c.at("grid"), colourOf(c.at("sigma_s"))}};
     volume.g = c.at("g");
+}
+
+/// Cycles' Principled Volume, without colours above 1 and without an absorption colour.
+void addPrincipled(const Json& p, VolumeDescription& volume) {
+    const Rgb albedo = colourOf(p.at("color"));
+    DensityCoefficients c;
+    c.density = p.at("density_attribute");
+    c.scale = Rgb(p.at("density").get<float>());
+    c.albedo = {albedo[0], albedo[1], albedo[2]};
+    volume.coefficients = c;
+    volume.g = p.at("anisotropy");
+    BlackbodyDescription b;
+    b.temperature = p.at("temperature_attribute");
+    b.scale = p.at("temperature");
+    b.intensity = p.at("blackbody_intensity");
+    volume.blackbody = b;
+}
+
+VolumeDescription volumeOf(const Json& j) {
+    VolumeDescription volume;
+    volume.file = sharedDir() / "assets" / j.at("file").get<std::string>();
+    if (j.contains("principled"))
+        addPrincipled(j.at("principled"), volume);
+    else
+        addCoefficients(j.at("coefficients"), volume);
     if (j.contains("object_to_world")) {
         const Json& rows = j["object_to_world"];
         Affine3d& m = volume.worldFromObject;
