@@ -21,8 +21,16 @@ inline nlohmann::json toJson(const Affine3d& m) {
     return rows;
 }
 
+/// Radiance per unit of length, evenly or times a grid; null where there is none.
+inline nlohmann::json emissionJson(Rgb emission, const std::string& grid = "") {
+    const CyclesColour glow = cyclesColour(emission);
+    if (!(glow.strength > 0)) return nullptr;
+    return {{"strength", glow.strength}, {"colour", toJson(glow.colour)}, {"grid", grid}};
+}
+
 /// Without scattering, what would scatter is lost to the camera.
-inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters) {
+inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters,
+                                 Rgb emission = Rgb(0)) {
     if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
     const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
     return {{"density", medium.density},
@@ -30,7 +38,8 @@ inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters)
             {"absorb_colour", toJson(medium.absorbColour)},
             {"scatters", medium.scatters()},
             {"absorbs", medium.absorbs()},
-            {"g", g}};
+            {"g", g},
+            {"emission", emissionJson(emission)}};
 }
 
 /// Error{Input} at a place of the scene, which may be unknown.

@@ -37,13 +37,55 @@ public:
             throw cyclesRefusal(place("repair"),
                                 "a volume that is repaired as it is loaded: it reads the "
                                 "file as it is; save it repaired with woodcock convert --repair");
-        if (volume_.emission) throw cyclesRefusal(place("emission"), "a volume that emits");
-        if (volume_.blackbody) throw cyclesRefusal(place("blackbody"), "a volume that emits");
+        const std::size_t first = list.size();
         std::visit([&](const auto& c) { add(list, c); }, volume_.coefficients);
+        if (loaded_.emission)
+            sharing(list, first, loaded_.emission)["emission"] =
+                emissionJson(volume_.emission->scale, loaded_.emission.grid);
+        if (volume_.blackbody)
+            sharing(list, first, loaded_.blackbody)["blackbody"] = blackbodyJson();
     }
 
 private:
     std::string place(const char* key) const { return findPlace(places_, name_ + "." + key); }
+
+    json fileJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
+        json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
+        grid["file"] = std::filesystem::absolute(volume_.file).string();
+        grid["matrix"] = toJson(volume_.worldFromObject);
+        grid["object_from_index"] = toJson(field.objectFromIndex);
+        grid["grid"] = grid["albedo_grid"] = grid["blackbody"] = nullptr;
+        return grid;
+    }
+
+    /// The object among this volume's whose voxels are those of a grid; a new one without any.
+    json& sharing(json& list, std::size_t first, const LoadedField& field) const {
+        for (std::size_t i = first; i < list.size(); ++i)
+            if (list[i]["object_from_index"] == toJson(field.objectFromIndex)) return list[i];
+        list.push_back(fileJson(field, Rgb(0), Rgb(0)));
+        return list.back();
+    }
+
+    json blackbodyJson() const {
+        const BlackbodyDescription& b = *volume_.blackbody;
+        if (b.offset != 0)
+            throw cyclesRefusal(place("blackbody.offset"),
+                                "an offset of temperatures, {}: it can only multiply them",
+                                b.offset);
+        if (b.scale < 0)
+            throw cyclesRefusal(place("blackbody.scale"), "a scale of temperatures below 0, {}",
+                                b.scale);
+        if (loaded_.ambient != 0)
+            throw cyclesRefusal(place("blackbody"),
+                                "the background {} of the temperature grid '{}': it would glow "
+                                "there, too",
+                                loaded_.ambient, loaded_.blackbody.grid);
+        const CyclesBlackbody blackbody = cyclesBlackbody(b);
+        return {{"grid", loaded_.blackbody.grid},
+                {"temperature", blackbody.temperature},
+                {"intensity", blackbody.intensity},
+                {"tint", toJson(blackbody.tint)}};
+    }
 
     json gridJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
         for (int c = 0; c < field.field->channels(); ++c)
@@ -52,13 +94,9 @@ private:
                                     "the background {} of grid '{}': it draws active voxels "
                                     "alone",
                                     field.field->background(c), field.grid);
-        json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
-        grid["file"] = std::filesystem::absolute(volume_.file).string();
+        json grid = fileJson(field, sigmaA, sigmaS);
         grid["grid"] = field.grid;
         grid["colour"] = field.field->channels() > 1;
-        grid["matrix"] = toJson(volume_.worldFromObject);
-        grid["object_from_index"] = toJson(field.objectFromIndex);
-        grid["albedo_grid"] = nullptr;
         return grid;
     }
 
@@ -81,7 +119,8 @@ private:
         if (c.sigmaS) list.push_back(gridJson(loaded_.sigmaS, none, c.sigmaS->scale));
     }
     void add(json& list, const HomogeneousBox& c) const {
-        json box = mediumJson(c.sigmaA, c.sigmaS, volume_.g, scatters_);
+        json box = mediumJson(c.sigmaA, c.sigmaS, volume_.g, scatters_,
+                              volume_.emission ? volume_.emission->scale : Rgb(0));
         box["box"] = {toJson(c.box.lower), toJson(c.box.upper)};
         box["matrix"] = toJson(volume_.worldFromObject);
         list.push_back(std::move(box));

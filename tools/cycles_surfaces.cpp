@@ -97,7 +97,8 @@ void refuseReplacement(const SceneDescription& scene, const LoadedScene& loaded,
             return volume.worldFromObject.box(box->box);
         Box3d all;
         const LoadedVolume& v = loaded.volumes[i];
-        for (const LoadedField* field : {&v.density, &v.sigmaA, &v.sigmaS})
+        for (const LoadedField* field :
+             {&v.density, &v.sigmaA, &v.sigmaS, &v.emission, &v.blackbody})
             if (*field) {
                 const Box3d part =
                     (volume.worldFromObject * field->objectFromIndex).box(field->field->support());
@@ -131,8 +132,10 @@ json surfaceJson(const SceneDescription& scene, const LoadedScene& loaded, std::
              {"medium", nullptr},
              {"instances", json::array()}};
     if (surface.interior)
-        out["medium"] = mediumJson(surface.interior->sigmaA, surface.interior->sigmaS,
-                                   surface.interior->g, scene.render.maxScatterings != 0);
+        out["medium"] = mediumJson(
+            surface.interior->sigmaA, surface.interior->sigmaS, surface.interior->g,
+            scene.render.maxScatterings != 0,
+            cyclesEmissionWithin(surface.interior->emission, natureOf(scene, index).ior));
     for (const Affine3d& instance : mesh.instances)
         out["instances"].push_back(
             toJson(surface.worldFromObject * instance * mesh.objectFromMesh));

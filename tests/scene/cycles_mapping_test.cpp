@@ -42,6 +42,33 @@ TEST(CyclesMapping, MediaKeepTheirCoefficients) {
     EXPECT_FALSE(cyclesMedium(Rgb(0), Rgb(0)).absorbs());
 }
 
+TEST(CyclesMapping, BlackBodiesRadiateAlike) {
+    // Principled Volume's black body, of temperatures at which Cycles' colours are known.
+    struct {
+        double kelvin;
+        Rgb colour, radiance;
+    } const known[] = {{1500, {3.26431f, 0.43405f, -0.06424f}, {0.29828f, 0.039661f, -0.0058697f}},
+                       {3000, {1.77084f, 0.84428f, 0.27222f}, {2.5890f, 1.2343f, 0.39799f}},
+                       {6500, {1.04255f, 0.98405f, 1.03527f}, {33.590f, 31.705f, 33.356f}}};
+    const Rgb colour(1, 0.5f, 0.25f);
+    for (const double intensity : {1.0, 0.3, 20.0})
+        for (const auto& k : known) {
+            const double value = 0.7;  // of the grid
+            const CyclesBlackbody b =
+                cyclesBlackbody({"temperature", k.kelvin / value, 0, intensity, colour});
+            const double kelvin = b.temperature * value;
+            const double amount =
+                1.80493578e-14 * (1 - b.intensity + b.intensity * std::pow(kelvin, 4));
+            expectNear(b.tint * k.colour * static_cast<float>(amount),
+                       colour * k.radiance * static_cast<float>(intensity), 1e-4f);
+        }
+}
+
+TEST(CyclesMapping, WhatGlowsInGlassLosesASquaredIndexInCycles) {
+    expectNear(cyclesEmissionWithin({1, 2, 9}, 1), {1, 2, 9});
+    expectNear(cyclesEmissionWithin({1, 2, 9}, 1.5), {4.0f / 9, 8.0f / 9, 4});
+}
+
 TEST(CyclesMapping, OneBounceLessThanScatterings) {
     EXPECT_EQ(cyclesBounces(1), 0);
     EXPECT_EQ(cyclesBounces(8), 7);

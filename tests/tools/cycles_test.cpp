@@ -199,6 +199,82 @@ TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
             {"replaces volume[0]"});
 }
 
+/// Its grids hold `value`; those of `wide` have voxels twice as wide.
+GridSpec smallGrid(const std::string& name, double value, double background = 0,
+                   bool wide = false) {
+    GridSpec grid;
+    grid.name = name;
+    grid.worldFromIndex = Affine3d::scale(Vec3d{1, 1, 1} * (wide ? 1.0 : 0.5));
+    grid.box = {{0, 0, 0}, {3, 3, 3}};
+    grid.background = {background, 0, 0};
+    grid.value = [value](Vec3i) { return value; };
+    return grid;
+}
+
+class CyclesFire : public testing::Test {
+protected:
+    void SetUp() override {
+        writeVdb(dir / "fire.vdb",
+                 {smallGrid("density", 1), smallGrid("flame", 2), smallGrid("temperature", 3),
+                  smallGrid("heat", 1, 0, true), smallGrid("air", 300, 293)});
+    }
+    nlohmann::json volumes(const std::string& keys) const {
+        return written("[[volume]]\nfile = \"" + (dir / "fire.vdb").string() + "\"\n" + keys +
+                       "\n[[light]]\ntype = \"environment\"\n")["volumes"];
+    }
+    TempDir dir;
+};
+
+TEST_F(CyclesFire, GlowsFromTheSameObjectWhereTheVoxelsAreTheSame) {
+    const auto smoke = volumes(
+        "scale = 2\nemission = { grid = \"flame\", scale = [1, 4, 2] }\n"
+        "blackbody = { scale = 1400, intensity = 0.5, colour = [1, 0.5, 0.25] }");
+    ASSERT_EQ(smoke.size(), 1u);
+    EXPECT_EQ(smoke[0]["grid"], "density");
+    EXPECT_EQ(
+        smoke[0]["emission"],
+        nlohmann::json::parse(R"({"grid": "flame", "strength": 4.0, "colour": [0.25, 1.0, 0.5]})"));
+    EXPECT_EQ(smoke[0]["blackbody"],
+              nlohmann::json::parse(R"({"grid": "temperature", "temperature": 1400.0,
+                                        "intensity": 1.0, "tint": [0.5, 0.25, 0.125]})"));
+
+    const auto apart = volumes("scale = 2\nemission = { grid = \"heat\" }");
+    ASSERT_EQ(apart.size(), 2u);
+    EXPECT_EQ(apart[0]["emission"], nullptr);
+    EXPECT_EQ(apart[1]["grid"], nullptr);
+    EXPECT_FALSE(apart[1]["scatters"]);
+    EXPECT_EQ(apart[1]["emission"]["grid"], "heat");
+
+    const auto fire = volumes("sigma_a = 0\nblackbody = {}");
+    ASSERT_EQ(fire.size(), 1u);
+    EXPECT_EQ(fire[0]["grid"], nullptr);
+    EXPECT_EQ(volumes("scale = 1\nemission = 3")[0]["emission"]["grid"], "density");
+    EXPECT_EQ(volumes("scale = 1\nemission = 0")[0]["emission"], nullptr);
+}
+
+TEST_F(CyclesFire, IsEvenInBoxesAndSurfaces) {
+    const std::string box = "box = { min = [-1, -1, -1], max = [1, 1, 1] }\n";
+    const auto scene = written(
+        "[[volume]]\n" + box + "emission = [1, 2, 4]\n[[surface]]\n" + box +
+        "transform = { translate = [5, 0, 0] }\nmaterial = \"glass\"\nmedium = { emission = 9 }\n"
+        "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.5\n");
+    EXPECT_EQ(scene["volumes"][0]["emission"]["strength"], 4);
+    EXPECT_EQ(scene["volumes"][0]["emission"]["grid"], "");
+    EXPECT_EQ(scene["surfaces"][0]["medium"]["emission"]["strength"], 4);
+}
+
+TEST_F(CyclesFire, IsRefusedByNameWhereCyclesDiffers) {
+    const auto refused = [&](const std::string& blackbody, const std::string& words) {
+        expectError(ErrorKind::Input, words,
+                    [&] { volumes("scale = 1\nblackbody = { " + blackbody + " }"); });
+    };
+    refused("offset = 273", "test.toml:4:24: Cycles cannot express an offset of temperatures, 273");
+    refused("scale = -1", "test.toml:4:23: Cycles cannot express a scale of temperatures below 0");
+    refused(
+        "temperature = \"air\"",
+        "test.toml:4:13: Cycles cannot express the background 293 of the temperature grid 'air'");
+}
+
 TEST(BlenderAddOn, MapsCyclesParameters) {
     if (!fs::exists("/usr/bin/python3")) GTEST_SKIP() << "no python3";
     const ProgramResult result =

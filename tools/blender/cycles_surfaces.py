@@ -139,7 +139,9 @@ def add(scene, name, description, directory):
     if description["material"]["type"] != "interface":
         nodes.tree.links.new(shader(nodes, description["material"]), output.inputs["Surface"])
     if description["medium"]:
-        cycles_volumes.fill(nodes, output, cycles_volumes.medium(nodes, description["medium"]))
+        held = description["medium"]
+        cycles_volumes.fill(nodes, output, cycles_volumes.medium(nodes, held)
+                            + cycles_volumes.glow(nodes, held))
     mesh.materials.append(material)
     for matrix in description["instances"]:
         placed = bpy.data.objects.new(name, mesh)

@@ -35,16 +35,42 @@ def medium(nodes, description, density=None, albedo=None):
     return parts
 
 
+def glow(nodes, description, volume=None):
+    """Sockets of shaders that emit; their grids are those of `volume`."""
+    parts = []
+    emission = description["emission"]
+    if emission:
+        colour = emission["colour"]
+        if emission["grid"]:
+            grid = grid_socket(nodes, volume, emission["grid"], "Color")
+            colour = nodes.multiply_add(grid, colour, (0, 0, 0))
+        parts.append(nodes.add("ShaderNodeEmission", Color=colour,
+                               Strength=emission["strength"]).outputs[0])
+    blackbody = description.get("blackbody")
+    if blackbody:
+        check_grid(volume, blackbody["grid"])
+        parts.append(nodes.add("ShaderNodeVolumePrincipled", Density=0.0, Density_Attribute="",
+                               Temperature_Attribute=blackbody["grid"],
+                               Temperature=blackbody["temperature"],
+                               Blackbody_Intensity=blackbody["intensity"],
+                               Blackbody_Tint=blackbody["tint"]).outputs[0])
+    return parts
+
+
 def fill(nodes, output, parts):
     if parts:
         nodes.tree.links.new(nodes.sum(parts), output.inputs["Volume"])
 
 
-def grid_socket(nodes, volume, name, output):
+def check_grid(volume, name):
     found = [grid.name for grid in volume.grids].count(name)
     if found != 1:
         raise Refused("Blender finds %d grids named '%s' in %s, not one"
                       % (found, name, volume.filepath))
+
+
+def grid_socket(nodes, volume, name, output):
+    check_grid(volume, name)
     return nodes.add("ShaderNodeAttribute", {"attribute_name": name}).outputs[output]
 
 
@@ -69,8 +95,10 @@ def add_grid(scene, name, description):
     material = bpy.data.materials.new(name)
     nodes = Nodes(material)
     output = nodes.add("ShaderNodeOutputMaterial")
-    density = grid_socket(nodes, volume, description["grid"],
-                          "Color" if description["colour"] else "Fac")
+    density = None
+    if description["grid"]:
+        density = grid_socket(nodes, volume, description["grid"],
+                              "Color" if description["colour"] else "Fac")
     albedo = description["albedo_grid"]
     if albedo:
         if description["colour"]:
@@ -78,7 +106,8 @@ def add_grid(scene, name, description):
                           % (description["grid"], albedo))
         albedo = grid_socket(nodes, volume, albedo, "Color")
         check_alike(description)
-    fill(nodes, output, medium(nodes, description, density, albedo))
+    fill(nodes, output,
+         medium(nodes, description, density, albedo) + glow(nodes, description, volume))
     volume.materials.append(material)
     placed = bpy.data.objects.new(name, volume)
     voxel = Matrix(description["object_from_index"]).to_3x3()
@@ -97,7 +126,7 @@ def add_box(scene, name, description):
     material = bpy.data.materials.new(name)
     nodes = Nodes(material)
     output = nodes.add("ShaderNodeOutputMaterial")
-    fill(nodes, output, medium(nodes, description))
+    fill(nodes, output, medium(nodes, description) + glow(nodes, description))
     mesh.materials.append(material)
     placed = bpy.data.objects.new(name, mesh)
     placed.matrix_world = Matrix(description["matrix"])

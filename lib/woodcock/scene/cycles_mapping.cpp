@@ -21,6 +21,15 @@ CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
     return medium;
 }
 
+CyclesBlackbody cyclesBlackbody(const BlackbodyDescription& blackbody) {
+    // Its intensity b means b T^4 + 1 - b: only 1 leaves no rest. The tint may exceed 1.
+    return {blackbody.scale, 1, blackbody.colour * static_cast<float>(blackbody.intensity)};
+}
+
+Rgb cyclesEmissionWithin(Rgb emission, double ior) {
+    return emission * static_cast<float>(1 / (ior * ior));
+}
+
 int cyclesBounces(std::optional<int> events) {
     return std::min(events.value_or(cyclesMostBounces + 1) - 1, cyclesMostBounces);
 }

@@ -22,6 +22,19 @@ struct CyclesMedium {
 /// All colours lie in [0, 1].
 CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS);
 
+/// What Principled Volume takes beside a grid of temperatures.
+struct CyclesBlackbody {
+    double temperature = 1;  ///< multiplies the grid
+    double intensity = 1;
+    Rgb tint{1.0f};
+};
+/// Its `offset` has to be 0 and its `scale` no less: Cycles can only multiply.
+CyclesBlackbody cyclesBlackbody(const BlackbodyDescription& blackbody);
+
+/// What has to glow inside a dielectric in Cycles, where light that leaves glass keeps the radiance
+/// that it had within. Really it has n^2 times that much within.
+Rgb cyclesEmissionWithin(Rgb emission, double ior);
+
 /// Cycles clamps g to this, either way.
 constexpr float cyclesLargestG = 0.999f;
 

@@ -51,7 +51,7 @@ public:
     }
 
     /// What glows of a temperature grid. Each volume has its own scale, so nothing is shared.
-    LoadedField blackbody(const VolumeDescription& volume) {
+    LoadedField blackbody(const VolumeDescription& volume, float& ambient) {
         const BlackbodyDescription& b = *volume.blackbody;
         const VdbFile& vdb = file(volume.file);
         FoundGrid found = b.temperature.empty() ? findGrid(vdb, GridRole::Temperature)
@@ -59,7 +59,8 @@ public:
         note(std::move(found.note));
         LoadOptions options{
             .storage = storageOf(volume), .nonNegative = false, .repair = volume.repair};
-        options.convert = [&b](FieldSource source) {
+        options.convert = [&](FieldSource source) {
+            ambient = source.background[0];
             return blackbodySource(std::move(source), b.scale, b.offset);
         };
         LoadedGrid grid = loadGrid(vdb, found.grid, options);
@@ -152,7 +153,8 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
         inPlace(placeOf("emission"), [&] { requireDarkBackground(file, loaded.emission); });
     }
     if (volume.blackbody)
-        loaded.blackbody = inPlace(placeOf("blackbody"), [&] { return loader.blackbody(volume); });
+        loaded.blackbody =
+            inPlace(placeOf("blackbody"), [&] { return loader.blackbody(volume, loaded.ambient); });
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
 }

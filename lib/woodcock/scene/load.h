@@ -28,6 +28,7 @@ struct LoadedVolume {
     LoadedField density, albedo;  ///< of DensityCoefficients
     LoadedField emission;         ///< of the emission, where it has a grid
     LoadedField blackbody;        ///< radiance of the temperature grid, as blackbodySource() says
+    float ambient = 0;            ///< the temperature grid's background, where nothing glows
     LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
     UpAxis up = UpAxis::Y;        ///< Z where the file's metadata say that Blender wrote it
 };
