@@ -63,12 +63,25 @@ times.operation = "MULTIPLY"
 times.inputs[1].default_value = 6
 made.node_tree.links.new(grid.outputs["Fac"], times.inputs[0])
 made.node_tree.links.new(times.outputs[0], shader.inputs["Density"])
+flame = made.node_tree.nodes.new("ShaderNodeAttribute")
+flame.attribute_name = "flame"
+made.node_tree.links.new(flame.outputs["Fac"], shader.inputs["Emission Strength"])
+shader.inputs["Emission Color"].default_value = (0.1, 0.2, 0.4, 1)
+shader.inputs["Blackbody Intensity"].default_value = 0.3
+shader.inputs["Temperature"].default_value = 1500
 smoke.materials.append(made)
 place("smoke", smoke, scale=(0.5, 0.4, 0.3), rotation_euler=(0.3, 0.2, 0.5), location=(0.1, 0, 0.2))
 
 floor = material("floor", "ShaderNodeBsdfDiffuse", "Surface", Color=(0.7, 0.4, 0.3, 1))[0]
 mesh("floor", lambda shape: bmesh.ops.create_grid(shape, x_segments=2, y_segments=2, size=4), floor,
      location=(0, 0, -0.8))
+lantern = material("lantern", "ShaderNodeEmission", "Volume", Color=(0.3, 0.2, 0.1, 1),
+                   Strength=2)[0]
+mesh("lantern", lambda shape: bmesh.ops.create_cube(shape, size=0.4), lantern,
+     location=(0.8, -0.6, -0.3), rotation_euler=(0.2, 0.3, 0.4))
+gas = material("gas", "ShaderNodeVolumePrincipled", "Volume", Density=0.0,
+               Blackbody_Intensity=1.0)[0]
+mesh("gas", lambda shape: bmesh.ops.create_cube(shape, size=0.4), gas, location=(0, 50, 0))
 toon = material("toon", "ShaderNodeBsdfToon", "Surface")[0]
 mesh("odd", lambda shape: bmesh.ops.create_cube(shape, size=1), toon, location=(0, 50, 0))
 
@@ -93,7 +106,7 @@ cycles.use_adaptive_sampling = cycles.use_denoising = False
 cycles.max_bounces = cycles.volume_bounces = cycles.diffuse_bounces = 64
 cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0
 cycles.pixel_filter_type, cycles.filter_width = "BOX", 1
-cycles.volume_step_rate, cycles.volume_max_steps = 0.2, 4096
+cycles.volume_step_rate, cycles.volume_max_steps = 0.5, 4096
 
 target = os.path.join(directory, "scene.toml")
 woodcock_addon.register()

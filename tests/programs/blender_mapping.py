@@ -32,6 +32,19 @@ class Mapping(unittest.TestCase):
         self.near(mapping.volume_scatter((0.5, 2, 0), 3), (1.5, 6, 0))
         self.near(mapping.volume_absorption((0.5, 2, 0), 3), (1.5, 0, 3))
 
+    def test_emission(self):
+        self.near(mapping.volume_emission((0.5, 2, -1), 3), (1.5, 6, 0))
+        self.near(mapping.volume_emission((0.5, 2, 1), -3), (0, 0, 0))
+        self.near(mapping.emission_within((1, 2, 0), 1.5), (2.25, 4.5, 0))
+        # What Cycles radiates of luminance, by its own formula.
+        for kelvin, intensity in ((1000, 1), (1500, 0.5), (3000, 0.02)):
+            scale, b, colour = mapping.principled_blackbody(kelvin / 0.7, intensity, (1, 0.5, 0))
+            cycles = 1.80493578e-14 * (1 - intensity + intensity * kelvin ** 4)
+            watts = 1e-6 * 5.670374419e-8 / math.pi * (scale * 0.7) ** 4
+            self.assertAlmostEqual(b * colour[1] * watts / (0.5 * cycles), 1, places=6)
+        self.near(mapping.principled_blackbody(-5, 1, (1, 1, 1))[2], (1, 1, 1))
+        self.assertEqual(mapping.principled_blackbody(-5, 1, (1, 1, 1))[0], 0)
+
     def test_object_density(self):
         def scaled(x, y, z):
             return [[x, 0, 0, 5], [0, y, 0, 6], [0, 0, z, 7], [0, 0, 0, 1]]

@@ -89,15 +89,20 @@ class Exporter:
             report("voxels up to %g are there all the same (clipping)" % volume.render.clipping)
         density = mapping.object_density(placed, volume.render.space)
         for medium in media_of(shader, names, report):
-            if not medium.grid:
+            if medium.dims() and not medium.grid:
                 raise Untranslatable("a density that is the same everywhere inside")
-            self.add_grid(medium.scaled(density), os.path.abspath(file), placed,
-                          volume.grids[medium.grid])
+            drawn = [self.drawn(placed, volume.grids[name]) for name in medium.grids()]
+            if any(matrix != drawn[0] for matrix in drawn):
+                report("grids of other voxels than those of '%s' lie aside by a part of one"
+                       % medium.grids()[0])
+            self.add_grid(medium.scaled(density), os.path.abspath(file), drawn[0])
 
-    def add_grid(self, medium, file, placed, grid):
-        # Where this version of Cycles draws it.
+    def drawn(self, placed, grid):
+        """The object's matrix as this version of Cycles draws a grid."""
         offset = Vector([-mapping.voxel_offset(bpy.app.version)] * 3)
-        drawn = placed @ Matrix.Translation(grid.matrix_object.to_3x3() @ offset)
+        return placed @ Matrix.Translation(grid.matrix_object.to_3x3() @ offset)
+
+    def add_grid(self, medium, file, drawn):
         section = Section("[[volume]]").set("file", path(file))
         if medium.albedo_grid:
             section.set("density", quoted(medium.grid))
@@ -110,6 +115,15 @@ class Exporter:
             for key, sigma in (("sigma_a", medium.sigma_a), ("sigma_s", medium.sigma_s)):
                 if max(sigma) > 0:
                     section.set(key, {"grid": quoted(medium.grid), "scale": colour(sigma)})
+            if not medium.dims():
+                section.set("sigma_a", 0)
+        if medium.emission:
+            section.set("emission", {"grid": quoted(medium.emission.grid),
+                                     "scale": colour(medium.emission.factor)})
+        if medium.blackbody:
+            grid, scale, intensity, tint = medium.blackbody
+            section.set("blackbody", {"temperature": quoted(grid), "scale": scale,
+                                      "intensity": intensity, "colour": colour(tint)})
         section.set("g", medium.g).set("matrix", matrix(drawn))
         self.sections.append(section)
 
@@ -161,7 +175,7 @@ class Exporter:
         section.set("smooth", 180 if smooth else quoted("flat"))
         section.set("matrix", matrix(placed))
         if media:
-            section.set("medium", medium_keys(media))
+            section.set("medium", medium_keys(media, keys.get("ior", 1)))
         if not shown.original.visible_camera:
             section.set("camera_visible", False)
         self.sections.append(section)
@@ -261,12 +275,15 @@ class Exporter:
             report("the render region is left out: all of the picture is drawn")
 
 
-def medium_keys(media):
+def medium_keys(media, ior=1):
     keys = {"sigma_a": colour([sum(m.sigma_a[c] for m in media) for c in range(3)]),
             "sigma_s": colour([sum(m.sigma_s[c] for m in media) for c in range(3)])}
     scattering = [m.g for m in media if max(m.sigma_s) > 0]
     if scattering:
         keys["g"] = scattering[0]
+    emission = [sum(m.emission.factor[c] for m in media if m.emission) for c in range(3)]
+    if max(emission) > 0:
+        keys["emission"] = colour(mapping.emission_within(emission, ior))
     return keys
 
 

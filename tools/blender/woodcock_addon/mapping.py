@@ -29,6 +29,24 @@ def volume_absorption(colour, density):
     return [max(density, 0.0) * max(1 - c, 0.0) for c in colour]
 
 
+def volume_emission(colour, strength):
+    """Radiance per unit of an Emission shader in a volume, or of a Principled Volume: neither its
+    density nor what it absorbs matters."""
+    return [max(strength, 0.0) * max(c, 0.0) for c in colour]
+
+
+def principled_blackbody(temperature, intensity, tint):
+    """Scale, intensity and colour of the `blackbody` of a volume. Cycles has b T^4 + 1 - b where
+    Woodcock has b T^4: the rest is 1e-14 of radiance."""
+    return max(temperature, 0.0), max(intensity, 0.0), [max(c, 0.0) for c in tint]
+
+
+def emission_within(emission, ior):
+    """Of what glows inside glass: Cycles lets it out with the radiance that it has within, of which
+    really 1 / n^2 is left."""
+    return [e * ior * ior for e in emission]
+
+
 def object_density(matrix, space):
     """What multiplies the densities of a volume object with this object to world matrix (rows)
     whose volume renders in `space`: with OBJECT, Blender's default, a volume that is made larger

@@ -1,22 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Volume shaders: sigma_a and sigma_s."""
+"""Volume shaders: sigma_a, sigma_s and what they emit."""
 from . import mapping
 from .sockets import Product, Untranslatable, named, product, scalar, source
 
 
 class Medium:
-    """sigma = factor x grid; `albedo_grid` multiplies sigma_s, and what it takes is absorbed."""
+    """sigma = factor x grid; `albedo_grid` multiplies sigma_s, and what it takes is absorbed.
+    `emission` is a Product, `blackbody` (grid, scale, intensity, colour), or None."""
 
-    def __init__(self, sigma_s, sigma_a, grid=None, albedo_grid=None, g=0.0):
+    def __init__(self, sigma_s, sigma_a, grid=None, albedo_grid=None, g=0.0, emission=None,
+                 blackbody=None):
         self.sigma_s, self.sigma_a = sigma_s, sigma_a
-        self.grid, self.albedo_grid, self.g = grid, albedo_grid, g
+        self.grid, self.albedo_grid = (grid, albedo_grid) if self.dims() else (None, None)
+        self.g, self.emission, self.blackbody = g, emission, blackbody
 
     def scaled(self, factor):
+        emission, blackbody = self.emission, self.blackbody
+        if emission:
+            emission = emission.times(Product([factor] * 3))
+        if blackbody:
+            blackbody = (*blackbody[:3], [c * factor for c in blackbody[3]])
         return Medium([x * factor for x in self.sigma_s], [x * factor for x in self.sigma_a],
-                      self.grid, self.albedo_grid, self.g)
+                      self.grid, self.albedo_grid, self.g, emission, blackbody)
+
+    def dims(self):
+        """Whether it scatters or absorbs."""
+        return max(self.sigma_s + self.sigma_a) > 0
 
     def empty(self):
-        return max(self.sigma_s + self.sigma_a) <= 0
+        return not (self.dims() or self.emission or self.blackbody)
+
+    def grids(self):
+        """Names of those that it needs."""
+        return [name for name in (self.grid, self.albedo_grid,
+                                  self.emission and self.emission.grid,
+                                  self.blackbody and self.blackbody[0]) if name]
 
 
 def shader_of(material, what):
@@ -44,7 +62,7 @@ def media_of(node, grids, report):
             part = source(socket)
             found += [m.scaled(share) for m in media_of(part.node, grids, report)] if part else []
         return found
-    kinds = {"PRINCIPLED_VOLUME": principled, "VOLUME_SCATTER": scatter,
+    kinds = {"PRINCIPLED_VOLUME": principled, "VOLUME_SCATTER": scatter, "EMISSION": emission,
              "VOLUME_ABSORPTION": absorption, "VOLUME_COEFFICIENTS": coefficients}
     if node.type not in kinds:
         raise Untranslatable("the volume shader '%s'" % node.name)
@@ -56,6 +74,48 @@ def media_of(node, grids, report):
 
 def g_of(node):
     return mapping.clamped_g(scalar(node.inputs["Anisotropy"], "an anisotropy"))
+
+
+def glow(colour, strength, grids, report):
+    """A Product, or None; both are sockets, `strength` may be missing."""
+    try:
+        amount = product(strength) if strength is not None else Product([1, 1, 1])
+        if max(amount.factor) <= 0:
+            return None
+        amount = product(colour).times(amount)
+        amount.factor = mapping.volume_emission(amount.factor, 1)
+        if max(amount.factor) <= 0:
+            return None
+        if amount.grid and amount.grid not in grids:
+            raise Untranslatable("the attribute '%s', which is no grid of the volume" % amount.grid)
+        if amount.image:
+            raise Untranslatable("an image in a volume")
+        if grids and not amount.grid:
+            raise Untranslatable("it is the same everywhere inside")
+        return amount
+    except Untranslatable as problem:
+        report("emission is left out: %s" % problem)
+        return None
+
+
+def blackbody(node, grids, report):
+    """Grid, scale, intensity and colour, or None."""
+    try:
+        intensity = scalar(node.inputs["Blackbody Intensity"], "a blackbody intensity")
+        tint = product(node.inputs["Blackbody Tint"]).constant("a blackbody tint")
+        if intensity <= 0 or max(tint) <= 0:
+            return None
+        temperature = product(node.inputs["Temperature"])
+        name = named(node, "Temperature Attribute").default_value
+        if name in grids:
+            temperature = temperature.times(Product([1, 1, 1], grid=name))
+        if temperature.grid not in grids:
+            raise Untranslatable("its temperature is the same everywhere inside")
+        return (temperature.grid,
+                *mapping.principled_blackbody(temperature.factor[0], intensity, tint))
+    except Untranslatable as problem:
+        report("black-body emission is left out: %s" % problem)
+        return None
 
 
 def principled(node, grids, report):
@@ -70,15 +130,17 @@ def principled(node, grids, report):
     if name in grids:
         colour = colour.times(Product([1, 1, 1], grid=name))
     absorb = product(node.inputs["Absorption Color"]).constant("an absorption colour")
-    if scalar(node.inputs["Emission Strength"], "an emission strength") > 0 and \
-            max(product(node.inputs["Emission Color"]).factor) > 0:
-        report("emission is left out")
-    if scalar(node.inputs["Blackbody Intensity"], "a blackbody intensity") > 0:
-        report("black-body emission is left out")
     if colour.grid and (max(absorb) > 0 or max(colour.factor) > 1):
         raise Untranslatable("a colour grid with an absorption colour or a colour above 1")
     sigma_s, sigma_a = mapping.principled_volume(colour.factor, density.factor[0], absorb)
-    return Medium(sigma_s, sigma_a, density.grid, colour.grid, g_of(node))
+    return Medium(sigma_s, sigma_a, density.grid, colour.grid, g_of(node),
+                  glow(node.inputs["Emission Color"], node.inputs["Emission Strength"], grids,
+                       report), blackbody(node, grids, report))
+
+
+def emission(node, grids, report):
+    return Medium([0.0] * 3, [0.0] * 3,
+                  emission=glow(node.inputs["Color"], node.inputs["Strength"], grids, report))
 
 
 def scatter(node, grids, report):
@@ -98,9 +160,7 @@ def absorption(node, grids, report):
 def coefficients(node, grids, report):
     sigma_s = product(node.inputs["Scatter Coefficients"])
     sigma_a = product(node.inputs["Absorption Coefficients"])
-    emission = product(node.inputs["Emission Coefficients"])
-    if max(emission.factor) > 0:
-        report("emission is left out")
     if sigma_s.grid != sigma_a.grid and max(sigma_s.factor) > 0 and max(sigma_a.factor) > 0:
         raise Untranslatable("coefficients of different grids in one shader")
-    return Medium(sigma_s.factor, sigma_a.factor, sigma_s.grid or sigma_a.grid, None, g_of(node))
+    return Medium(sigma_s.factor, sigma_a.factor, sigma_s.grid or sigma_a.grid, None, g_of(node),
+                  glow(node.inputs["Emission Coefficients"], None, grids, report))
