@@ -8,6 +8,7 @@
 #include "tests/oracle/chandrasekhar.h"
 #include "tests/proof/measure.h"
 #include "tests/proof/subjects.h"
+#include "tests/proof/volume.h"
 
 namespace woodcock::proof {
 
@@ -209,6 +210,27 @@ void equilibrium(Lab& lab) {
             }
 }
 
+/// The same of any volume, seen from within.
+void equilibriumOfVolumes(Lab& lab) {
+    const Precision precision{lab.pick(1e-2, 2e-3), 0};
+    const Rgb black(0.5f, 1, 2), absorbed(0.2f, 0.5f, 1), scattered(1, 0.5f, 0.1f);
+    for (const Volume& v : volumes(lab, Endless::Not)) {
+        EmissionPart::Description glow;
+        glow.field = v.field;
+        glow.worldFromIndex = v.worldFromIndex;
+        glow.scale = absorbed * black * static_cast<float>(v.sigma);
+        const std::string name = fmt::format("thermal equilibrium, {}", v.name);
+        const Vec3d eye = v.matter[0];
+        const RgbEstimate e =
+            evenPicture(lab, name,
+                        {{{v.part(absorbed, scattered, 0.5)}, {EmissionPart(std::move(glow))}},
+                         LightSet({Environment(black, true)}),
+                         Camera::perspective(eye, eye + Vec3d{1, 0.2, -0.5}, {0, 1, 0}, 100)},
+                        precision);
+        addColours(lab, name, {0.5, 1, 2}, e, precision, 1e-6);
+    }
+}
+
 }  // namespace
 
 std::vector<Check> emission() {
@@ -216,7 +238,8 @@ std::vector<Check> emission() {
             {Kind::ClosedForm, "glow inside surfaces", insideSurfaces},
             {Kind::Property, "glow inside a surface and without it", insideAndAlone},
             {Kind::Slab, "warm half-spaces", warmHalfSpace},
-            {Kind::Property, "thermal equilibrium", equilibrium}};
+            {Kind::Property, "thermal equilibrium", equilibrium},
+            {Kind::Property, "thermal equilibrium of any volume", equilibriumOfVolumes}};
 }
 
 }  // namespace woodcock::proof
