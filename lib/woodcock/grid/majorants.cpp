@@ -196,6 +196,14 @@ MajorantGrid::MajorantGrid(const Field& field, const Options& options) {
     });
 }
 
+double MajorantGrid::varyingBlocks() const {
+    double count = 0;
+    table_.forEach([&](Vec3i, int log2Size, const Entry& e) {
+        if (e.range.min < e.range.max) count += std::ldexp(1.0, 3 * (log2Size - blockLog2));
+    });
+    return count;
+}
+
 MajorantStatistics majorantStatistics(const Field& field, const MajorantGrid& majorants, int rays) {
     MajorantStatistics result;
     if (field.support().empty()) return result;

@@ -49,6 +49,9 @@ public:
         return {{widen(p.min), widen(p.max)}, log2Size};
     }
 
+    /// How many blocks lie in cells whose bounds differ.
+    double varyingBlocks() const;
+
     std::size_t bytes() const { return table_.bytes() + parts_.capacity() * sizeof(Part); }
 
 private:

@@ -45,6 +45,16 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     }
 }
 
+const MajorantGrid& MediumPart::marchCells() const {
+    std::call_once(marchCells_->made, [this] {
+        if (!d_.field || !(d_.field->range().max > 0)) return;
+        // As if it were deep beyond all measure: no cells are worth merging that differ.
+        const double deep = 1e9 / d_.field->range().max;
+        marchCells_->cells = MajorantGrid(*d_.field, {deep, 1, blockLog2});
+    });
+    return marchCells_->cells;
+}
+
 float MediumPart::value(Vec3d world, int channel) const {
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? 1.0f : 0.0f;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "woodcock/base/affine.h"
@@ -44,6 +45,9 @@ public:
     const Field* field() const { return d_.field.get(); }
     const Field* albedo() const { return d_.albedo.get(); }
     const MajorantGrid& majorants() const { return majorants_; }
+    /// Cells for ray marching: as large as may be without mixing what is empty, or constant, with
+    /// what is not. Made by whichever thread asks first.
+    const MajorantGrid& marchCells() const;
 
     IndexRay indexRay(Vec3d origin, Vec3d direction) const {
         return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
@@ -76,6 +80,11 @@ private:
     Rgb channelWeight_;
     double meanExtinction_ = 0;
     MajorantGrid majorants_;
+    struct Lazy {
+        std::once_flag made;
+        MajorantGrid cells;
+    };
+    std::shared_ptr<Lazy> marchCells_ = std::make_shared<Lazy>();  // of the field alone
 };
 
 /// The sum of its parts.
@@ -93,13 +102,15 @@ struct Medium {
 class PartWalk {
 public:
     PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
+        : PartWalk(part, part.majorants(), ray, tMax) {}
+    PartWalk(const MediumPart& part, const MajorantGrid& cells, const IndexRay& ray, double tMax)
         : background_(part.background()),
           homogeneous_(!part.field()),
           end_(tMax),
           enter_(0),
           leave_(tMax),
           cells_(enters(part, ray) && !homogeneous_
-                     ? CellWalk(part.majorants(), part.support(), ray, enter_, leave_)
+                     ? CellWalk(cells, part.support(), ray, enter_, leave_)
                      : CellWalk()) {}
 
     /// False for segments of the background before and after.

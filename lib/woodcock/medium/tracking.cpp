@@ -5,6 +5,7 @@
 
 #include "woodcock/medium/medium.h"
 #include "woodcock/medium/refined_walk.h"
+#include "woodcock/medium/roulette.h"
 
 namespace woodcock {
 
@@ -90,28 +91,6 @@ bool collide(const MediumPart& part, const Sampled<N>& s, float mu, bool absorpt
         return scatters;
     }
 }
-
-/// Russian roulette in one draw: a path survives while its weight stays above u x threshold, that
-/// is, with the probability lowest weight / threshold, by which a survivor is divided. The weight
-/// at the end will not do: where channels differ, weights also rise.
-class Roulette {
-public:
-    Roulette(float threshold, RandomStream& random)
-        : threshold_(threshold),
-          lowest_(threshold),
-          killBelow_(threshold > 0 ? threshold * static_cast<float>(random.uniformOpenLow()) : 0) {}
-    bool kills(float weight) {
-        lowest_ = std::min(lowest_, weight);
-        return weight < killBelow_;
-    }
-    template <int N>
-    void lift(Spectrum<N>& weight) const {
-        if (lowest_ > 0 && lowest_ < threshold_) weight *= threshold_ / lowest_;
-    }
-
-private:
-    float threshold_, lowest_, killBelow_;
-};
 
 /// The bits of channels that still carry something: see RefinedWalk::setLive().
 template <int N>

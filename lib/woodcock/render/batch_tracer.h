@@ -5,6 +5,7 @@
 #include <bit>
 #include <vector>
 
+#include "woodcock/medium/marching.h"
 #include "woodcock/medium/phase.h"
 #include "woodcock/medium/tracking.h"
 #include "woodcock/render/light_choice.h"
@@ -118,12 +119,12 @@ private:
             for (std::size_t i = 0; i < paths_.size(); ++i) {
                 const MediumSummary& medium = *flightOf(paths_[i]).medium;
                 if (medium.scatters)
-                    trackDistance<N>(*medium.medium, {&walks_[i], 1}, c);
+                    findEvents(*medium.medium, {&walks_[i], 1}, c);
                 else if (!medium.medium->parts.empty())
                     absorbAlong(medium, walks_[i], c);
             }
         } else {
-            trackDistance<N>(scene_.medium, walks_, c);
+            findEvents(scene_.medium, walks_, c);
         }
         counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
     }
@@ -138,11 +139,11 @@ private:
         }
         counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
     }
-    static void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk,
-                            TrackingCounters& c) {
+    void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk,
+                     TrackingCounters& c) const {
         TransmittanceQuery<N> q{walk.origin, walk.direction, walk.tMax, walk.random,
                                 0,           walk.throughput};
-        trackTransmittance<N>(*medium.medium, {&q, 1}, c);
+        findTransmittances(*medium.medium, {&q, 1}, c);
         walk.random = q.random, walk.throughput = q.contribution;
     }
 
@@ -183,7 +184,7 @@ private:
                 for (std::size_t i = 0; i < shadows_.size(); ++i)
                     shadowAmongSurfaces(shadows_[i], shadowQueries_[i], c);
             else
-                trackTransmittance<N>(scene_.medium, shadowQueries_, c);
+                findTransmittances(scene_.medium, shadowQueries_, c);
             std::size_t left = 0;
             for (std::size_t i = 0; i < shadows_.size(); ++i) {
                 const Spectrum<N> arrived = shadowQueries_[i].contribution;
@@ -218,6 +219,23 @@ private:
                 p.result->film.radiance += p.radiance;
         }
         paths_.resize(left, paths_.front());
+    }
+
+    // ---- the two hot walks: tracked, or marched where that was chosen
+
+    void findEvents(const Medium& medium, std::span<DistanceQuery<N>> queries,
+                    TrackingCounters& c) const {
+        if (options_.approximations.marchStep > 0)
+            marchDistance<N>(medium, marchSettings(options_.approximations), queries, c);
+        else
+            trackDistance<N>(medium, queries, c);
+    }
+    void findTransmittances(const Medium& medium, std::span<TransmittanceQuery<N>> queries,
+                            TrackingCounters& c) const {
+        if (options_.approximations.marchStep > 0)
+            marchTransmittance<N>(medium, marchSettings(options_.approximations), queries, c);
+        else
+            trackTransmittance<N>(medium, queries, c);
     }
 
     // ---- events in media ----------------------------------------------------------------------

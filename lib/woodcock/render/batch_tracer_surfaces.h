@@ -190,7 +190,7 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
         const Medium& medium = *media_[piece.medium].medium;
         if (medium.parts.empty()) continue;
         q.origin = piece.origin, q.tMax = piece.length;
-        trackTransmittance<N>(medium, {&q, 1}, c);
+        findTransmittances(medium, {&q, 1}, c);
         if (!(q.contribution.maximum() > 0)) return;
     }
 }
@@ -217,7 +217,7 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             const bool hits =
                 interiors_->nearest(q.origin, q.direction, infinity, place, true, hit);
             q.tMax = hits ? hit.t : infinity;
-            trackDistance<N>(*media_[interiors_->medium(place.inside)].medium, {&q, 1}, c);
+            findEvents(*media_[interiors_->medium(place.inside)].medium, {&q, 1}, c);
             if (q.part >= 0 || !hits) break;
             const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
             if (interiors_->object(hit).holdout) return;
@@ -233,7 +233,7 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             q.origin = hit.position, q.u = q.random.uniformOpenLow();
         }
     } else {
-        trackDistance<N>(scene_.medium, {&q, 1}, c);
+        findEvents(scene_.medium, {&q, 1}, c);
     }
     const float weight = q.throughput.mean();
     if (q.part >= 0)

@@ -8,11 +8,17 @@
 #include <span>
 
 #include "woodcock/image/film.h"
+#include "woodcock/medium/marching.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock {
+
+/// How rays are marched where approximations.marchStep is above 0.
+inline MarchSettings marchSettings(const Approximations& approximations) {
+    return {approximations.marchStep, approximations.jackknife};
+}
 
 /// One camera path to trace.
 struct PathJob {

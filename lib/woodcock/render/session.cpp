@@ -47,6 +47,13 @@ void add(RenderCounters& a, const RenderCounters& b) {
     a.surfaceRays += b.surfaceRays;
 }
 
+void prepare(const Scene& scene, const Approximations& approximations) {
+    if (approximations.marchStep == 0) return;
+    prepareMarch(scene.medium, marchSettings(approximations));
+    for (const Medium& medium : scene.interiors)
+        prepareMarch(medium, marchSettings(approximations));
+}
+
 /// Renders passes over all tiles into a film. Tiles own their pixels, and a pixel's samples are
 /// added in their order, so neither threads nor the length of passes shows in the sums.
 class Session {
@@ -234,6 +241,7 @@ RenderResult render(const Scene& scene, const RenderSettings& settings,
     const Film::Window crop =
         settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
     validate(settings, crop);
+    prepare(scene, settings.approximations);
     return Session(scene, settings, crop).run(onProgress);
 }
 
