@@ -176,12 +176,12 @@ TEST(Marching, BiasFallsWithTheStepAndTheJackknifes) {
         EXPECT_GT(pooled.count(), 20000u);
         return pooled;
     };
-    const Moments coarse = bias(2, false), fine = bias(0.5, false);
-    EXPECT_GT(coarse.mean(), 20 * coarse.standardError());
-    EXPECT_GT(fine.mean(), 10 * fine.standardError());
-    EXPECT_LT(fine.mean(), coarse.mean() / 8);  // between second and third order
-    for (double step : {1.0, 0.5}) {
-        const Moments plain = bias(step, false), jackknife = bias(step, true);
+    const Moments coarse = bias(4, false), middle = bias(2, false), fine = bias(1, false);
+    EXPECT_GT(fine.mean(), 8 * fine.standardError());
+    EXPECT_LT(middle.mean(), coarse.mean() / 3);  // rough where steps are coarse: second order,
+    EXPECT_LT(fine.mean(), middle.mean() / 3);    // on the way to the third of smooth fields
+    for (const auto& [step, plain] : {std::pair{4.0, coarse}, {2.0, middle}}) {
+        const Moments jackknife = bias(step, true);
         EXPECT_LT(std::abs(jackknife.mean()) + 4 * jackknife.standardError(), plain.mean() / 5);
     }
 }
@@ -216,32 +216,36 @@ void expectExact(const PlainMedium& plain, Spectrum<N> throughput, float roulett
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const TestRay& ray = rays[i];
         const auto events = marchInto<N>(medium, fine, ray, 3000, i, roulette, throughput);
-        const auto check = [&](int part, const Vec3d& share, Moments& pooled) {
+        double scatterSurplus = 0, escapeSurplus = 0, acrossSurplus = 0;
+        const auto check = [&](int part, const Vec3d& share, double& surplus) {
             for (int c = 0; c < N; ++c) {
                 Moments m;
                 for (const auto& q : events) m.add(q.part == part ? q.throughput[c] : 0);
                 const double expected = throughput[c] * share[c];
                 if (expected > 0.02) expectMean(m, expected, 0.03, what);
-                pooled.add(m.mean() - expected);
+                surplus += m.mean() - expected;
             }
         };
         const Vec3d through = plain.transmittance(ray.origin, ray.direction, ray.tMax);
-        check(-1, through, pooledEscape);
+        check(-1, through, escapeSurplus);
         for (std::size_t part = 0; part < plain.parts().size(); ++part)
             check(static_cast<int>(part),
                   plain.scattered(plain.parts()[part], ray.origin, ray.direction, ray.tMax),
-                  pooledScatter);
+                  scatterSurplus);
         const auto across = marchAcross<N>(medium, fine, ray, 2000, i, roulette, throughput);
         for (int c = 0; c < N; ++c) {
             Moments m;
             for (const auto& q : across) m.add(q.contribution[c]);
             if (through[c] > 0.02) expectMean(m, throughput[c] * through[c], 0.02, what);
-            pooledAcross.add(m.mean() - throughput[c] * through[c]);
+            acrossSurplus += m.mean() - throughput[c] * through[c];
         }
+        // Channels share their random numbers: only rays are independent.
+        pooledEscape.add(escapeSurplus), pooledScatter.add(scatterSurplus);
+        pooledAcross.add(acrossSurplus);
     }
-    expectMean(pooledEscape, 0, 0.006, what + ", escape");
-    expectMean(pooledScatter, 0, 0.006, what + ", scattering");
-    expectMean(pooledAcross, 0, 0.006, what + ", across");
+    expectMean(pooledEscape, 0, 0.01, what + ", escape");
+    expectMean(pooledScatter, 0, 0.01, what + ", scattering");
+    expectMean(pooledAcross, 0, 0.01, what + ", across");
 }
 
 TEST(Marching, FineStepsFindTheMeansOfQuadrature) {
@@ -316,7 +320,7 @@ TEST(Marching, StepsAreSpentOnlyWhereTheFieldVaries) {
         });
     const PlainMedium plain({{.grid = grid, .scattering = Rgb(0.1f)}});
     const Medium medium = plain.medium();
-    for (double step : {0.01, 1.0, 1e6}) {
+    for (double step : {0.1, 1.0, 1e6}) {
         prepareMarch(medium, {step, true});
         std::vector<TransmittanceQuery<1>> query{
             {{-5, 4, 4}, {1, 0, 0}, infinity, RandomStream(1), 0, Spectrum<1>(1.0f)}};
@@ -324,7 +328,9 @@ TEST(Marching, StepsAreSpentOnlyWhereTheFieldVaries) {
         marchTransmittance<1>(medium, {step, true}, query, counters);
         EXPECT_LE(counters.collisions, 20 * 2 * (8 / step + 1));
         EXPECT_GT(counters.collisions, 0u);
-        if (step < 1) EXPECT_NEAR(query[0].contribution[0], std::exp(-1.0), 0.01);
+        if (step < 1) {
+            EXPECT_NEAR(query[0].contribution[0], std::exp(-1.0), 0.01);
+        }
     }
 }
 
@@ -354,7 +360,9 @@ TEST(Marching, RaysOfEveryKindEnd) {
                     {std::floor(c.x), std::floor(c.y), std::floor(c.z)}, direction, tMax};
                 for (const auto& q : marchAcross<1>(medium, {step, true}, ray, 3, 1)) {
                     ASSERT_TRUE(q.contribution[0] >= 0 && q.contribution[0] <= 1);
-                    if (tMax == 0) EXPECT_EQ(q.contribution[0], 1);
+                    if (tMax == 0) {
+                        EXPECT_EQ(q.contribution[0], 1);
+                    }
                 }
                 for (const auto& q : marchInto<1>(medium, {step, true}, ray, 3, 2))
                     ASSERT_TRUE(q.t <= tMax && (tMax > 0 || q.part < 0));
