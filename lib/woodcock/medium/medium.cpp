@@ -12,18 +12,9 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
         throw inputError("a volume's transform is singular: its determinant is {}", determinant);
     if (!(std::abs(d_.g) < 1))
         throw inputError("g is {}; it must lie strictly between -1 and 1", d_.g);
-    for (int c = 0; c < 3; ++c)
-        if (!(d_.scattering[c] >= 0 && d_.absorption[c] >= 0 && std::isfinite(extinction()[c])))
-            throw inputError("sigma_a is {} and sigma_s is {}; expected finite numbers >= 0",
-                             d_.absorption[c], d_.scattering[c]);
     indexFromWorld_ = d_.worldFromIndex.inverse();
     albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
-    largestExtinction_ = extinction().maximum();
-    channelWeight_ = Rgb::map([&](int c) {
-        const float sigmaT = extinction()[c];
-        const float albedo = sigmaT > 0 ? d_.scattering[c] / sigmaT : 1;  // vacuum loses nothing
-        return 0.05f + albedo * albedo;
-    });
+    takeCoefficients();
     if (!d_.field) {
         support_ = d_.box;
         meanExtinction_ = largestExtinction_;
@@ -32,8 +23,9 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     support_ = d_.field->support();
     background_ = d_.field->storedRange(d_.field->blocks().outside());
     const double voxelWidth = std::cbrt(std::abs(determinant));
-    majorants_ = MajorantGrid(
-        *d_.field, {largestExtinction_ * voxelWidth, d_.majorantScale, d_.majorantSmallestLog2});
+    majorants_ = std::make_shared<MajorantGrid>(
+        *d_.field, MajorantGrid::Options{largestExtinction_ * voxelWidth, d_.majorantScale,
+                                         d_.majorantSmallestLog2});
     if (support_.empty()) return;
     RandomStream random(hashOf(0x6d65616e));
     constexpr int samples = 4096;
@@ -55,24 +47,58 @@ const MajorantGrid& MediumPart::marchCells() const {
     return marchCells_->cells;
 }
 
+void MediumPart::takeCoefficients() {
+    extinction_ = d_.absorption + d_.scattering * std::max(1.0f, loss_);
+    for (int c = 0; c < 3; ++c)
+        if (!(d_.scattering[c] >= 0 && d_.absorption[c] >= 0 && std::isfinite(extinction()[c])))
+            throw inputError("sigma_a is {} and sigma_s is {}; expected finite numbers >= 0",
+                             d_.absorption[c], d_.scattering[c]);
+    largestExtinction_ = extinction().maximum();
+    channelWeight_ = Rgb::map([&](int c) {
+        const float sigmaT = extinction()[c];
+        const float albedo = sigmaT > 0 ? d_.scattering[c] / sigmaT : 1;  // vacuum loses nothing
+        return 0.05f + albedo * albedo;
+    });
+}
+
+MediumPart MediumPart::with(const Coefficients& coefficients) const {
+    MediumPart part = *this;
+    part.d_.absorption = coefficients.absorption;
+    part.d_.scattering = coefficients.scattering;
+    part.d_.g = coefficients.g;
+    part.loss_ = coefficients.loss;
+    part.takeCoefficients();
+    if (largestExtinction_ > 0)
+        part.meanExtinction_ *= part.largestExtinction_ / largestExtinction_;
+    return part;
+}
+
 float MediumPart::value(Vec3d world, int channel) const {
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? 1.0f : 0.0f;
     return d_.field->trilinear(d_.field->nearSupport(p), d_.field->channels() == 1 ? 0 : channel);
 }
 
+Rgb MediumPart::albedoAt(Vec3d world) const {
+    if (!d_.albedo) return Rgb(1.0f);
+    const Field& albedo = *d_.albedo;
+    const Vec3d p = albedo.nearSupport(albedoIndex(world));
+    return Rgb::map([&](int c) { return albedo.trilinear(p, albedo.channels() == 1 ? 0 : c); });
+}
+
 Rgb MediumPart::sigmaT(Vec3d world) const {
-    return Rgb::map([&](int c) { return extinction()[c] * value(world, c); });
+    if (!extinctionVaries())
+        return Rgb::map([&](int c) { return extinction()[c] * value(world, c); });
+    const Rgb albedo = albedoAt(world);
+    return Rgb::map([&](int c) {
+        return (d_.absorption[c] + d_.scattering[c] * (albedo[c] + loss_ * (1 - albedo[c]))) *
+               value(world, c);
+    });
 }
 
 Rgb MediumPart::sigmaS(Vec3d world) const {
-    return Rgb::map([&](int c) {
-        const Field* const albedo = d_.albedo.get();
-        const float a = albedo ? albedo->trilinear(albedo->nearSupport(albedoIndex(world)),
-                                                   albedo->channels() == 1 ? 0 : c)
-                               : 1.0f;
-        return d_.scattering[c] * value(world, c) * a;
-    });
+    const Rgb albedo = albedoAt(world);
+    return Rgb::map([&](int c) { return d_.scattering[c] * value(world, c) * albedo[c]; });
 }
 
 bool MediumPart::chromatic() const {

@@ -34,17 +34,31 @@ public:
     };
     explicit MediumPart(Description description);
 
+    /// What a part with the same field in the same place may have of its own.
+    struct Coefficients {
+        Rgb absorption{0.0f}, scattering{0.0f};
+        double g = 0;
+        /// sigma_a where the albedo is 0, over `scattering`; see similar_medium.h.
+        float loss = 1;
+    };
+    /// Shares the field and its bounds, whose cells are as fine as *this* part needed them.
+    MediumPart with(const Coefficients& coefficients) const;
+
     const Description& description() const { return d_; }
     double g() const { return d_.g; }
-    Rgb extinction() const { return d_.absorption + d_.scattering; }
+    /// sigma_t where f is 1; an upper bound where extinctionVaries().
+    const Rgb& extinction() const { return extinction_; }
     /// Channels' weights in deciding for all of them at once; see collide() in tracking.cpp.
     const Rgb& channelWeight() const { return channelWeight_; }
     const Rgb& absorption() const { return d_.absorption; }
     const Rgb& scattering() const { return d_.scattering; }
+    float loss() const { return loss_; }
+    /// sigma_t changes with the albedo, not with f alone: never so for a part just described.
+    bool extinctionVaries() const { return d_.albedo && loss_ != 1; }
     float largestExtinction() const { return largestExtinction_; }
     const Field* field() const { return d_.field.get(); }
     const Field* albedo() const { return d_.albedo.get(); }
-    const MajorantGrid& majorants() const { return majorants_; }
+    const MajorantGrid& majorants() const { return *majorants_; }
     /// Cells for ray marching: as large as may be without mixing what is empty, or constant, with
     /// what is not. Made by whichever thread asks first.
     const MajorantGrid& marchCells() const;
@@ -72,14 +86,19 @@ public:
     bool scatters() const { return d_.scattering.maximum() > 0; }
 
 private:
+    void takeCoefficients();
+    Rgb albedoAt(Vec3d world) const;
+
     Description d_;
+    float loss_ = 1;
+    Rgb extinction_;
     Affine3d indexFromWorld_, albedoIndexFromWorld_;
     Box3d support_;
     Range background_;
     float largestExtinction_ = 0;
     Rgb channelWeight_;
     double meanExtinction_ = 0;
-    MajorantGrid majorants_;
+    std::shared_ptr<const MajorantGrid> majorants_ = std::make_shared<MajorantGrid>();
     struct Lazy {
         std::once_flag made;
         MajorantGrid cells;

@@ -64,7 +64,8 @@ bool collide(const MediumPart& part, const Sampled<N>& s, float mu, bool absorpt
     Spectrum<N> scattering = channels<N>(part.scattering()) * s.f * s.albedo;
     Spectrum<N> absorption = channels<N>(part.absorption()) * s.f;
     if (part.albedo())
-        absorption += channels<N>(part.scattering()) * s.f * (Spectrum<N>(1.0f) - s.albedo);
+        absorption +=
+            channels<N>(part.scattering()) * s.f * (Spectrum<N>(1.0f) - s.albedo) * part.loss();
     if (absorptionToo) scattering += absorption, absorption = {};
     if constexpr (N == 1) {
         const float left = mu - absorption[0];  // sigma_s + sigma_n
@@ -231,8 +232,20 @@ double effort(float weight, float roulette) {
 /// exp() of minus this is zero as a float.
 constexpr double vanished = 104;
 
-/// Multiplies q.contribution by an estimate of one part's transmittance; false once it is killed.
+/// sigma_t over part.extinction() at one point.
 template <int N>
+Spectrum<N> relativeExtinction(const MediumPart& part, const Sampled<N>& s) {
+    return Spectrum<N>::map([&](int c) {
+        const float lost = s.albedo[c] + part.loss() * (1 - s.albedo[c]);
+        const float bound = part.extinction()[c];
+        return bound > 0 ? s.f[c] * (part.absorption()[c] + part.scattering()[c] * lost) / bound
+                         : 0.0f;
+    });
+}
+
+/// Multiplies q.contribution by an estimate of one part's transmittance; false once it is killed.
+/// Varies: part.extinctionVaries(), and then f's lower bound bounds nothing.
+template <int N, bool Varies>
 bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
                TrackingCounters& counters) {
     const IndexRay ray = part.indexRay(q.origin, q.direction);
@@ -240,6 +253,7 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
     RefinedWalk walk(part, ray, q.tMax);
     Segment s{0, 0, {}};
     Spectrum<N> ratio = q.contribution;
+    const auto least = [&] { return Varies ? 0.0f : s.range.min; };
     double control = 0;  // integral of the lower bound
     double depth = -std::log(q.random.uniformOpenLow());
     const auto arrived = [&] {
@@ -263,7 +277,7 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
     while (next()) {
         ++counters.segments;
         const auto rateNow = [&] {
-            const double width = s.range.max - s.range.min;
+            const double width = s.range.max - least();
             if (!(width > 0)) return 0.0;
             return width * walk.extinction() * effort(arrived().maximum(), q.roulette);
         };
@@ -272,21 +286,26 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
             t += depth / rate;
-            const Spectrum<N> f = density<N>(part, ray.at(t), walk.tight(), q.random.bits());
+            Spectrum<N> f;
+            if constexpr (Varies)
+                f = relativeExtinction<N>(part, sampleAt<N>(part, ray, q.origin, q.direction, t,
+                                                            s.range, walk.tight(), q.random));
+            else
+                f = density<N>(part, ray.at(t), walk.tight(), q.random.bits());
             for (int c = 0; c < N; ++c)
-                ratio[c] *= std::max(
-                    0.0f, 1 - (f[c] - s.range.min) * extinction[c] / static_cast<float>(rate));
+                ratio[c] *=
+                    std::max(0.0f, 1 - (f[c] - least()) * extinction[c] / static_cast<float>(rate));
             if (spent()) return false;
             depth = -std::log(q.random.uniformOpenLow());
-            const double controlled = (t - s.t0) * s.range.min;
+            const double controlled = (t - s.t0) * least();
             if constexpr (N > 1) walk.setLive(part, liveChannels<N>(arrived()));
             const bool cut = walk.collided(part, ray, t, s);
             if (cut) control += controlled;
             if (N > 1 || cut) rate = rateNow();
         }
         if (rate > 0) depth -= (s.t1 - t) * rate;
-        if (s.range.min > 0) {
-            control += (s.t1 - s.t0) * s.range.min;
+        if (least() > 0) {
+            control += (s.t1 - s.t0) * least();
             if (spent()) return false;
         }
     }
@@ -318,7 +337,9 @@ void trackTransmittance(const Medium& medium, std::span<TransmittanceQuery<N>> q
         Roulette roulette(q.roulette, q.random);
         bool alive = !roulette.kills(q.contribution.maximum());
         for (std::size_t i = 0; alive && i < medium.parts.size(); ++i)
-            alive = trackPart(medium.parts[i], q, roulette, counters);
+            alive = medium.parts[i].extinctionVaries()
+                        ? trackPart<N, true>(medium.parts[i], q, roulette, counters)
+                        : trackPart<N, false>(medium.parts[i], q, roulette, counters);
         if (alive)
             roulette.lift(q.contribution);
         else

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "woodcock/medium/medium.h"
 #include "woodcock/render/equiangular.h"
@@ -12,12 +13,16 @@ namespace woodcock {
 
 /// What sampling along a ray may know of a medium beforehand.
 struct MediumSummary {
-    const Medium* medium;
+    const Medium* medium;  ///< that rays go through
+    std::span<const EmissionPart> emission;
     Box3d bounds;
     double meanExtinction = 0;
     bool unbounded = false, scatters = false;
 
-    explicit MediumSummary(const Medium& m) : medium(&m), bounds(m.worldBounds()) {
+    explicit MediumSummary(const Medium& m) : MediumSummary(m, m) {}
+    /// Of a stand-in for `original`, which glows like it.
+    MediumSummary(const Medium& m, const Medium& original)
+        : medium(&m), emission(original.emission), bounds(m.worldBounds()) {
         for (const MediumPart& p : m.parts) {
             meanExtinction += p.meanExtinction();
             unbounded |= p.unbounded();

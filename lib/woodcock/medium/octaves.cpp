@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/octaves.h"
+
+namespace woodcock {
+
+Medium octaveMedium(const Medium& medium, int i) {
+    Medium dimmed;
+    for (const MediumPart& part : medium.parts) {
+        MediumPart::Coefficients c;
+        c.absorption = part.extinction() * static_cast<float>(octave::extinction(i));
+        dimmed.parts.push_back(part.with(c));
+    }
+    return dimmed;
+}
+
+}  // namespace woodcock

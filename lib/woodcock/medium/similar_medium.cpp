@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/similar_medium.h"
+
+namespace woodcock {
+
+Medium similarMedium(const Medium& medium) {
+    Medium similar;
+    for (const MediumPart& part : medium.parts) {
+        const double kept = 1 - part.g();
+        MediumPart::Coefficients c;
+        c.absorption = part.absorption();
+        c.scattering = part.scattering() * static_cast<float>(kept);
+        // What an albedo below 1 absorbs does not become less.
+        c.loss = part.loss() * static_cast<float>(1 / kept);
+        similar.parts.push_back(part.with(c));
+    }
+    return similar;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/medium/medium.h"
+
+namespace woodcock {
+
+/// An isotropic medium in which light spreads like in `medium` once it has forgotten its direction:
+/// sigma_s' = (1 - g) sigma_s, sigma_a' = sigma_a, g' = 0 for each part. The similarity relation of
+/// order 1, (1 - g) sigma_s = (1 - g') sigma_s': Wyman, Patterson and Wilson 1989, "Similarity
+/// Relations for the Interaction Parameters in Radiation Transport", and Zhao, Ramamoorthi and Bala
+/// 2014, "High-Order Similarity Relations in Radiative Transfer". Where g < 0 it scatters more.
+///
+/// Shares the fields and their bounds. Neither what is coloured nor what scatters changes, so the
+/// Needs of `medium` hold. What glows is left out.
+Medium similarMedium(const Medium& medium);
+
+}  // namespace woodcock
