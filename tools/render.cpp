@@ -199,6 +199,9 @@ RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settin
     spdlog::info("{} in {}: samples {}:{} of each pixel, {}", stopReasonName(result.reason),
                  formatDuration(result.seconds), settings.firstSample, result.endSample,
                  noiseText(result.film.noise()));
+    if (const std::uint64_t count = result.counters.clamped)
+        spdlog::info("{} of {} paths were clamped to a radiance of {:g}", count,
+                     result.counters.paths, settings.approximations.clamp);
     if (const std::uint64_t count = result.film.nonFiniteCount())
         spdlog::warn("{} samples were not finite and are left out", count);
     return result;

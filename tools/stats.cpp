@@ -46,7 +46,8 @@ std::string statsText(const RenderResult& result, const RenderSettings& settings
                                          {"distance_segments", counters.distanceSegments},
                                          {"distance_collisions", counters.distanceCollisions},
                                          {"shadow_segments", counters.shadowSegments},
-                                         {"shadow_collisions", counters.shadowCollisions}}}};
+                                         {"shadow_collisions", counters.shadowCollisions},
+                                         {"clamped", counters.clamped}}}};
     return stats.dump(4) + "\n";
 }
 

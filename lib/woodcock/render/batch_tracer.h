@@ -23,9 +23,8 @@ public:
           options_(options),
           typicalRadiance_(scene.lights.typicalRadiance(scene.bounds())),
           choice_(scene.lights) {
-        media_.emplace_back(scene.medium);
+        gatherMedia();
         if constexpr (Surfaces) {
-            for (const Medium& medium : scene.interiors) media_.emplace_back(medium);
             interiors_.emplace(scene);
             if (scene.camera.kind == Camera::Kind::Perspective)
                 aroundCamera_ = interiors_->at(scene.camera.worldFromCamera.translation);
@@ -45,6 +44,7 @@ public:
                 ++next;
             }
             if (paths_.empty()) return true;
+            gatherStandIns();
             for (std::size_t i = 0; i < paths_.size(); ++i) lookAhead(i);
             walk();
             for (std::size_t i = 0; i < paths_.size(); ++i) shade(i);
@@ -74,6 +74,7 @@ private:
             scene_.camera.ray(job.x + u[0], job.y + u[1], options_.width, options_.height);
         p.origin = ray.origin, p.direction = ray.direction;
         p.flight = 1 - u[2];
+        p.standIn = standInAfter(0);
         ++counters_.paths;
         if constexpr (Surfaces)
             p.surfaces.place.inside = scene_.camera.kind == Camera::Kind::Perspective
@@ -124,7 +125,13 @@ private:
                     absorbAlong(medium, walks_[i], c);
             }
         } else {
-            findEvents(scene_.medium, walks_, c);
+            forRuns(paths_, [&](const MediumSummary& medium, std::size_t first, std::size_t count) {
+                const auto walks = std::span(walks_).subspan(first, count);
+                if (medium.scatters)
+                    findEvents(*medium.medium, walks, c);
+                else
+                    for (DistanceQuery<N>& walk : walks) absorbAlong(medium, walk, c);
+            });
         }
         counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
     }
@@ -184,7 +191,11 @@ private:
                 for (std::size_t i = 0; i < shadows_.size(); ++i)
                     shadowAmongSurfaces(shadows_[i], shadowQueries_[i], c);
             else
-                findTransmittances(scene_.medium, shadowQueries_, c);
+                forRuns(shadows_,
+                        [&](const MediumSummary& medium, std::size_t first, std::size_t count) {
+                            findTransmittances(*medium.medium,
+                                               std::span(shadowQueries_).subspan(first, count), c);
+                        });
             std::size_t left = 0;
             for (std::size_t i = 0; i < shadows_.size(); ++i) {
                 const Spectrum<N> arrived = shadowQueries_[i].contribution;
@@ -195,7 +206,7 @@ private:
                     (s.inFront ? p.result->film.radiance : p.radiance) += s.colour * toRgb(arrived);
                     continue;
                 }
-                s.secondLeg = false;
+                s.secondLeg = false, s.standIn = s.secondStandIn;
                 TransmittanceQuery<N> q = shadowQueries_[i];
                 q.origin = s.origin, q.direction = s.direction, q.tMax = s.tMax;
                 if constexpr (Surfaces) s.place.left.reset();
@@ -217,6 +228,7 @@ private:
                 p.result->catcher.lit = p.radiance.mean();
             else
                 p.result->film.radiance += p.radiance;
+            clampRadiance(p.result->film.radiance);
         }
         paths_.resize(left, paths_.front());
     }
@@ -260,6 +272,10 @@ private:
         const EventNumbers u = numbers(p);
         // What equiangular sampling of this flight leaves to this event; see addEquiangular.
         const FlightShare share{!needs_.localLights, flightOf(p), t};
+        const Onward onward = onwardFrom(p);
+        p.standIn = onward.standIn;
+        p.throughput *= static_cast<float>(onward.amount);
+        g *= onward.phase;
         p.from = {position, p.direction, g};
         if constexpr (Surfaces) {
             AmongSurfaces& s = p.surfaces;
@@ -283,6 +299,7 @@ private:
             p.throughput *= 1.41421356f;
         }
         p.equiangular = u.equiangular, p.lamp = u.pick;
+        p.alive = options_.approximations.octaves == 0 || octavesMeetLight_;
     }
 
     EventNumbers numbers(Path& p) {
@@ -300,6 +317,28 @@ private:
         const auto a = p.sequence.draw(set), b = p.sequence.draw(set + 1);
         return {{a[0], a[1]}, {a[2], a[3]}, 1 - b[0], b[1], b[2]};
     }
+
+    // ---- media in place of others: batch_tracer_stand_ins.h
+
+    /// The scene's media and those that stand in for them, as flights may ask for them.
+    void gatherMedia();
+    /// Paths in stand-ins first, so that runs are long.
+    void gatherStandIns();
+    /// Calls f(medium, first, count) for each run of paths or shadow rays in one medium; only
+    /// without surfaces.
+    template <class Items, class F>
+    void forRuns(const Items& items, F&& f) const;
+    /// Which media a path that has scattered so often goes through, and which one surrounds it.
+    std::uint8_t standInAfter(std::int64_t scatterings) const;
+    std::uint32_t mediumIndex(std::uint8_t standIn, const InteriorStack& inside) const;
+    /// What light that a path meets at its next scattering goes through, and how it scatters there:
+    /// `phase` multiplies g, `amount` the scattered light.
+    struct Onward {
+        std::uint8_t standIn;
+        double amount = 1, phase = 1;
+    };
+    Onward onwardFrom(Path& p) const;
+    void clampRadiance(Rgb& radiance);
 
     // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
 
@@ -367,9 +406,9 @@ private:
     Flight flightOf(const Path& p) const {
         if constexpr (Surfaces)
             return {p.origin, p.direction, p.surfaces.tMax,
-                    &media_[interiors_->medium(p.surfaces.place.inside)]};
+                    &media_[mediumIndex(p.standIn, p.surfaces.place.inside)]};
         else
-            return {p.origin, p.direction, infinity, &media_[0]};
+            return {p.origin, p.direction, infinity, &media_[p.standIn]};
     }
     static Rgb tint(const Path& p) {
         if constexpr (Surfaces)
@@ -401,7 +440,8 @@ private:
     const Needs needs_;
     const Options options_;
     const float typicalRadiance_;
-    std::vector<MediumSummary> media_;  // of the outside, and of what surfaces hold
+    std::vector<MediumSummary> media_;  // of the outside, and of what surfaces hold; stand-ins
+    bool octavesMeetLight_ = false;     // on their flights, by chance
     LightChoice choice_;
     EmissionSampler emission_;
     RenderCounters counters_;
@@ -418,4 +458,5 @@ private:
 }  // namespace woodcock
 
 #include "woodcock/render/batch_tracer_light.h"
+#include "woodcock/render/batch_tracer_stand_ins.h"
 #include "woodcock/render/batch_tracer_surfaces.h"

@@ -49,6 +49,7 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
     const Path& p = paths_[i];
     if (options_.maxScatterings && p.scatterings >= *options_.maxScatterings) return;
     const Flight flight = flightOf(p);
+    if (p.standIn > 0 && !flight.medium->scatters) return;
     const auto lamps = scene_.lights.local();
     const double scaled = pick * static_cast<double>(lamps.size());
     const int light = lamps[std::min(static_cast<std::size_t>(scaled), lamps.size() - 1)];
@@ -61,17 +62,20 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
     const LightSample s =
         scene_.lights.sample(light, at.position, lightU, paths_[i].random.uniform());
     if (!(s.weight.maximum() > 0)) return;
+    const Onward onward = onwardFrom(paths_[i]);
+    const double cosine = dot(at.forward, s.direction);
     Rgb scattered;  // sum over parts of sigma_s x phase
     for (const MediumPart& part : flight.medium->medium->parts)
         scattered += part.sigmaS(at.position) *
-                     static_cast<float>(henyeyGreenstein(dot(at.forward, s.direction), part.g()));
+                     static_cast<float>(henyeyGreenstein(cosine, part.g() * onward.phase));
     // Balance heuristic against the event, over the density of this point and lamp.
-    const double weight = static_cast<double>(lamps.size()) / (pdf + flight.density(e, t));
+    const double weight =
+        onward.amount * static_cast<double>(lamps.size()) / (pdf + flight.density(e, t));
     if (!addShadowRay(i, p.origin, p.direction, t,
                       scattered * s.weight * static_cast<float>(weight), true))
         return;
     ShadowRay<Surfaces>& ray = shadows_.back();
-    ray.secondLeg = true;
+    ray.secondLeg = true, ray.secondStandIn = onward.standIn;
     ray.origin = at.position, ray.direction = s.direction, ray.tMax = s.distance;
 }
 
@@ -79,9 +83,8 @@ template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::addMediumEmission(std::size_t i, double u) {
     const Path& p = paths_[i];
     const Flight flight = flightOf(p);
-    const auto point =
-        emission_.sample(flight.medium->medium->emission, flight.origin, flight.direction,
-                         flight.tMax, flight.medium->meanExtinction, u);
+    const auto point = emission_.sample(flight.medium->emission, flight.origin, flight.direction,
+                                        flight.tMax, flight.medium->meanExtinction, u);
     if (!point || !addShadowRay(i, p.origin, p.direction, point->t, point->light, false)) return;
     shadows_.back().withinFlight = true;
     // Beyond a depth of 9 hardly anything is left of what was drawn deep within dense media.
@@ -98,6 +101,7 @@ bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d d
     const Spectrum<N> contribution = p.throughput * brightest;
     if (!(contribution.maximum() > 0)) return false;
     shadows_.push_back({.path = i, .colour = light * (1 / brightest)});
+    shadows_.back().standIn = p.standIn;
     if constexpr (Surfaces) {
         shadows_.back().place = p.surfaces.place;
         shadows_.back().transparent = mayPass && options_.approximations.transparentShadows;

@@ -55,6 +55,7 @@ void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
     const bool caught = s.seen && p.result->catcher.weight > 0;
     s.seen = false;
     s.place.inside = crossing.near;
+    p.standIn = standInAfter(p.scatterings);
     if (crossing.bsdf.smooth()) {
         p.from = {hit.position, p.direction, 0};
         if (needs_.lightSampling) lightSurface(i, u, hit, crossing, out, caught);
@@ -170,7 +171,7 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
         const bool hits =
             !shadow.withinFlight &&
             interiors_->nearest(origin, q.direction, left * beforeLight, place, false, hit);
-        pieces_.push_back({origin, hits ? hit.t : left, interiors_->medium(place.inside)});
+        pieces_.push_back({origin, hits ? hit.t : left, mediumIndex(shadow.standIn, place.inside)});
         if (!hits) break;
         const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
         if (!crossing.passes) {
@@ -217,7 +218,7 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             const bool hits =
                 interiors_->nearest(q.origin, q.direction, infinity, place, true, hit);
             q.tMax = hits ? hit.t : infinity;
-            findEvents(*media_[interiors_->medium(place.inside)].medium, {&q, 1}, c);
+            findEvents(*media_[mediumIndex(p.standIn, place.inside)].medium, {&q, 1}, c);
             if (q.part >= 0 || !hits) break;
             const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
             if (interiors_->object(hit).holdout) return;
@@ -233,7 +234,7 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             q.origin = hit.position, q.u = q.random.uniformOpenLow();
         }
     } else {
-        findEvents(scene_.medium, {&q, 1}, c);
+        findEvents(*media_[p.standIn].medium, {&q, 1}, c);
     }
     const float weight = q.throughput.mean();
     if (q.part >= 0)

@@ -30,6 +30,7 @@ struct RenderCounters {
     std::uint64_t distanceSegments = 0, distanceCollisions = 0;  ///< collisions include null ones
     std::uint64_t shadowSegments = 0, shadowCollisions = 0;
     std::uint64_t surfaceRays = 0;  ///< that looked for the nearest surface
+    std::uint64_t clamped = 0;      ///< paths that brought more than Approximations::clamp
 };
 
 }  // namespace woodcock

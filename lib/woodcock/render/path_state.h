@@ -71,6 +71,7 @@ struct PathState {
     double flight = 1;    // draws the next optical depth
     double equiangular = 0, lamp = 0;  // and the equiangular point on its way
     bool alive = true;
+    std::uint8_t standIn = 0;  // which media the flight goes through; 0: the scene's own
     [[no_unique_address]] std::conditional_t<Surfaces, AmongSurfaces, Nothing> surfaces = {};
 };
 
@@ -84,6 +85,8 @@ struct ShadowRay {
     bool transparent = false;   // passes dielectrics
     bool inFront = false;       // brings light of the camera's own flight, before any surface
     bool withinFlight = false;  // no surface lies in its way
+    std::uint8_t standIn = 0;   // which media it goes through
+    std::uint8_t secondStandIn = 0;
     Vec3d origin = {}, direction = {};  // of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, Interiors::Place, Nothing> place = {};

@@ -12,6 +12,7 @@
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
+#include "woodcock/render/stand_ins.h"
 
 namespace woodcock {
 
@@ -46,6 +47,7 @@ public:
         std::optional<int> maxBounces;
         Approximations approximations;
         bool depthLayers = false;
+        const StandIns* standIns = nullptr;  ///< made from `approximations`; null: no sets
     };
 
     virtual ~PathTracer() = default;

@@ -44,7 +44,7 @@ void add(RenderCounters& a, const RenderCounters& b) {
     a.paths += b.paths, a.scatterings += b.scatterings, a.shadowRays += b.shadowRays;
     a.distanceSegments += b.distanceSegments, a.distanceCollisions += b.distanceCollisions;
     a.shadowSegments += b.shadowSegments, a.shadowCollisions += b.shadowCollisions;
-    a.surfaceRays += b.surfaceRays;
+    a.surfaceRays += b.surfaceRays, a.clamped += b.clamped;
 }
 
 void prepare(const Scene& scene, const Approximations& approximations) {
@@ -63,6 +63,7 @@ public:
           settings_(settings),
           crop_(crop),
           needs_(findNeeds(scene)),
+          standIns_(scene, settings.approximations),
           film_(settings.width, settings.height, crop, needs_.surfaces) {
         for (int y = crop.y0 / tileSize * tileSize; y < crop.y1; y += tileSize)
             for (int x = crop.x0 / tileSize * tileSize; x < crop.x1; x += tileSize)
@@ -201,7 +202,7 @@ private:
         const auto tracer = PathTracer::make(
             scene_, needs_,
             {settings_.width, settings_.height, settings_.seed, settings_.maxScatterings,
-             settings_.maxBounces, settings_.approximations, settings_.depthLayers});
+             settings_.maxBounces, settings_.approximations, settings_.depthLayers, &standIns_});
         if (!tracer->trace(jobs, results, stopping)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);
@@ -221,6 +222,7 @@ private:
     const RenderSettings settings_;
     const Film::Window crop_;
     const Needs needs_;
+    const StandIns standIns_;
     Film film_;
     std::vector<Film::Window> tiles_;
     std::uint64_t pathsPerSample_ = 0;

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// How batch_tracer.h takes biased choices that concern its media: similarity and octaves.
+
+#include "woodcock/medium/octaves.h"
+#include "woodcock/render/batch_tracer.h"
+
+namespace woodcock {
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::gatherMedia() {
+    std::vector<const Medium*> own{&scene_.medium};
+    if constexpr (Surfaces)
+        for (const Medium& medium : scene_.interiors) own.push_back(&medium);
+    for (const Medium* medium : own) media_.emplace_back(*medium);
+    if (!options_.standIns) return;
+    for (const StandIns::Set& set : options_.standIns->sets)
+        for (std::size_t i = 0; i < own.size(); ++i) media_.emplace_back(set[i], *own[i]);
+    octavesMeetLight_ = Surfaces || needs_.emission;
+    for (const Light& light : scene_.lights.lights()) {
+        const auto* sun = std::get_if<Sun>(&light);
+        octavesMeetLight_ |= std::holds_alternative<Environment>(light) || (sun && !sun->delta());
+    }
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::gatherStandIns() {
+    if (!Surfaces && media_.size() > 1)
+        std::partition(paths_.begin(), paths_.end(), [](const Path& p) { return p.standIn > 0; });
+}
+
+template <int N, bool Surfaces>
+template <class Items, class F>
+void BatchTracer<N, Surfaces>::forRuns(const Items& items, F&& f) const {
+    for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
+        const std::uint8_t standIn = items[first].standIn;
+        while (end < items.size() && items[end].standIn == standIn) ++end;
+        f(media_[standIn], first, end - first);
+    }
+}
+
+template <int N, bool Surfaces>
+std::uint8_t BatchTracer<N, Surfaces>::standInAfter(std::int64_t scatterings) const {
+    const auto& after = options_.approximations.similarityAfter;
+    return after && scatterings >= *after ? 1 : 0;
+}
+
+template <int N, bool Surfaces>
+std::uint32_t BatchTracer<N, Surfaces>::mediumIndex(std::uint8_t standIn,
+                                                    const InteriorStack& inside) const {
+    const auto setSize = static_cast<std::uint32_t>(1 + scene_.interiors.size());
+    return standIn * setSize + interiors_->medium(inside);
+}
+
+/// With octaves, one of them by chance, in proportion to its amount: light of octave i is a^i x
+/// sigma_s x phase(c^i g) x transmittance of b^i sigma_t, found by next-event estimation and by the
+/// flight that follows, which ends by leaving the medium.
+template <int N, bool Surfaces>
+auto BatchTracer<N, Surfaces>::onwardFrom(Path& p) const -> Onward {
+    const int octaves = options_.approximations.octaves;
+    if (octaves == 0) return {standInAfter(p.scatterings + 1)};
+    const int i = octave::draw(octaves, p.random.uniform());
+    return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};
+}
+
+template <int N, bool Surfaces>
+void BatchTracer<N, Surfaces>::clampRadiance(Rgb& radiance) {
+    const auto most = static_cast<float>(options_.approximations.clamp);
+    const float brightest = radiance.maximum();
+    if (!(most > 0 && brightest > most)) return;
+    ++counters_.clamped;
+    if (std::isfinite(brightest)) radiance *= most / brightest;  // the film counts others
+}
+
+}  // namespace woodcock
