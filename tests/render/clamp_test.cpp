@@ -25,7 +25,8 @@ struct Samples {
     std::uint64_t clamped;
 };
 Samples trace(const Scene& scene, double clamp) {
-    PathTracer::Options options{16, 16};
+    PathTracer::Options options;
+    options.width = options.height = 16;
     options.approximations.clamp = clamp;
     std::vector<PathJob> jobs;
     for (int y = 0; y < 16; ++y)

@@ -146,7 +146,7 @@ TEST(Octaves, AroundALampByQuadrature) {
 TEST(Octaves, TouchNoSurfaces) {
     const Scene scene = sceneFrom(
         "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\ncolour = 0.5\n"
-        "[[surface]]\nmaterial = \"grey\"\nplane = { height = -1.5 }\n"
+        "[[surface]]\nmaterial = \"grey\"\nbox = { min = [-9, -2, -9], max = [9, -1.5, 9] }\n"
         "[[surface]]\nmaterial = \"grey\"\nsphere = { centre = [0.7, 0, 1], radius = 0.6 }\n"
         "[[light]]\ntype = \"sun\"\ndirection = [1, -2, 0]\nangular_diameter = 5\n"
         "[[light]]\ntype = \"environment\"\nradiance = 0.3\n" +

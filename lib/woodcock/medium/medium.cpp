@@ -48,7 +48,7 @@ const MajorantGrid& MediumPart::marchCells() const {
 }
 
 void MediumPart::takeCoefficients() {
-    extinction_ = d_.absorption + d_.scattering * std::max(1.0f, loss_);
+    extinction_ = d_.absorption + d_.scattering * (d_.albedo ? std::max(1.0f, loss_) : 1.0f);
     for (int c = 0; c < 3; ++c)
         if (!(d_.scattering[c] >= 0 && d_.absorption[c] >= 0 && std::isfinite(extinction()[c])))
             throw inputError("sigma_a is {} and sigma_s is {}; expected finite numbers >= 0",
