@@ -119,8 +119,9 @@ TEST(ParseErrors, OfVolumes) {
               "known keys: grid, scale");
     EXPECT_EQ(volumeMistake("albedo = [1, 1, 1.01]"),
               "scene.toml:3:17: volume[0].albedo[2] is 1.01; it must lie between 0 and 1");
-    EXPECT_EQ(volumeMistake("storage = \"double\""),
-              "scene.toml:3:11: unknown storage 'double'; known: auto, half, float");
+    EXPECT_EQ(
+        volumeMistake("storage = \"double\""),
+        "scene.toml:3:11: unknown storage 'double'; known: auto, half, float, fixed16, fixed8");
 }
 
 TEST(ParseErrors, OfBoxes) {

@@ -6,6 +6,8 @@
 #include <tbb/parallel_reduce.h>
 
 #include <atomic>
+#include <cmath>
+#include <limits>
 #include <unordered_set>
 
 #include "woodcock/base/error.h"
@@ -55,8 +57,13 @@ public:
         field_.background_ = source.background;
         field_.brickRanges_.resize(source.leafOrigins.size());
         if (storage == Storage::Auto) storage = survivesHalf() ? Storage::Half : Storage::Float;
+        field_.storage_ = storage;
         if (storage == Storage::Half)
             copyAsHalf();
+        else if (storage == Storage::Fixed16)
+            copyAsFixed(field_.words_);
+        else if (storage == Storage::Fixed8)
+            copyAsFixed(field_.bytes_);
         else
             copyAsFloat();
         placeBlocks();
@@ -100,8 +107,7 @@ private:
 
     void copyAsHalf() {
         const std::size_t n = source_.leafOrigins.size();
-        field_.half_ = true;
-        field_.halves_ = std::make_unique_for_overwrite<std::uint16_t[]>(n * brickValues());
+        field_.words_ = std::make_unique_for_overwrite<std::uint16_t[]>(n * brickValues());
         std::atomic<bool> overflow{false};
         forEachLeaf([&](std::size_t i, std::span<const float> values) {
             const Range exact = rangeOfBrick(values);
@@ -111,12 +117,41 @@ private:
             }
             const auto rounded = [](float v) { return decodeHalf(encodeHalf(v)); };
             field_.brickRanges_[i] = {rounded(exact.min), rounded(exact.max)};  // rounds in order
-            std::transform(values.begin(), values.end(), &field_.halves_[i * brickValues()],
+            std::transform(values.begin(), values.end(), &field_.words_[i * brickValues()],
                            encodeHalf);
         });
         if (overflow)
             throw inputError("a voxel exceeds {}, the largest half; use float storage",
                              largestHalf);
+    }
+
+    template <class Code>
+    void copyAsFixed(std::unique_ptr<Code[]>& codes) {
+        constexpr unsigned last = std::numeric_limits<Code>::max();
+        const std::size_t n = source_.leafOrigins.size(), channels = field_.channelCount();
+        codes = std::make_unique_for_overwrite<Code[]>(n * brickValues());
+        field_.scales_.resize(n * channels);
+        std::vector<float> errors(n);
+        forEachLeaf([&](std::size_t i, std::span<const float> values) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                Range exact{values[c], values[c]};
+                for (std::size_t j = c; j < values.size(); j += channels)
+                    exact.add({values[j], values[j]});
+                const FixedScale scale = FixedScale::of(exact.min, exact.max, last);
+                field_.scales_[i * channels + c] = scale;
+                const auto stored = [&](float v) { return scale.value(scale.code(v, last)); };
+                const Range range{stored(exact.min), stored(exact.max)};  // rounds in order
+                if (c == 0) field_.brickRanges_[i] = range;
+                field_.brickRanges_[i].add(range);
+                for (std::size_t j = c; j < values.size(); j += channels) {
+                    const unsigned code = scale.code(values[j], last);
+                    codes[i * brickValues() + j] = static_cast<Code>(code);
+                    errors[i] = std::max(errors[i], std::abs(scale.value(code) - values[j]));
+                }
+            }
+        });
+        for (float error : errors)
+            field_.largestFixedError_ = std::max(field_.largestFixedError_, error);
     }
 
     void placeBlocks() {
@@ -259,9 +294,12 @@ Range Field::storedRange(std::uint32_t ref, Vec3i n) const {
 }
 
 std::size_t Field::bytes() const {
+    const std::size_t bytesPerValue = storage_ == Storage::Float    ? 4
+                                      : storage_ == Storage::Fixed8 ? 1
+                                                                    : 2;
     return sizeof(*this) - sizeof(table_) + table_.bytes() + constants_.capacity() * sizeof(float) +
-           brickCount() * (sizeof(Range) +
-                           512 * channelCount() * (half_ ? sizeof(std::uint16_t) : sizeof(float)));
+           scales_.capacity() * sizeof(FixedScale) +
+           brickCount() * (sizeof(Range) + 512 * channelCount() * bytesPerValue);
 }
 
 }  // namespace woodcock

@@ -9,6 +9,7 @@
 #include "woodcock/base/vec.h"
 #include "woodcock/grid/block_table.h"
 #include "woodcock/grid/field_source.h"
+#include "woodcock/grid/fixed_scale.h"
 #include "woodcock/grid/half.h"
 
 namespace woodcock {
@@ -21,12 +22,14 @@ struct Range {
 };
 
 /// A sparse grid made for reading: 8x8x8 bricks in flat memory, found in O(1). Values sit at
-/// integer index positions and are interpolated trilinearly; outside everything lies the
-/// background. Knows nothing of sigma.
+/// integer index positions and are interpolated trilinearly, unless it was told to take the nearest
+/// one; outside everything lies the background. Knows nothing of sigma.
 class Field {
 public:
     int channels() const { return channels_; }
-    Storage storage() const { return half_ ? Storage::Half : Storage::Float; }
+    Storage storage() const { return storage_; }
+    /// In fixed storage: the largest difference between a voxel and its source. Otherwise 0.
+    float largestFixedError() const { return largestFixedError_; }
     float background(int channel = 0) const { return background_[static_cast<size_t>(channel)]; }
 
     /// Index-space box outside which the reconstruction is the background: one voxel around all
@@ -39,6 +42,14 @@ public:
         return support_.empty() ? Vec3d{} : max(support_.lower, min(support_.upper, p));
     }
 
+    /// Nearest is biased: every voxel fills the unit cube around its position, and trilinear() and
+    /// stochastic() say what fills `p`. Ranges and support hold for both.
+    Lookup lookup() const { return nearest_ ? Lookup::Nearest : Lookup::Trilinear; }
+    void setLookup(Lookup lookup) {
+        nearest_ = lookup == Lookup::Nearest;
+        jitterUnit_ = nearest_ ? 0 : 0x1p-21, firstJitter_ = nearest_ ? 0.5 : 0x1p-22;
+    }
+
     /// The stored value of voxel `v` (any index).
     float voxel(Vec3i v, int channel = 0) const {
         return valueOf(*table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value, v, channel);
@@ -46,6 +57,7 @@ public:
 
     /// Trilinear interpolation at index-space position `p`, at most 2^31 voxels away.
     float trilinear(Vec3d p, int channel = 0) const {
+        if (nearest_) return voxel(nearestVoxel(p), channel);
         const Vec3i v = floorToInt(p);
         const Vec3d f = p - v.as<double>();
         const auto lerp = [](double t, double a, double b) { return a + t * (b - a); };
@@ -61,12 +73,13 @@ public:
     /// trilinear(p), at an eighth of the loads. Use only where the value enters linearly.
     /// Pharr et al. 2024, "Filtering After Shading With Stochastic Texture Filtering".
     Vec3i stochasticVoxel(Vec3d p, std::uint64_t bits) const {
-        constexpr double unit = 0x1p-21;
-        return floorToInt(p + Vec3d{static_cast<double>(bits & 0x1fffff) + 0.5,
-                                    static_cast<double>((bits >> 21) & 0x1fffff) + 0.5,
-                                    static_cast<double>((bits >> 42) & 0x1fffff) + 0.5} *
-                                  unit);
+        const auto jitter = [&](std::uint64_t part) {  // in (0, 1)
+            return static_cast<double>(part & 0x1fffff) * jitterUnit_ + firstJitter_;
+        };
+        return floorToInt(p + Vec3d{jitter(bits), jitter(bits >> 21), jitter(bits >> 42)});
     }
+    /// The voxel next to `p`; of two, the upper one.
+    static Vec3i nearestVoxel(Vec3d p) { return floorToInt(p + Vec3d{0.5, 0.5, 0.5}); }
     float stochastic(Vec3d p, std::uint64_t bits, int channel = 0) const {
         return voxel(stochasticVoxel(p, bits), channel);
     }
@@ -107,15 +120,19 @@ private:
         return static_cast<std::size_t>((v.x & 7) << 6 | (v.y & 7) << 3 | (v.z & 7));
     }
     float valueOf(std::uint32_t ref, Vec3i v, int channel) const {
-        if (ref & constantBit)
-            return constants_[(ref & ~constantBit) * channelCount() + static_cast<size_t>(channel)];
-        return stored((std::size_t{ref} * 512 + offset(v)) * channelCount() +
-                      static_cast<size_t>(channel));
+        const auto c = static_cast<std::size_t>(channel);
+        if (ref & constantBit) return constants_[(ref & ~constantBit) * channelCount() + c];
+        const std::size_t i = (std::size_t{ref} * 512 + offset(v)) * channelCount() + c;
+        if (storage_ == Storage::Float) return floats_[i];
+        if (storage_ == Storage::Half) return decodeHalf(words_[i]);
+        return scales_[std::size_t{ref} * channelCount() + c].value(
+            storage_ == Storage::Fixed16 ? words_[i] : bytes_[i]);
     }
-    float stored(std::size_t i) const { return half_ ? decodeHalf(halves_[i]) : floats_[i]; }
 
     int channels_ = 1;
-    bool half_ = false;
+    Storage storage_ = Storage::Float;
+    bool nearest_ = false;
+    double jitterUnit_ = 0x1p-21, firstJitter_ = 0x1p-22;  // of stochasticVoxel()
     std::array<float, 3> background_{};
     Box3d support_;
     Range range_;
@@ -124,10 +141,14 @@ private:
     std::vector<Range> brickRanges_;
     // 512 x channels values a brick, in one of these. No vectors: those would fill them with zeros.
     std::unique_ptr<float[]> floats_;
-    std::unique_ptr<std::uint16_t[]> halves_;
+    std::unique_ptr<std::uint16_t[]> words_;  // halves, or codes
+    std::unique_ptr<std::uint8_t[]> bytes_;
+    std::vector<FixedScale> scales_;  // of codes: one for each brick and channel
+    float largestFixedError_ = 0;
 };
 
-/// Builds the field in parallel. Errors: Input when half storage is asked for values beyond 65504.
+/// Builds the field in parallel. Errors: Input when half storage is asked for values beyond 65504,
+/// or fixed storage for those that FixedScale refuses.
 Field buildField(const FieldSource& source, Storage storage);
 
 }  // namespace woodcock

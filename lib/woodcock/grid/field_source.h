@@ -13,10 +13,14 @@
 namespace woodcock {
 
 /// How a field keeps its voxels. Auto takes half where every value survives it exactly (grids that
-/// were saved as half, say), float otherwise.
-enum class Storage { Auto, Half, Float };
+/// were saved as half, say), float otherwise. Fixed16 and Fixed8 are integers of so many bits
+/// between the smallest and the largest value of a brick and channel: see FixedScale.
+enum class Storage { Auto, Half, Float, Fixed16, Fixed8 };
 /// Their names in scene files and options, in the same order.
-inline const std::array<std::string, 3> storageNames{"auto", "half", "float"};
+inline const std::array<std::string, 5> storageNames{"auto", "half", "float", "fixed16", "fixed8"};
+inline const std::string& storageName(Storage storage) {
+    return storageNames[static_cast<std::size_t>(storage)];
+}
 
 /// How a field is read between its voxels.
 enum class Lookup {

@@ -48,6 +48,8 @@ std::string requireSoundValues(const VdbFile& file, const GridListing& grid,
                      place(file, grid), faults);
 }
 
+double largestOf(Range r) { return std::max(std::abs(r.min), std::abs(r.max)); }
+
 }  // namespace
 
 std::string describeFaults(const GridStatistics& statistics, bool nonNegative) {
@@ -95,6 +97,11 @@ LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOpti
     } catch (const Error& e) {
         throw Error(e.kind(), fmt::format("{}: {}", place(file, grid), e.what()));
     }
+    if (const float error = loaded.field.largestFixedError(); error > 0)
+        loaded.notes.push_back(fmt::format(
+            "{}: stored as {}: voxels differ by at most {:.3g}, {:.2g} % of the largest",
+            place(file, grid), storageName(storage), error,
+            100 * double{error} / largestOf(loaded.field.range())));
     loaded.worldFromIndex = *grid.worldFromIndex;
     loaded.statistics = source.statistics;
     return loaded;

@@ -31,17 +31,18 @@ Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, doubl
                 add(s.t1 - s.t0, [&](int c) { return double{part.field()->background(c)}; });
                 continue;
             }
+            const Field& field = *part.field();
+            const double shift = field.lookup() == Lookup::Nearest ? 0.5 : 0;
             planes = {s.t0, s.t1};
             for (int i = 0; i < 3; ++i) {
                 if (ray.direction[i] == 0) continue;
-                const double a = ray.at(s.t0)[i], b = ray.at(s.t1)[i];
+                const double a = ray.at(s.t0)[i] + shift, b = ray.at(s.t1)[i] + shift;
                 for (double x = std::ceil(std::min(a, b)); x <= std::floor(std::max(a, b)); ++x) {
-                    const double t = (x - ray.origin[i]) / ray.direction[i];
+                    const double t = (x - shift - ray.origin[i]) / ray.direction[i];
                     if (t > s.t0 && t < s.t1) planes.push_back(t);
                 }
             }
             std::sort(planes.begin(), planes.end());
-            const Field& field = *part.field();
             for (std::size_t i = 0; i + 1 < planes.size(); ++i) {
                 const double middle = (planes[i] + planes[i + 1]) / 2;
                 const double half = (planes[i + 1] - planes[i]) / 2;

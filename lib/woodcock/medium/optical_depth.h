@@ -10,7 +10,8 @@ struct Medium;
 
 /// Exact optical depth of every channel along [t0, t1] of a world ray (no randomness, up to
 /// rounding): trilinear density is a cubic along a ray inside a cell of the voxel lattice, where
-/// two-point Gauss-Legendre is exact. Slow: the reference for the estimators above. Not for parts
+/// two-point Gauss-Legendre is exact; nearest look-ups are constant between planes halfway between
+/// voxels. Slow: the reference for the estimators above. Not for parts
 /// whose extinction varies with the albedo.
 Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1);
 

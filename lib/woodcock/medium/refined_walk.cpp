@@ -53,6 +53,14 @@ struct Lattice {
     }
 };
 
+/// Bounds of what a ray reads from a to b, both in the unit cube from voxel `v` on; of nearest
+/// look-ups, in the one around it.
+Range between(const Field& field, Vec3i v, Vec3d a, Vec3d b, int channel) {
+    if (field.lookup() == Lookup::Trilinear) return Lattice(field, v, channel).between(a, b);
+    const float value = field.voxel(v, channel);
+    return {value, value};
+}
+
 /// base + more, not rounded below it.
 float above(float base, double more) { return static_cast<float>((base + more) * (1 + slack)); }
 
@@ -77,17 +85,18 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
     stale_ = false;
     tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) > shallowCell;
     if (!tight_) return {t, cell_.t1, cell_.range};
+    const Field& field = *part.field();
+    const double shift = field.lookup() == Lookup::Nearest ? 0.5 : 0;  // cubes around voxels
     const Vec3d from = ray.at(t);
-    Vec3i v = floorToInt(from);
+    Vec3i v = floorToInt(from + Vec3d{shift, shift, shift});
     double end = cell_.t1;
     for (int i = 0; i < 3; ++i) {
         const double d = ray.direction[i];
         if (d == 0) continue;
-        const auto faceAhead = [&] { return (v[i] + (d > 0 ? 1 : 0) - ray.origin[i]) / d; };
+        const auto faceAhead = [&] { return (v[i] - shift + (d > 0 ? 1 : 0) - ray.origin[i]) / d; };
         if (faceAhead() <= t) v[i] += d > 0 ? 1 : -1;  // `from` lies on a face, up to rounding
         end = std::min(end, faceAhead());
     }
-    const Field& field = *part.field();
     const bool grey = field.channels() == 1;
     Range range;
     while (true) {
@@ -97,7 +106,7 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
         for (int c = 0; c < field.channels(); ++c) {
             if (!grey && !(live_ >> c & 1)) continue;
             Range& r = channel[static_cast<std::size_t>(c)];
-            r = Lattice(field, v, c).between(from, ray.at(end));
+            r = between(field, v, from, ray.at(end), c);
             const double share = grey ? 1 : part.extinction()[c] / largest;
             largestMin = std::max(largestMin, static_cast<float>(r.min * share));
             range.min = std::min(range.min, r.min);

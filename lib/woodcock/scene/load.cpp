@@ -23,7 +23,7 @@ enum class Purpose { Density, Coefficient, Albedo };
 class Loader {
 public:
     /// `usual`: the storage of volumes that say nothing.
-    explicit Loader(Storage usual) : usual_(usual) {}
+    Loader(Storage usual, Lookup lookup) : usual_(usual), lookup_(lookup) {}
 
     const VdbFile& file(const std::filesystem::path& path) {
         const auto found = files_.find(path);
@@ -45,6 +45,7 @@ public:
         LoadedGrid grid = loadGrid(vdb, found.grid, options);
         for (std::string& text : grid.notes) note(std::move(text));
         if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
+        grid.field.setLookup(lookup_);
         const LoadedField loaded{std::make_shared<Field>(std::move(grid.field)),
                                  grid.worldFromIndex, found.grid.uniqueName};
         return fields_[key] = loaded;
@@ -72,6 +73,7 @@ public:
                 "float holds; scale and offset turn its values into kelvins",
                 found.grid.uniqueName, vdb.path.string(),
                 b.scale * double{grid.statistics.voxels.max[0]} + b.offset);
+        grid.field.setLookup(lookup_);
         return {std::make_shared<Field>(std::move(grid.field)), grid.worldFromIndex,
                 found.grid.uniqueName};
     }
@@ -88,6 +90,7 @@ private:
     }
 
     Storage usual_;
+    Lookup lookup_;
     std::map<std::filesystem::path, VdbFile> files_;
     std::map<std::tuple<std::filesystem::path, std::string, Storage, bool, Purpose>, LoadedField>
         fields_;
@@ -170,7 +173,7 @@ EnvironmentMap loadMap(const LightDescription& light) {
 
 LoadedScene loadScene(const SceneDescription& scene) {
     LoadedScene loaded;
-    Loader loader(scene.render.storage);
+    Loader loader(scene.render.storage, scene.render.lookup);
     for (size_t i = 0; i < scene.volumes.size(); ++i)
         loaded.volumes.push_back(loadVolume(scene, i, loader));
     for (size_t i = 0; i < scene.lights.size(); ++i)

@@ -67,7 +67,7 @@ void write(SceneWriter& out, const VolumeDescription& volume) {
     if (volume.worldFromObject != identity) out.line("matrix", tomlMatrix(volume.worldFromObject));
     if (!volume.inside.empty()) out.line("inside", tomlText(volume.inside));
     if (volume.storage != defaults.storage)
-        out.line("storage", tomlText(storageNames[static_cast<std::size_t>(volume.storage)]));
+        out.line("storage", tomlText(storageName(volume.storage)));
     if (volume.repair) out.line("repair", "true");
 }
 
@@ -164,8 +164,7 @@ void write(SceneWriter& out, const RenderDescription& render) {
     if (a.similarityAfter) out.line("similarity_after", fmt::format("{}", *a.similarityAfter));
     if (a.octaves != 0) out.line("octaves", fmt::format("{}", a.octaves));
     if (a.clamp != 0) out.line("clamp", tomlNumber(a.clamp));
-    if (render.storage != Storage::Auto)
-        out.line("storage", tomlText(storageNames[static_cast<std::size_t>(render.storage)]));
+    if (render.storage != Storage::Auto) out.line("storage", tomlText(storageName(render.storage)));
     if (render.lookup == Lookup::Nearest) out.line("lookup", "\"nearest\"");
     if (render.levelOfDetail != 0)
         out.line("level_of_detail", tomlNumber(render.levelOfDetail), "pixels");
