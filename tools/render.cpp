@@ -231,7 +231,9 @@ void run(const RenderOptions& options, const std::string& commandLine) {
         writeTextFile(options.writeScene,
                       writeScene(description, options.writeScene.parent_path()));
     if (!options.rendersImages()) return;
-    const Scene scene = buildScene(description, std::move(loaded));
+    std::vector<std::string> notes;
+    const Scene scene = buildScene(description, std::move(loaded), &notes);
+    for (const std::string& note : notes) spdlog::info("{}", note);
     const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart;
     if (interrupted()) throw CLI::RuntimeError(interruptedCode);
     for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);

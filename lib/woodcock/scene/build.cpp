@@ -4,6 +4,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/scene/build_medium.h"
 #include "woodcock/scene/build_surfaces.h"
+#include "woodcock/scene/level_of_detail.h"
 
 namespace woodcock {
 namespace {
@@ -81,12 +82,15 @@ Affine3d worldFromLight(const EnvironmentDescription& environment) {
     return up * Affine3d::rotate(1, environment.rotation);
 }
 
-Scene buildScene(const SceneDescription& description, LoadedScene loaded) {
+Scene buildScene(const SceneDescription& description, LoadedScene loaded,
+                 std::vector<std::string>* notes) {
+    const Camera camera = buildCamera(description.camera);
+    for (std::string& note : coarsenForCamera(description, camera, loaded))
+        if (notes) notes->push_back(std::move(note));
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
     return {buildMedium(description, loaded, ""),
-            buildLights(description, std::move(loaded.environmentMaps), surfaces),
-            buildCamera(description.camera), std::move(surfaces.set),
-            std::move(surfaces.interiors)};
+            buildLights(description, std::move(loaded.environmentMaps), surfaces), camera,
+            std::move(surfaces.set), std::move(surfaces.interiors)};
 }
 
 }  // namespace woodcock

@@ -9,8 +9,10 @@
 namespace woodcock {
 
 /// The scene that a render draws, from a complete description (see completeScene) and what was
-/// loaded for it. Throws Error{Usage} where the description is not complete.
-Scene buildScene(const SceneDescription& description, LoadedScene loaded);
+/// loaded for it. Adds to `notes` what the user should know. Throws Error{Usage} where the
+/// description is not complete.
+Scene buildScene(const SceneDescription& description, LoadedScene loaded,
+                 std::vector<std::string>* notes = nullptr);
 
 /// What the session is told of a scene file's [render]: all of the image, by all cores.
 RenderSettings renderSettings(const RenderDescription& render);
