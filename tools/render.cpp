@@ -40,6 +40,7 @@ SceneDescription describeScene(const RenderOptions& options) {
     render.seed = options.seed.value_or(render.seed);
     render.timeLimit = options.timeLimit.value_or(render.timeLimit);
     render.noise = options.noise.value_or(render.noise);
+    render.adaptive |= options.adaptive;
 
     OutputDescription& output = scene.output;
     if (!options.outputs.empty()) {
@@ -141,8 +142,9 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
 void checkMemory(const RenderSettings& settings, const SceneDescription& scene) {
     const auto crop = settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
     constexpr double encoded = 32;  // bytes of a pixel in an image file with all layers, about
-    const double needed =
-        double(crop.width()) * crop.height() * (double(sizeof(Film::Pixel)) + encoded);
+    const double kept = double(sizeof(Film::Pixel)) +
+                        (settings.featureLayers ? double(sizeof(Film::FeaturePixel)) : 0);
+    const double needed = double(crop.width()) * crop.height() * (kept + encoded);
     const auto possible = static_cast<double>(memoryLimit());
     if (needed <= possible) return;
     const double share = std::sqrt(possible / needed);
@@ -166,12 +168,19 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
                              p.y0, p.x1, p.y1, render.width, render.height);
         settings.crop = Film::Window{p.x0, p.y0, p.x1, p.y1};
     }
+    if (settings.adaptive && options.samples)
+        throw usageError(
+            "{} and --samples contradict each other: how many samples a pixel gets follows from "
+            "its first ones; give --spp{}",
+            options.adaptive ? "--adaptive" : "the scene's adaptive sampling",
+            options.adaptive ? "" : ", or --set render.adaptive=false");
     const SampleRange samples = options.samples.value_or(SampleRange{0, render.spp});
     settings.firstSample = samples.first;
     settings.endSample = samples.end;
     settings.threads = options.threads.value_or(0);
     const ExrLayers layers = layersOf(scene);
-    settings.depthLayers = layers.depth || layers.normal || layers.transmittance;
+    settings.depthLayers = layers.depth || layers.transmittance;
+    settings.featureLayers = layers.albedo || layers.normal;
     checkMemory(settings, scene);
     return settings;
 }
@@ -196,9 +205,9 @@ RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settin
         return !interrupted();
     });
     progress.finish(result);
-    spdlog::info("{} in {}: samples {}:{} of each pixel, {}", stopReasonName(result.reason),
+    spdlog::info("{} in {}: samples {}:{} of {} pixel, {}", stopReasonName(result.reason),
                  formatDuration(result.seconds), settings.firstSample, result.endSample,
-                 noiseText(result.film.noise()));
+                 settings.adaptive ? "a mean" : "each", noiseText(result.film.noise()));
     if (const std::uint64_t count = result.counters.clamped)
         spdlog::info("{} of {} paths were clamped to a radiance of {:g}", count,
                      result.counters.paths, settings.approximations.clamp);
@@ -242,7 +251,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     const std::string digest = sceneDigest(description);
     if (result.film.mostSamples() > 0) {
         outputs.write(result.film, {settings.firstSample, result.endSample, settings.seed,
-                                    result.seconds, digest, commandLine});
+                                    result.seconds, digest, commandLine, settings.adaptive});
         for (const std::filesystem::path& file : files) spdlog::info("wrote {}", file.string());
     } else {
         spdlog::warn("interrupted before anything was rendered: nothing is written");

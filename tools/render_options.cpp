@@ -6,6 +6,8 @@
 
 #include "option_kinds.h"
 #include "scene_input.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/image/write_exr.h"
 
 namespace woodcock::tool {
 
@@ -15,8 +17,7 @@ void addOutput(CLI::App& command, RenderOptions& o) {
     std::vector<CLI::Option*> options{
         addList(command, "-o,--output", o.outputs, "Image to write: .exr, .png or .jpg")
             ->type_name("FILE"),
-        addList(command, "--layers", o.layers,
-                "Further EXR layers: depth, transmittance, samples, error")
+        addList(command, "--layers", o.layers, "Further EXR layers: " + joinNames(layerNames()))
             ->delimiter(',')
             ->type_name("LAYER,..."),
         command.add_flag("--half", o.half, "EXR colour in half precision"),
@@ -54,6 +55,8 @@ void addRendering(CLI::App& command, RenderOptions& o) {
         addParsed(command, "--noise", o.noise, parseFraction,
                   "Stop when the mean relative standard error is below this, such as 1%")
             ->type_name("FRACTION"),
+        command.add_flag("--adaptive", o.adaptive,
+                         "More of the samples where the relative error is larger"),
         addCount(command, "--threads", o.threads, 0, 4096, "0: one for each core")};
     for (CLI::Option* option : options) option->group("Rendering");
 }

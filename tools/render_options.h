@@ -24,6 +24,7 @@ struct RenderOptions {
     std::optional<SampleRange> samples;
     std::optional<std::uint64_t> seed;
     std::optional<double> timeLimit, noise;
+    bool adaptive = false;
     std::optional<int> threads;
     std::vector<std::string> overrides;
     std::optional<Storage> storage;

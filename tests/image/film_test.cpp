@@ -30,6 +30,38 @@ TEST(Film, MeansAndStandardErrorOfAFewSamples) {
     EXPECT_EQ(film.radiance(1, 1), Rgb(0.0f));
 }
 
+/// Where a pixel missed what its neighbours found, they know better.
+TEST(Film, ErrorIsNoLessThanThatAround) {
+    Film film = smallFilm();
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 4; ++x)
+            for (int i = 0; i < 4; ++i)  // a variance of 4 in the two bright ones
+                film.add(x, y, FilmSample{Rgb(i == 0 && x == 0 && y < 2 ? 4.0f : 0.0f), 1});
+    EXPECT_FLOAT_EQ(film.standardError(0, 0)[0], 1);                        // its own
+    EXPECT_FLOAT_EQ(film.standardError(0, 2)[0], std::sqrt(4.0f / 4 / 4));  // 1 of 4 is bright
+    EXPECT_FLOAT_EQ(film.standardError(1, 1)[0], std::sqrt(8.0f / 9 / 4));  // 2 of 9
+    EXPECT_FLOAT_EQ(film.variance(1, 1)[0], 8.0f / 9 / 4);
+    EXPECT_EQ(film.standardError(2, 1), Rgb(0.0f));
+    // Pixels with more samples have the smaller error, by the same variance of one.
+    for (int i = 0; i < 12; ++i) film.add(1, 1, FilmSample{Rgb(0.0f), 1});
+    EXPECT_FLOAT_EQ(film.standardError(1, 1)[0], std::sqrt(8.0f / 9 / 16));
+}
+
+TEST(Film, FeaturesAreMeansOverRays) {
+    Film film(2, 1, {0, 0, 2, 1}, {.surfaces = false, .features = true}), other = film;
+    film.add(0, 0, DepthSample{Rgb(0.0f), 1, 1, Rgb(0.5f, 1.5f, 1), {0, 0, 1}});
+    film.add(0, 0, DepthSample{Rgb(1.0f), 0, 0});
+    EXPECT_EQ(film.albedo(0, 0), Rgb(0.25f, 0.75f, 0.5f));
+    EXPECT_EQ(film.normal(0, 0), (Vec3f{0, 0, 0.5f}));
+    EXPECT_EQ(film.albedo(1, 0), Rgb(0.0f));
+    other.add(0, 0, DepthSample{Rgb(0.0f), 1, 1, Rgb(1, 3, 1), {0, 1, 0}});
+    other.add(0, 0, DepthSample{Rgb(0.0f), 1, 1, Rgb(1, 3, 1), {0, 1, 0}});
+    film.merge(other);
+    EXPECT_EQ(film.albedo(0, 0), Rgb(0.625f, 1, 0.75f));  // never above 1
+    EXPECT_EQ(film.normal(0, 0), (Vec3f{0, 0.5f, 0.25f}));
+    EXPECT_EQ(smallFilm().normal(0, 0), (Vec3f{}));
+}
+
 TEST(Film, NothingIsNaNWithoutSamples) {
     Film film = smallFilm();
     film.add(0, 0, FilmSample{Rgb(1.0f), 1});

@@ -83,6 +83,24 @@ TEST_F(WriteExr, LayersOnRequest) {
     EXPECT_FLOAT_EQ(image.at(1, 2, "error.G"), 1.2f);
 }
 
+TEST_F(WriteExr, LayersForDenoisers) {
+    film_ = Film(6, 4, {1, 2, 4, 4}, {.surfaces = false, .features = true});
+    film_.add(2, 3, DepthSample{Rgb(0.0f), 1, 1, Rgb(0.5f, 0.25f, 0), {0, 0.5f, -1}});
+    for (const float v : {1.0f, 3.0f}) film_.add(2, 3, FilmSample{Rgb(v, 2 * v, 0), 1});
+    const test::ReadBack image =
+        write({true, layersFromNames({"albedo", "normal", "error", "variance"}), {}});
+    EXPECT_EQ(image.at(2, 3, "albedo.R"), 0.5f);
+    EXPECT_EQ(image.at(2, 3, "albedo.G"), 0.25f);
+    EXPECT_EQ(image.at(2, 3, "normal.Y"), 0.5f);
+    EXPECT_EQ(image.at(2, 3, "normal.Z"), -1.0f);
+    EXPECT_EQ(image.at(1, 3, "albedo.R"), 0.0f);
+    EXPECT_FLOAT_EQ(image.at(2, 3, "variance.R"), 1.0f);
+    EXPECT_FLOAT_EQ(image.at(2, 3, "variance.G"), 4.0f);
+    EXPECT_EQ(image.at(2, 3, "variance.B"), 0.0f);
+    for (const char* layer : {"albedo.R", "normal.X", "variance.R"})
+        EXPECT_EQ(image.types.at(layer), "float");
+}
+
 TEST_F(WriteExr, HeaderSaysHowItWasMade) {
     film_.add(1, 3, FilmSample{Rgb(std::nanf("")), 0});
     ExrSettings settings;
@@ -97,8 +115,18 @@ TEST_F(WriteExr, HeaderSaysHowItWasMade) {
     EXPECT_EQ(attributes.at("woodcock/nonFinite"), "1");
     EXPECT_EQ(attributes.at("woodcock/commandLine"), "woodcock render a");
     EXPECT_EQ(attributes.at("compression"), "zip");
+    EXPECT_FALSE(attributes.contains("woodcock/adaptive"));
     EXPECT_EQ(attributes.at("chromaticities"),
               "0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767");
+}
+
+/// The range is then a mean, which no pixel need have.
+TEST_F(WriteExr, HeaderTellsAdaptiveSamples) {
+    metadata_.firstSample = 0, metadata_.endSample = 1, metadata_.adaptive = true;
+    const auto attributes = write({}).attributes;
+    EXPECT_EQ(attributes.at("woodcock/adaptive"), "1");
+    EXPECT_EQ(attributes.at("woodcock/samples"), "1");
+    EXPECT_EQ(attributes.at("woodcock/samplesAtMost"), "2");
 }
 
 TEST(ExrLayers, UnknownNamesListTheKnown) {
@@ -109,7 +137,7 @@ TEST(ExrLayers, UnknownNamesListTheKnown) {
         EXPECT_EQ(e.kind(), ErrorKind::Usage);
         EXPECT_STREQ(e.what(),
                      "unknown layer 'sample'; did you mean 'samples'? known layers: depth, "
-                     "normal, transmittance, samples, error");
+                     "albedo, normal, transmittance, samples, error, variance");
     }
 }
 

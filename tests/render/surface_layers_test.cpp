@@ -33,7 +33,7 @@ const std::string camera = pencilCamera({6, 6, 0}, {-1, -1, 0});
 
 Film film(const std::string& text, int samples = 16) {
     return renderScene(sceneFrom(text + camera),
-                       {.width = 4, .height = 4, .samples = samples, .depthLayers = true})
+                       {.width = 4, .height = 4, .samples = samples, .featureLayers = true})
         .film;
 }
 

@@ -48,6 +48,7 @@ RenderResult renderScene(const Scene& scene, const Picture& picture) {
     settings.seed = picture.seed;
     settings.maxScatterings = picture.maxScatterings;
     settings.depthLayers = picture.depthLayers;
+    settings.featureLayers = picture.featureLayers;
     RenderResult result = render(scene, settings);
     if (const auto count = result.film.nonFiniteCount())
         throw std::runtime_error(fmt::format("{} samples are not finite", count));

@@ -21,7 +21,7 @@ struct Picture {
     int width = 8, height = 8, samples = 16;
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings{};
-    bool depthLayers = false;
+    bool depthLayers = false, featureLayers = false;
 };
 
 /// Renders; throws where a sample was NaN or infinite.

@@ -21,7 +21,7 @@ constexpr const char* errorPrefix = "error.";  // Woodcock's standard errors: er
 constexpr float nothingThere = 1e10f;  // depth where a ray meets nothing, ours and Blender's
 
 bool isOfPicture(const ImagePlane& plane) {
-    return plane.layer != "error" && plane.name() != "samples";
+    return plane.layer != "error" && plane.layer != "variance" && plane.name() != "samples";
 }
 
 std::vector<std::string> planeNames(const LayeredImage& image) {

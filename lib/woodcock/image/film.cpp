@@ -2,6 +2,7 @@
 #include "woodcock/image/film.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -17,15 +18,31 @@ Rgb mean(const double (&sum)[3], std::uint64_t n) {
     return Rgb::map([&](int i) { return static_cast<float>(sum[i] / static_cast<double>(n)); });
 }
 
-float standardErrorOfMean(double sum, double sumOfSquares, double n) {
-    // Equal samples may leave a difference below zero by rounding.
-    const double variance = std::max(0.0, (sumOfSquares - sum * (sum / n)) / (n - 1));
-    return static_cast<float>(std::sqrt(variance / n));
+using Variance = std::array<double, 3>;  // of one sample
+constexpr Variance unknownVariance{-1, -1, -1};
+
+Variance sampleVariance(const Film::Pixel& p) {
+    if (p.samples < 2) return unknownVariance;
+    const auto n = static_cast<double>(p.samples);
+    Variance variance;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double sum = p.radiance[c];
+        // Equal samples may leave a difference below zero by rounding.
+        variance[c] = std::max(0.0, (p.radianceSquared[c] - sum * (sum / n)) / (n - 1));
+    }
+    return variance;
+}
+
+Rgb errorOfMean(const Variance& variance, std::uint64_t samples) {
+    return Rgb::map([&](int i) {
+        return static_cast<float>(
+            std::sqrt(variance[static_cast<std::size_t>(i)] / static_cast<double>(samples)));
+    });
 }
 
 }  // namespace
 
-Film::Film(int width, int height, Window crop, bool withSurfaces)
+Film::Film(int width, int height, Window crop, Kept kept)
     : width_(width), height_(height), crop_(crop) {
     if (width <= 0 || height <= 0)
         throw usageError("an image of {} x {} pixels is empty", width, height);
@@ -39,7 +56,8 @@ Film::Film(int width, int height, Window crop, bool withSurfaces)
                          crop.x0, crop.y0, crop.x1, crop.y1, width, height);
     pixels_.resize(static_cast<std::size_t>(crop.width()) *
                    static_cast<std::size_t>(crop.height()));
-    if (withSurfaces) surfacePixels_.resize(pixels_.size());
+    if (kept.surfaces) surfacePixels_.resize(pixels_.size());
+    if (kept.features) featurePixels_.resize(pixels_.size());
 }
 
 std::size_t Film::index(int x, int y) const {
@@ -78,9 +96,12 @@ void Film::add(int x, int y, const DepthSample& sample) {
     p.weightedDepth += sample.weightedDepth;
     p.depthWeight += sample.weight;
     ++p.depthSamples;
-    if (surfacePixels_.empty()) return;
-    SurfacePixel& s = surfacePixels_[index(x, y)];
-    for (int i = 0; i < 3; ++i) s.weightedNormal[i] += sample.weightedNormal[i];
+    if (featurePixels_.empty()) return;
+    FeaturePixel& f = featurePixels_[index(x, y)];
+    for (int i = 0; i < 3; ++i) {
+        f.albedo[i] += sample.weightedAlbedo[i];
+        f.normal[i] += sample.weightedNormal[i];
+    }
 }
 
 void Film::add(int x, int y, const CatcherSample& sample) {
@@ -118,11 +139,16 @@ void Film::merge(const Film& other) {
     for (std::size_t i = 0; i < other.surfacePixels_.size(); ++i) {
         SurfacePixel& p = surfacePixels_[i];
         const SurfacePixel& q = other.surfacePixels_[i];
-        for (int c = 0; c < 3; ++c) p.weightedNormal[c] += q.weightedNormal[c];
         p.catcherLit += q.catcherLit;
         p.catcherUnlit += q.catcherUnlit;
         p.catcherWeight += q.catcherWeight;
     }
+    if (featurePixels_.empty()) featurePixels_.resize(other.featurePixels_.size());
+    for (std::size_t i = 0; i < other.featurePixels_.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            featurePixels_[i].albedo[c] += other.featurePixels_[i].albedo[c];
+            featurePixels_[i].normal[c] += other.featurePixels_[i].normal[c];
+        }
 }
 
 Rgb Film::radiance(int x, int y) const {
@@ -148,12 +174,24 @@ Rgb Film::transmittance(int x, int y) const {
 }
 
 Rgb Film::standardError(int x, int y) const {
-    const Pixel& p = at(x, y);
-    if (p.samples < 2) return Rgb(std::numeric_limits<float>::infinity());
-    return Rgb::map([&](int i) {
-        return standardErrorOfMean(p.radiance[i], p.radianceSquared[i],
-                                   static_cast<double>(p.samples));
-    });
+    Variance variance = sampleVariance(at(x, y));
+    if (variance[0] < 0) return Rgb(std::numeric_limits<float>::infinity());
+    Variance around{};
+    int pixels = 0;
+    for (int v = std::max(y - 1, crop_.y0); v < std::min(y + 2, crop_.y1); ++v)
+        for (int u = std::max(x - 1, crop_.x0); u < std::min(x + 2, crop_.x1); ++u) {
+            const Variance other = sampleVariance(at(u, v));
+            if (other[0] < 0) continue;
+            for (std::size_t c = 0; c < 3; ++c) around[c] += other[c];
+            ++pixels;
+        }
+    for (std::size_t c = 0; c < 3; ++c) variance[c] = std::max(variance[c], around[c] / pixels);
+    return errorOfMean(variance, at(x, y).samples);
+}
+
+Rgb Film::variance(int x, int y) const {
+    const Rgb error = standardError(x, y);
+    return error * error;
 }
 
 float Film::depth(int x, int y) const {
@@ -161,9 +199,16 @@ float Film::depth(int x, int y) const {
     return p.depthWeight > 0 ? static_cast<float>(p.weightedDepth / p.depthWeight) : noDepth;
 }
 
+Rgb Film::albedo(int x, int y) const {
+    if (featurePixels_.empty()) return {};
+    const Rgb albedo = mean(featurePixels_[index(x, y)].albedo, at(x, y).depthSamples);
+    // Where channels differ, the weights of single rays may exceed 1, and so may a few rays' mean.
+    return Rgb::map([&](int c) { return std::min(albedo[c], 1.0f); });
+}
+
 Vec3f Film::normal(int x, int y) const {
-    if (surfacePixels_.empty()) return {};
-    const Rgb n = mean(surfacePixels_[index(x, y)].weightedNormal, at(x, y).depthSamples);
+    if (featurePixels_.empty()) return {};
+    const Rgb n = mean(featurePixels_[index(x, y)].normal, at(x, y).depthSamples);
     return {n[0], n[1], n[2]};
 }
 
@@ -185,8 +230,9 @@ double Film::noise() const {
     for (int y = crop_.y0; y < crop_.y1; ++y) {
         for (int x = crop_.x0; x < crop_.x1; ++x) {
             const double light = radiance(x, y).mean();
-            if (at(x, y).samples < 2 || !(light > 0)) continue;
-            sum += standardError(x, y).mean() / light;
+            const Pixel& p = at(x, y);
+            if (p.samples < 2 || !(light > 0)) continue;
+            sum += errorOfMean(sampleVariance(p), p.samples).mean() / light;
             ++pixels;
         }
     }

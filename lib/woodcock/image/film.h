@@ -21,7 +21,8 @@ struct DepthSample {
     Rgb transmittance;
     float weightedDepth = 0;  ///< sum over absorbed-or-scattered weight x distance, world units
     float weight = 0;
-    Vec3f weightedNormal = {};  ///< world space, towards the camera; only where it meets a surface
+    Rgb weightedAlbedo = {};    ///< of what it meets first; this and the normal only for features
+    Vec3f weightedNormal = {};  ///< world space; see Film::normal()
 };
 
 /// Light on a shadow catcher that one camera path met: with what is in the scene, and without.
@@ -46,8 +47,16 @@ public:
 
     /// What only scenes with surfaces need.
     struct SurfacePixel {
-        double weightedNormal[3] = {};
         double catcherLit = 0, catcherUnlit = 0, catcherWeight = 0;
+    };
+
+    /// What tells a denoiser what it sees.
+    struct FeaturePixel {
+        double albedo[3] = {}, normal[3] = {};
+    };
+    /// What is kept beside Pixel.
+    struct Kept {
+        bool surfaces, features;
     };
 
     /// `width` x `height` is the whole image; samples may only fall into the crop
@@ -60,7 +69,7 @@ public:
     };
 
     /// Throws Error{Usage} on an empty image, and on a crop that is empty or leaves it.
-    Film(int width, int height, Window crop, bool withSurfaces = false);
+    Film(int width, int height, Window crop, Kept kept = {false, false});
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -73,7 +82,7 @@ public:
     /// A sample with anything NaN or infinite in it is dropped and counted.
     void add(int x, int y, const FilmSample& sample);
     void add(int x, int y, const DepthSample& sample);
-    void add(int x, int y, const CatcherSample& sample);  ///< only withSurfaces
+    void add(int x, int y, const CatcherSample& sample);  ///< only where surfaces are kept
     /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other.
     void merge(const Film& other);
 
@@ -82,20 +91,28 @@ public:
     /// A shadow catcher adds the share of its light that the scene takes away.
     float alpha(int x, int y) const;
     Rgb transmittance(int x, int y) const;
-    /// Of the mean radiance, from the samples' variance; infinite, as unknown, below two
-    /// samples.
+    /// Of the mean radiance; infinite, as unknown, below two samples. From the variance of the
+    /// samples, which counts as no less than its mean over the pixel and the eight around it: where
+    /// rare bright samples make the noise, a pixel that missed them is dark and looks certain, and
+    /// its neighbours know better. So two standard errors hold the truth in 95 % of pixels or
+    /// more, where the pixel's own variance may mean 60 %.
     Rgb standardError(int x, int y) const;
+    Rgb variance(int x, int y) const;  ///< of the mean radiance: the standard error's square
     /// Mean distance to what the camera ray meets, world units; `noDepth` where it meets nothing.
     float depth(int x, int y) const;
     static constexpr float noDepth = 1e10f;
-    /// Mean world-space normal of the surfaces that camera rays meet, towards the camera, times the
-    /// part of the rays that meet one; 0 without surfaces.
+    /// Mean over camera rays of the albedo of what they meet first, in [0, 1]: sigma_s / sigma_t in
+    /// media, Bsdf::albedo() of surfaces, 0 of nothing. 0 where no features are kept.
+    Rgb albedo(int x, int y) const;
+    /// Mean over camera rays of the world-space normal of what they meet first: surfaces', towards
+    /// the camera; in media densityNormal(); 0 of nothing. 0 where no features are kept.
     Vec3f normal(int x, int y) const;
 
     std::uint64_t nonFiniteCount() const;
     /// Of all pixels; above the fewest after a render was interrupted inside a pass.
     std::uint64_t mostSamples() const;
-    /// Mean over pixels of standard error / mean radiance (channels averaged first); pixels without
+    /// By each pixel's own variance, as the error around a dark one says nothing relative to it:
+    /// mean over pixels of standard error / mean radiance (channels averaged first); pixels without
     /// light or with fewer than two samples are left out; infinite, as unknown, when none is left.
     double noise() const;
 
@@ -106,6 +123,7 @@ private:
     Window crop_;
     std::vector<Pixel> pixels_;
     std::vector<SurfacePixel> surfacePixels_;  // empty without surfaces
+    std::vector<FeaturePixel> featurePixels_;  // empty where nobody asks
 };
 
 }  // namespace woodcock

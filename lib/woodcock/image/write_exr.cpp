@@ -2,7 +2,9 @@
 #include "woodcock/image/write_exr.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <utility>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
@@ -15,6 +17,15 @@ namespace woodcock {
 namespace {
 
 constexpr float largestHalf = 65504.0f;
+
+constexpr std::array<std::pair<const char*, bool ExrLayers::*>, 7> knownLayers{
+    {{"depth", &ExrLayers::depth},
+     {"albedo", &ExrLayers::albedo},
+     {"normal", &ExrLayers::normal},
+     {"transmittance", &ExrLayers::transmittance},
+     {"samples", &ExrLayers::samples},
+     {"error", &ExrLayers::error},
+     {"variance", &ExrLayers::variance}}};
 
 /// A few neighbouring channels of one type and how a pixel fills them.
 struct ChannelGroup {
@@ -43,6 +54,10 @@ std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& set
         groups.push_back({{"Z"}, PixelType::Float, [&film](int x, int y, float* to) {
                               *to = film.depth(x, y);
                           }});
+    if (layers.albedo)
+        groups.push_back({{"albedo.R", "albedo.G", "albedo.B"},
+                          PixelType::Float,
+                          [&film](int x, int y, float* to) { copy(film.albedo(x, y), to); }});
     if (layers.normal)
         groups.push_back({{"normal.X", "normal.Y", "normal.Z"},
                           PixelType::Float,
@@ -64,6 +79,10 @@ std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& set
             {{"error.R", "error.G", "error.B"}, PixelType::Float, [&film](int x, int y, float* to) {
                  copy(film.standardError(x, y), to);
              }});
+    if (layers.variance)
+        groups.push_back({{"variance.R", "variance.G", "variance.B"},
+                          PixelType::Float,
+                          [&film](int x, int y, float* to) { copy(film.variance(x, y), to); }});
     return groups;
 }
 
@@ -84,10 +103,12 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
     set("woodcock/version", std::string(version()));
     set("woodcock/samples", metadata.endSample - metadata.firstSample);
     set("woodcock/sampleRange", fmt::format("{}:{}", metadata.firstSample, metadata.endSample));
-    // An interrupted pass leaves pixels with more: such a file does not merge by its range alone.
+    // An interrupted pass leaves pixels with more, and an adaptive render is made of them: such a
+    // file does not merge by its range alone.
     if (const auto most = static_cast<int>(film.mostSamples());
         most > metadata.endSample - metadata.firstSample)
         set("woodcock/samplesAtMost", most);
+    if (metadata.adaptive) set("woodcock/adaptive", 1);
     // EXR has no integer of 64 bits.
     set("woodcock/seed", fmt::format("{}", metadata.seed));
     set("woodcock/nonFinite", fmt::format("{}", film.nonFiniteCount()));
@@ -99,24 +120,21 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
 
 }  // namespace
 
+std::vector<std::string> layerNames() {
+    std::vector<std::string> names;
+    for (const auto& [name, layer] : knownLayers) names.emplace_back(name);
+    return names;
+}
+
 ExrLayers layersFromNames(const std::vector<std::string>& names) {
-    static const std::vector<std::string> known{"depth", "normal", "transmittance", "samples",
-                                                "error"};
     ExrLayers layers;
     for (const std::string& name : names) {
-        if (name == known[0])
-            layers.depth = true;
-        else if (name == known[1])
-            layers.normal = true;
-        else if (name == known[2])
-            layers.transmittance = true;
-        else if (name == known[3])
-            layers.samples = true;
-        else if (name == known[4])
-            layers.error = true;
-        else
+        const auto known = std::find_if(knownLayers.begin(), knownLayers.end(),
+                                        [&](const auto& layer) { return layer.first == name; });
+        if (known == knownLayers.end())
             throw usageError("unknown layer '{}'{}", name,
-                             suggestName(name, "known layers", known));
+                             suggestName(name, "known layers", layerNames()));
+        layers.*known->second = true;
     }
     return layers;
 }

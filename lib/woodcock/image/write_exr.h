@@ -19,19 +19,23 @@ struct RenderMetadata {
     double renderSeconds = 0;
     std::string sceneDigest;
     std::string commandLine;  ///< empty: not written
+    bool adaptive = false;    ///< the sample range is that of a mean pixel
 };
 
 /// Channels beyond R, G, B and A, always in float.
 struct ExrLayers {
     bool depth = false;          ///< Z: Film::depth(), world units
+    bool albedo = false;         ///< albedo.R, .G, .B: Film::albedo()
     bool normal = false;         ///< normal.X, .Y, .Z: Film::normal()
     bool transmittance = false;  ///< transmittance.R, .G, .B along the camera ray
     bool samples = false;        ///< samples: how many make the pixel
     bool error = false;          ///< error.R, .G, .B: standard error of R, G, B
+    bool variance = false;       ///< variance.R, .G, .B: its square
 };
 
-/// From the names that users write: depth, normal, transmittance, samples, error. Throws
-/// Error{Usage} on any other.
+/// The names that users write, as those of the members.
+std::vector<std::string> layerNames();
+/// From such names. Throws Error{Usage} on any other.
 ExrLayers layersFromNames(const std::vector<std::string>& names);
 
 struct ExrSettings {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <vector>
 
+#include "woodcock/medium/features.h"
 #include "woodcock/medium/marching.h"
 #include "woodcock/medium/phase.h"
 #include "woodcock/medium/tracking.h"
@@ -80,7 +81,7 @@ private:
             p.surfaces.place.inside = scene_.camera.kind == Camera::Kind::Perspective
                                           ? aroundCamera_
                                           : interiors_->at(p.origin);
-        if (options_.depthLayers) findDepth(p);
+        if (options_.depthLayers || options_.featureLayers) findDepth(p);
         paths_.push_back(p);
         const std::size_t i = paths_.size() - 1;
         addSphereHits(i, nullptr);
@@ -341,7 +342,6 @@ private:
     void clampRadiance(Rgb& radiance);
 
     // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
-
     void meetSurface(std::size_t i);
     void bounce(std::size_t i, const SurfaceHit& hit, const Crossing& crossing);
     AmongSurfaces::Sought soughtAfter(AmongSurfaces::Sought before, const Bsdf& bsdf,
@@ -360,7 +360,7 @@ private:
     /// that stops it.
     void shadowAmongSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
                              TrackingCounters& c);
-    /// Camera rays' transmittance and the distance of what they meet, by a walk of their own.
+    /// Camera rays' transmittance, and what they meet, by a walk of their own.
     void findDepth(const Path& p);
     void addNextEvent(std::size_t i, const EventNumbers& u, const FlightShare& share);
     /// Sphere lights that the new direction hits: the other side of next-event estimation's MIS.

@@ -210,6 +210,7 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
                        -1};
     TrackingCounters c;
     DepthSample& depth = p.result->depth;
+    const Medium* medium = &scene_.medium;
     double behind = 0;  // distance to where the query starts
     if constexpr (Surfaces) {
         Interiors::Place place = p.surfaces.place;
@@ -218,7 +219,8 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             const bool hits =
                 interiors_->nearest(q.origin, q.direction, infinity, place, true, hit);
             q.tMax = hits ? hit.t : infinity;
-            findEvents(*media_[mediumIndex(p.standIn, place.inside)].medium, {&q, 1}, c);
+            medium = media_[mediumIndex(p.standIn, place.inside)].medium;
+            findEvents(*medium, {&q, 1}, c);
             if (q.part >= 0 || !hits) break;
             const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
             if (interiors_->object(hit).holdout) return;
@@ -226,7 +228,11 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
                 const float weight = q.throughput.mean();
                 const Vec3d n =
                     hit.shadingNormal * (dot(hit.normal, q.direction) < 0 ? weight : -weight);
-                depth = {{}, weight * static_cast<float>(behind + hit.t), weight, n.as<float>()};
+                depth = {{},
+                         weight * static_cast<float>(behind + hit.t),
+                         weight,
+                         toRgb(q.throughput) * crossing.bsdf.albedo(),
+                         n.as<float>()};
                 return;
             }
             place.inside = crossing.beyond, place.left = hit;
@@ -234,13 +240,20 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             q.origin = hit.position, q.u = q.random.uniformOpenLow();
         }
     } else {
-        findEvents(*media_[p.standIn].medium, {&q, 1}, c);
+        medium = media_[p.standIn].medium;
+        findEvents(*medium, {&q, 1}, c);
+    }
+    if (q.part < 0) {
+        depth.transmittance = toRgb(q.throughput);
+        return;
     }
     const float weight = q.throughput.mean();
-    if (q.part >= 0)
-        depth = {{}, weight * static_cast<float>(behind + q.t), weight, {}};
-    else
-        depth.transmittance = toRgb(q.throughput);
+    depth.weightedDepth = weight * static_cast<float>(behind + q.t);
+    depth.weight = weight;
+    if (!options_.featureLayers) return;
+    const Vec3d met = q.origin + q.direction * q.t;
+    depth.weightedAlbedo = toRgb(q.throughput) * scatteringAlbedo(*medium, met);
+    depth.weightedNormal = (densityNormal(*medium, met) * weight).template as<float>();
 }
 
 }  // namespace woodcock

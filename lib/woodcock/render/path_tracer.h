@@ -30,7 +30,7 @@ struct PathJob {
 /// What one camera path found.
 struct PathResult {
     FilmSample film;
-    DepthSample depth;      ///< only with depthLayers
+    DepthSample depth;      ///< only with depthLayers or featureLayers
     CatcherSample catcher;  ///< where the camera sees a shadow catcher; its radiance is not film's
 };
 
@@ -46,7 +46,7 @@ public:
         std::optional<int> maxScatterings;
         std::optional<int> maxBounces;
         Approximations approximations;
-        bool depthLayers = false;
+        bool depthLayers = false, featureLayers = false;
         const StandIns* standIns = nullptr;  ///< made from `approximations`; null: no sets
     };
 

@@ -14,6 +14,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/render/path_tracer.h"
+#include "woodcock/render/sample_plan.h"
 
 namespace woodcock {
 
@@ -38,6 +39,11 @@ void validate(const RenderSettings& s, const Film::Window& crop) {
                          crop.y0, crop.x1, crop.y1, s.width, s.height);
     if (s.firstSample < 0 || s.endSample <= s.firstSample)
         throw usageError("the sample range {}:{} is empty", s.firstSample, s.endSample);
+    if (s.adaptive && s.firstSample > 0)
+        throw usageError(
+            "adaptive sampling cannot render samples {}:{} alone: how many samples a pixel gets "
+            "follows from its first ones",
+            s.firstSample, s.endSample);
 }
 
 void add(RenderCounters& a, const RenderCounters& b) {
@@ -54,6 +60,13 @@ void prepare(const Scene& scene, const Approximations& approximations) {
         prepareMarch(medium, marchSettings(approximations));
 }
 
+/// Samples [first, end) of each pixel in the mean.
+struct Pass {
+    int first, end;
+    /// The same by pixel, row by row; empty: alike in all.
+    std::vector<std::uint32_t> firstOf = {}, endOf = {};
+};
+
 /// Renders passes over all tiles into a film. Tiles own their pixels, and a pixel's samples are
 /// added in their order, so neither threads nor the length of passes shows in the sums.
 class Session {
@@ -64,7 +77,7 @@ public:
           crop_(crop),
           needs_(findNeeds(scene)),
           standIns_(scene, settings.approximations),
-          film_(settings.width, settings.height, crop, needs_.surfaces) {
+          film_(settings.width, settings.height, crop, {needs_.surfaces, settings.featureLayers}) {
         for (int y = crop.y0 / tileSize * tileSize; y < crop.y1; y += tileSize)
             for (int x = crop.x0 / tileSize * tileSize; x < crop.x1; x += tileSize)
                 tiles_.push_back({std::max(x, crop.x0), std::max(y, crop.y0),
@@ -148,13 +161,15 @@ private:
         completeSamples_ = settings_.firstSample;
         int length = 1;
         while (completeSamples_ < settings_.endSample) {
-            const int first = completeSamples_;
-            const int end = std::min(first + length, settings_.endSample);
-            if (!arena.execute([&] { return runPass(first, end); })) {
+            const Pass pass = nextPass(length);
+            const int end = pass.end;
+            const auto passStart = Clock::now();
+            if (!arena.execute([&] { return runPass(pass); })) {
                 reason_ = stop_ ? StopReason::Interrupted : StopReason::TimeLimit;
                 return;
             }
             completeSamples_ = end;
+            counts_ = pass.endOf;
             noise_ = film_.noise();
             if (settings_.noise > 0 && noise_ > 0 && noise_ < settings_.noise &&
                 end - settings_.firstSample >= fewestSamplesForNoise) {
@@ -163,7 +178,8 @@ private:
             }
             length = std::min(2 * length, longestPass);
             if (settings_.timeLimit > 0) {
-                const double perSample = secondsSince(start_) / (end - settings_.firstSample);
+                // Of the last pass, as adaptive ones cost more than the pilot.
+                const double perSample = secondsSince(passStart) / (end - pass.first);
                 const double left = settings_.timeLimit - secondsSince(start_);
                 length = std::min(length, static_cast<int>(left / perSample));
                 if (length < 1) {
@@ -174,10 +190,24 @@ private:
         }
     }
 
+    /// The pass of at most `length` samples for each pixel that comes next.
+    Pass nextPass(int length) {
+        Pass pass{completeSamples_, std::min(completeSamples_ + length, settings_.endSample)};
+        if (!settings_.adaptive) return pass;
+        const int pilot = SamplePlan::pilotOf(settings_.endSample);
+        if (pass.first < pilot) {
+            pass.end = std::min(pass.end, pilot);
+            return pass;
+        }
+        if (!plan_) plan_.emplace(film_, pass.first), counts_ = plan_->counts(pass.first);
+        pass.firstOf = counts_, pass.endOf = plan_->counts(pass.end);
+        return pass;
+    }
+
     /// False when it was stopped before its last tile.
-    bool runPass(int first, int end) {
+    bool runPass(const Pass& pass) {
         const auto stopping = [&] {
-            return stop_ || (first > settings_.firstSample && settings_.timeLimit > 0 &&
+            return stop_ || (pass.first > settings_.firstSample && settings_.timeLimit > 0 &&
                              secondsSince(start_) > settings_.timeLimit);
         };
         std::atomic<std::size_t> tilesDone{0};
@@ -185,28 +215,43 @@ private:
             tbb::blocked_range<std::size_t>(0, tiles_.size(), 1),
             [&](const tbb::blocked_range<std::size_t>& range) {
                 for (std::size_t i = range.begin(); i < range.end() && !stopping(); ++i)
-                    tilesDone += renderTile(tiles_[i], first, end, stopping);
+                    tilesDone += renderTile(tiles_[i], pass, stopping);
             },
             tbb::simple_partitioner{});
         return tilesDone == tiles_.size();
     }
 
-    bool renderTile(const Film::Window& tile, int first, int end,
-                    const std::function<bool()>& stopping) {
+    std::vector<PathJob> jobsOf(const Film::Window& tile, const Pass& pass) const {
         std::vector<PathJob> jobs;
         for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x)
-                for (int s = first; s < end; ++s)
-                    jobs.push_back({x, y, static_cast<std::uint32_t>(s)});
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                auto first = static_cast<std::uint32_t>(pass.first);
+                auto end = static_cast<std::uint32_t>(pass.end);
+                if (!pass.endOf.empty()) {
+                    const auto pixel = static_cast<std::size_t>(y - crop_.y0) *
+                                           static_cast<std::size_t>(crop_.width()) +
+                                       static_cast<std::size_t>(x - crop_.x0);
+                    first = pass.firstOf[pixel], end = pass.endOf[pixel];
+                }
+                for (std::uint32_t s = first; s < end; ++s) jobs.push_back({x, y, s});
+            }
+        return jobs;
+    }
+
+    bool renderTile(const Film::Window& tile, const Pass& pass,
+                    const std::function<bool()>& stopping) {
+        const std::vector<PathJob> jobs = jobsOf(tile, pass);
         std::vector<PathResult> results(jobs.size());
         const auto tracer = PathTracer::make(
             scene_, needs_,
             {settings_.width, settings_.height, settings_.seed, settings_.maxScatterings,
-             settings_.maxBounces, settings_.approximations, settings_.depthLayers, &standIns_});
+             settings_.maxBounces, settings_.approximations, settings_.depthLayers,
+             settings_.featureLayers, &standIns_});
         if (!tracer->trace(jobs, results, stopping)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);
-            if (settings_.depthLayers) film_.add(jobs[i].x, jobs[i].y, results[i].depth);
+            if (settings_.depthLayers || settings_.featureLayers)
+                film_.add(jobs[i].x, jobs[i].y, results[i].depth);
             if (results[i].catcher.weight > 0) film_.add(jobs[i].x, jobs[i].y, results[i].catcher);
         }
         pathsDone_ += jobs.size();
@@ -224,6 +269,8 @@ private:
     const Needs needs_;
     const StandIns standIns_;
     Film film_;
+    std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
+    std::vector<std::uint32_t> counts_;  // and what the pixels have by it
     std::vector<Film::Window> tiles_;
     std::uint64_t pathsPerSample_ = 0;
     const Clock::time_point start_ = Clock::now();

@@ -22,11 +22,12 @@ struct RenderSettings {
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
     Approximations approximations;
-    bool adaptive = false;     ///< samples go where the error is largest
-    int threads = 0;           ///< 0: all cores
-    double timeLimit = 0;      ///< seconds; 0: none. The first sample is always whole.
-    double noise = 0;          ///< stop once Film::noise() is below it; 0: never
-    bool depthLayers = false;  ///< also sample transmittance and depth of camera rays
+    bool adaptive = false;       ///< samples go where the error is largest: see SamplePlan
+    int threads = 0;             ///< 0: all cores
+    double timeLimit = 0;        ///< seconds; 0: none. The first sample is always whole.
+    double noise = 0;            ///< stop once Film::noise() is below it; 0: never
+    bool depthLayers = false;    ///< also sample transmittance and depth of camera rays
+    bool featureLayers = false;  ///< these, and albedo and normal of what they meet
 };
 
 struct RenderProgress {
@@ -44,18 +45,22 @@ struct RenderResult {
     Film film;
     Needs needs;
     StopReason reason = StopReason::Complete;
-    int endSample = 0;  ///< samples [firstSample, endSample) are complete in every pixel
+    /// Samples [firstSample, endSample) are complete in every pixel; of an adaptive render, the
+    /// mean over pixels.
+    int endSample = 0;
     double seconds = 0;
     RenderCounters counters;
 };
 
 /// Renders `scene`: the same scene, seed and sample range give the same film, bit for bit, whatever
-/// the number of threads. Passes over the whole crop, so that a stop leaves an even picture.
+/// the number of threads. Passes over the whole crop, so that a stop leaves an even picture. With
+/// `adaptive` a pass gives each pixel its share of it, and the crop is part of what decides.
 /// `onProgress` is called a few times a second from one thread; returning false stops at once, as
 /// does the time limit: tiles of the pass at work that are finished stay, so that some pixels may
 /// hold more samples than endSample - firstSample (Film::Pixel::samples tells), or, where the first
 /// pass is interrupted, none.
-/// Throws Error{Usage} on an empty crop, image or sample range.
+/// Throws Error{Usage} on an empty crop, image or sample range, and on an adaptive render of a
+/// range that does not begin at 0.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress = {});
 

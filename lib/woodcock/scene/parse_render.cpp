@@ -3,6 +3,7 @@
 
 #include "woodcock/base/parse.h"
 #include "woodcock/image/image_format.h"
+#include "woodcock/image/write_exr.h"
 #include "woodcock/scene/parse_sections.h"
 #include "woodcock/scene/parse_values.h"
 
@@ -23,7 +24,7 @@ auto readText(const TomlValue& value, Read read) {
 }
 
 std::vector<std::string> parseLayers(const TomlValue& value) {
-    const std::array<std::string, 5> known{"depth", "normal", "transmittance", "samples", "error"};
+    const std::vector<std::string> known = layerNames();
     std::vector<std::string> layers;
     for (const TomlValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
         const std::string& layer = known[element.choice("layer", known)];
