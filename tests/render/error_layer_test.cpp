@@ -83,7 +83,7 @@ TEST(ErrorLayer, IsHonestOfMilkInGlass) {
                   "[[light]]\ntype = \"sphere\"\nposition = [3, 4, 2]\nradius = 1\nradiance = 10\n"
                   "[[light]]\ntype = \"environment\"\nradiance = 0.5\n"
                   "[camera]\neye = [0, 2, 6]\nlook_at = [0, 0.8, 0]\nfov = 35\n"),
-        {16, 64, 256}, {.width = 16, .height = 16, .samples = many, .seed = 1000});
+        {16, 64, 256}, {.width = 12, .height = 12, .samples = many / 2, .seed = 1000});
 }
 
 }  // namespace

@@ -84,7 +84,8 @@ TEST(FeatureLayers, AlbedoOfSurfacesIsTheirReflectance) {
     EXPECT_EQ(albedo("type = \"diffuse\"\ncolour = [0.8, 0.3, 0.1]"), Rgb(0.8f, 0.3f, 0.1f));
     EXPECT_EQ(albedo("type = \"conductor\"\ncolour = [0.9, 0.6, 0.2]"), Rgb(0.9f, 0.6f, 0.2f));
     EXPECT_EQ(albedo("type = \"dielectric\""), Rgb(1.0f));
-    EXPECT_EQ(featuresOf(sceneFrom(sky + camera), 4).film.albedo(3, 3), Rgb(0.0f));
+    const std::string away = pencilCamera({5, 0.2, 0.1}, {1, 0, 0});
+    EXPECT_EQ(featuresOf(sceneFrom(sky + redWall + away), 4).film.albedo(3, 3), Rgb(0.0f));
 }
 
 /// A ball of radius 1, densest in its middle, whose albedo is 0.75 where x < 0 and 0.25 elsewhere.

@@ -248,6 +248,9 @@ TEST_F(Cli, ContradictoryOptions) {
         expectFailure(render("smoke.vdb", options), 2, said);
     };
     wrong({"--spp", "4", "--samples", "0:4"}, {"--spp and --samples"});
+    wrong({"--adaptive", "--samples", "0:4"}, {"--adaptive and --samples", "--spp"});
+    wrong({"--set", "render.adaptive=true", "--samples", "0:4"},
+          {"the scene's adaptive sampling and --samples", "--set render.adaptive=false"});
     wrong({"--quiet", "--progress", "json"}, {"--quiet and --progress"});
     wrong({"--quiet", "--log-level", "debug"}, {"--quiet and --log-level"});
     expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--layers", "depth"}, 2,
