@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What each room of lib/woodcock may include besides itself; scene/ knows them all.
+/// What each room of lib/woodcock may include besides itself; trade/ knows them all.
 const std::map<std::string, std::set<std::string>> roomsBelow{
     {"base", {}},
     {"grid", {"base"}},
@@ -32,7 +32,10 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"compare", {"image", "base"}},
     {"scene",
      {"compare", "bake", "convert", "render", "image", "light", "surface", "camera", "medium",
-      "mesh", "grid", "base"}}};
+      "mesh", "grid", "base"}},
+    {"trade",
+     {"scene", "compare", "bake", "convert", "render", "image", "light", "surface", "camera",
+      "medium", "mesh", "grid", "base"}}};
 
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
 /// that bear the library's name, which only .cpp files and each other include.
