@@ -17,5 +17,6 @@ CLI::App& addVerifyCommand(CLI::App& app);
 // `commandLine` goes into the images' headers.
 CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine);
 CLI::App& addRenderCommand(CLI::App& app, const std::string& commandLine);
+CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine);
 
 }  // namespace woodcock::tool

@@ -97,6 +97,7 @@ int run(int argc, char** argv) {
     tool::addConvertCommand(app);
     tool::addInfoCommand(app);
     tool::addCompareCommand(app, commandLine(argc, argv));
+    tool::addTradeCommand(app, commandLine(argc, argv));
     tool::addVerifyCommand(app);
     tool::addCyclesCommand(app, commandLine(argc, argv));
     for (CLI::App* command : app.get_subcommands(nullptr))

@@ -10,6 +10,7 @@
 #include "interrupt.h"
 #include "log.h"
 #include "progress.h"
+#include "quality_auto.h"
 #include "render_options.h"
 #include "scene_input.h"
 #include "stats.h"
@@ -30,7 +31,7 @@ namespace {
 constexpr int interruptedCode = 130;
 
 SceneDescription describeScene(const RenderOptions& options) {
-    SceneDescription scene = parseInput({options.inputs, options.overrides, options.size});
+    SceneDescription scene = parseInput(options.sceneInput());
     for (VolumeDescription& volume : scene.volumes) {
         if (options.storage) volume.storage = *options.storage;
         volume.repair |= options.repair;
@@ -230,7 +231,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
         throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
     if (options.rendersImages()) options.checkFor(files);
     checkFiles(description, options);
-    const RenderSettings settings = renderSettings(description, options);
+    RenderSettings settings = renderSettings(description, options);
     const Outputs outputs = prepareOutputs(description, options);
     if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
 
@@ -240,6 +241,12 @@ void run(const RenderOptions& options, const std::string& commandLine) {
         writeTextFile(options.writeScene,
                       writeScene(description, options.writeScene.parent_path()));
     if (!options.rendersImages()) return;
+    if (options.choosesQuality()) {
+        if (!chooseQuality(description, options, commandLine))
+            throw CLI::RuntimeError(interruptedCode);
+        loaded = loadScene(description);
+        settings = renderSettings(description, options);
+    }
     std::vector<std::string> notes;
     const Scene scene = buildScene(description, std::move(loaded), &notes);
     for (const std::string& note : notes) spdlog::info("{}", note);

@@ -8,6 +8,7 @@
 #include "scene_input.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/image/write_exr.h"
+#include "woodcock/scene/quality.h"
 
 namespace woodcock::tool {
 
@@ -37,7 +38,13 @@ void addOutput(CLI::App& command, RenderOptions& o) {
 }
 
 void addRendering(CLI::App& command, RenderOptions& o) {
+    std::vector<std::string> qualities(qualityNames.begin(), qualityNames.end());
+    qualities.push_back("auto");
     std::vector<CLI::Option*> options{
+        addChoice(command, "--quality", o.quality, qualities,
+                  "Instead of the scene's choices; auto: the best for the --time-limit or --noise, "
+                  "measured on the scene:")
+            ->type_name("QUALITY"),
         addParsed(command, "--res", o.size, parseImageSize,
                   "Image size; a width alone keeps the scene's shape")
             ->type_name("WIDTHxHEIGHT"),
@@ -118,8 +125,21 @@ void RenderOptions::addTo(CLI::App& command) {
     addReports(command, *this);
 }
 
+SceneInput RenderOptions::sceneInput() const {
+    SceneInput input{inputs, overrides, size};
+    if (quality && !choosesQuality())
+        input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);
+    return input;
+}
+
 void RenderOptions::check() const {
-    checkInput({inputs, overrides, size});
+    checkInput(sceneInput());
+    exclude(choosesQuality(), storage.has_value(), "--quality auto and --storage");
+    exclude(choosesQuality(), samples.has_value(), "--quality auto and --samples");
+    if (choosesQuality() && !timeLimit && !noise)
+        throw usageError(
+            "--quality auto needs to know what for: give --time-limit, such as 60s, or --noise, "
+            "such as 1%");
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
     exclude(quiet, logLevel.has_value(), "--quiet and --log-level");
     exclude(quiet, progress == "bar" || progress == "json", "--quiet and --progress");

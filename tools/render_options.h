@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scene_input.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/scene/description.h"
 
@@ -25,6 +26,7 @@ struct RenderOptions {
     std::optional<std::uint64_t> seed;
     std::optional<double> timeLimit, noise;
     bool adaptive = false;
+    std::optional<std::string> quality;  ///< one of qualityNames, or "auto"
     std::optional<int> threads;
     std::vector<std::string> overrides;
     std::optional<Storage> storage;
@@ -41,6 +43,9 @@ struct RenderOptions {
     bool quiet = false;
 
     void addTo(CLI::App& command);
+    /// The scene, of the quality that is asked for unless that is to be chosen.
+    SceneInput sceneInput() const;
+    bool choosesQuality() const { return quality == "auto"; }
     /// Throws Error{Usage} where options contradict each other.
     void check() const;
     /// Throws Error{Usage} where an option is for another kind of file than those to be written.

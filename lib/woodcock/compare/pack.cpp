@@ -14,6 +14,16 @@ namespace woodcock {
 
 namespace {
 
+/// Rounded to nearest; what would become infinite by that keeps its size.
+std::uint32_t upperBits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    if (std::isnan(value)) return 0x7fc000;
+    const std::uint32_t rounded = (bits + 0x80) >> 8;
+    return std::isfinite(value) && (rounded & 0x7f8000) == 0x7f8000 ? bits >> 8 : rounded;
+}
+
+}  // namespace
+
 std::string base64(std::span<const unsigned char> bytes) {
     constexpr const char* digits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -31,16 +41,6 @@ std::string base64(std::span<const unsigned char> bytes) {
     }
     return text;
 }
-
-/// Rounded to nearest; what would become infinite by that keeps its size.
-std::uint32_t upperBits(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    if (std::isnan(value)) return 0x7fc000;
-    const std::uint32_t rounded = (bits + 0x80) >> 8;
-    return std::isfinite(value) && (rounded & 0x7f8000) == 0x7f8000 ? bits >> 8 : rounded;
-}
-
-}  // namespace
 
 std::string packBytes(std::span<const unsigned char> bytes) {
     uLongf size = compressBound(static_cast<uLong>(bytes.size()));

@@ -6,8 +6,11 @@
 
 namespace woodcock {
 
-// Numbers as text for a page's script: compressed as zlib does, in base64.
+// Bytes and numbers as text for a page.
 
+std::string base64(std::span<const unsigned char> bytes);
+
+/// Compressed as zlib does, in base64.
 std::string packBytes(std::span<const unsigned char> bytes);
 
 /// Floats rounded to their upper 24 bits, which leave 5 digits: first the highest byte of each,

@@ -66,9 +66,7 @@ class Override {
 public:
     explicit Override(const std::string& text) : place_(std::string(overrideMark) + text) {
         const size_t equals = text.find('=');
-        std::string path = text.substr(0, equals);
-        std::erase(path, ' ');
-        steps_ = parseSteps(path);
+        steps_ = parseSteps(overriddenKey(text));
         if (equals == std::string::npos || steps_.empty())
             throw usageError("{}: expected KEY=VALUE, such as volume[0].scale=2", place_);
         value_ = text.substr(equals + 1);
@@ -156,5 +154,11 @@ private:
 }  // namespace
 
 void applyOverride(toml::table& scene, const std::string& text) { Override(text).apply(scene); }
+
+std::string overriddenKey(const std::string& text) {
+    std::string path = text.substr(0, text.find('='));
+    std::erase(path, ' ');
+    return path;
+}
 
 }  // namespace woodcock

@@ -13,4 +13,7 @@ namespace woodcock {
 /// anywhere.
 void applyOverride(toml::table& scene, const std::string& text);
 
+/// What an override sets, without spaces: "volume[0].scale" of "volume[0].scale = 2".
+std::string overriddenKey(const std::string& text);
+
 }  // namespace woodcock

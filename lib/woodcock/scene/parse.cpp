@@ -4,6 +4,7 @@
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/parse_sections.h"
+#include "woodcock/scene/quality.h"
 
 namespace woodcock {
 namespace {
@@ -67,7 +68,11 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
                                 const std::filesystem::path& baseDirectory,
                                 const std::vector<std::string>& overrides) {
     toml::table table = parseToml(text, name);
-    for (const std::string& assignment : overrides) applyOverride(table, assignment);
+    for (const std::string& assignment : overrides) {
+        if (overriddenKey(assignment) == "render.quality") eraseChoices(table);
+        applyOverride(table, assignment);
+    }
+    expandQuality(table);
     SceneDescription scene = readScene(TomlTable(table, ""), name, baseDirectory);
     for (const auto& [key, value] : table)
         collectPlaces(value, std::string(key.str()), scene.places);

@@ -64,7 +64,7 @@ Approximations parseApproximations(const TomlTable& table) {
 
 RenderDescription parseRender(const TomlTable& table) {
     table.allowOnly(
-        {"resolution", "spp", "seed", "max_scatterings", "max_bounces", "transparent_shadows",
+        {"resolution", "spp", "seed", "quality", "max_scatterings", "max_bounces", "transparent_shadows",
          "march_step", "march_estimate", "similarity_after", "octaves", "clamp", "storage",
          "lookup", "level_of_detail", "adaptive", "time_limit", "noise", "majorant_scale"},
         "[render]");

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/scene/quality.h"
+
+#include <algorithm>
+
+#include "woodcock/base/toml_reader.h"
+
+namespace woodcock {
+namespace {
+
+/// Keys of which one at most has a meaning: where one is written, a quality does not bring the
+/// other.
+constexpr std::pair<std::string_view, std::string_view> alternatives[]{
+    {"octaves", "similarity_after"},
+    {"similarity_after", "octaves"},
+    {"march_estimate", "march_step"}};
+
+bool isDisplaced(const toml::table& render, std::string_view key) {
+    if (render.contains(key)) return true;
+    return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
+        return pair.first == key && render.contains(pair.second);
+    });
+}
+
+bool isReducedPrecision(Storage storage) {
+    return storage != Storage::Auto && storage != Storage::Float;
+}
+
+}  // namespace
+
+const std::vector<RenderChoice>& qualityChoices(Quality quality) {
+    static const std::array<std::vector<RenderChoice>, 4> choices{
+        {{{"octaves", "6"},
+          {"level_of_detail", "2"},
+          {"lookup", "\"nearest\""},
+          {"storage", "\"half\""},
+          {"transparent_shadows", "true"}},
+         {{"similarity_after", "4"},
+          {"level_of_detail", "1"},
+          {"storage", "\"half\""},
+          {"transparent_shadows", "true"},
+          {"adaptive", "true"}},
+         {{"adaptive", "true"}},
+         {{"storage", "\"float\""}}}};
+    return choices[static_cast<std::size_t>(quality)];
+}
+
+const std::vector<std::string>& choiceKeys() {
+    static const std::vector<std::string> keys{
+        "storage", "adaptive", "transparent_shadows", "march_step", "march_estimate",
+        "octaves", "clamp",    "similarity_after",    "lookup",     "level_of_detail",
+        "quality"};
+    return keys;
+}
+
+void eraseChoices(toml::table& scene) {
+    if (toml::table* render = scene["render"].as_table())
+        for (const std::string& key : choiceKeys()) render->erase(key);
+    if (toml::array* volumes = scene["volume"].as_array())
+        for (toml::node& volume : *volumes)
+            if (toml::table* table = volume.as_table()) table->erase("storage");
+}
+
+void expandQuality(toml::table& scene) {
+    toml::table* const render = scene["render"].as_table();
+    const toml::node* const node = render ? render->get("quality") : nullptr;
+    if (!node) return;
+    const TomlValue name(*node, "render.quality");
+    const auto quality = static_cast<Quality>(name.choice("quality", qualityNames));
+    const std::string place = name.place() + ", quality";
+    std::vector<const RenderChoice*> missing;  // found first: what is added displaces nothing
+    for (const RenderChoice& choice : qualityChoices(quality))
+        if (!isDisplaced(*render, choice.key)) missing.push_back(&choice);
+    for (const RenderChoice* choice : missing) {
+        toml::table added = toml::parse(choice->key + " = " + choice->value, place);
+        std::move(*added.get(choice->key)).visit([&](auto&& value) {
+            render->insert(choice->key, std::move(value));
+        });
+    }
+}
+
+std::vector<std::string> biasedChoices(const SceneDescription& scene) {
+    const RenderDescription& render = scene.render;
+    const Approximations& a = render.approximations;
+    std::vector<std::string> keys;
+    const auto note = [&](bool chosen, const std::string& key) {
+        if (chosen) keys.push_back(key);
+    };
+    note(render.maxScatterings.has_value(), "render.max_scatterings");
+    note(render.maxBounces.has_value(), "render.max_bounces");
+    note(isReducedPrecision(render.storage), "render.storage");
+    note(a.transparentShadows, "render.transparent_shadows");
+    note(a.marchStep > 0, "render.march_step");
+    note(a.similarityAfter.has_value(), "render.similarity_after");
+    note(a.octaves > 0, "render.octaves");
+    note(a.clamp > 0, "render.clamp");
+    note(render.lookup != Lookup::Trilinear, "render.lookup");
+    note(render.levelOfDetail > 0, "render.level_of_detail");
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        note(isReducedPrecision(scene.volumes[i].storage), fmt::format("volume[{}].storage", i));
+    return keys;
+}
+
+}  // namespace woodcock

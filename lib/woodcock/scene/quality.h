@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "woodcock/scene/description.h"
+
+namespace woodcock {
+
+// Qualities are names for sets of choices: values of keys of [render].
+
+/// From the fastest to the most accurate. Those from Final on are unbiased.
+enum class Quality { Draft, Preview, Final, Reference };
+inline const std::array<std::string, 4> qualityNames{"draft", "preview", "final", "reference"};
+
+/// A key of [render] and its value, as TOML.
+struct RenderChoice {
+    std::string key, value;
+    bool operator==(const RenderChoice&) const = default;
+};
+const std::vector<RenderChoice>& qualityChoices(Quality quality);
+
+/// The keys of [render] that trade accuracy for time, in the order of the reference.
+const std::vector<std::string>& choiceKeys();
+
+/// Takes out what a scene says of choices (its volumes' storage too): --quality replaces it.
+void eraseChoices(toml::table& scene);
+
+/// Gives [render] the choices of the quality that it names, but for those that are written beside
+/// it and what contradicts them. Throws Error{Input} on unknown names.
+void expandQuality(toml::table& scene);
+
+/// The keys of a scene's choices that change its expected picture, named as for --set:
+/// "render.clamp", "volume[0].storage".
+std::vector<std::string> biasedChoices(const SceneDescription& scene);
+
+}  // namespace woodcock

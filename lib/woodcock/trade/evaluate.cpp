@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/trade/evaluate.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/parse.h"
+#include "woodcock/compare/flip.h"
+
+namespace woodcock {
+namespace {
+
+/// Each is read where it tells something: at least this many samples of the scene as it is.
+constexpr double fewestSamples = 4;
+constexpr std::size_t mostReadings = 4;
+constexpr double readableTimes[]{0.1, 1, 10, 60, 600, 3600, 36000, 360000};
+constexpr double readableErrors[]{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+constexpr double longestReading = 360000;
+constexpr int frontSteps = 60;
+/// Above, the weights of relMSE are noise themselves.
+constexpr double largestReferenceError = 0.5;
+
+using OfCandidate = TradeMeasurements::OfCandidate;
+
+std::vector<Pixels> picturesAt(const OfCandidate& m, std::size_t stage) {
+    std::vector<Pixels> pictures;
+    for (const std::vector<Stage>& seed : m.seeds) pictures.push_back(seed[stage].pixels);
+    return pictures;
+}
+
+/// Of something that each seed tells at a stage.
+template <class Value>
+Measured overSeeds(const OfCandidate& m, std::size_t stage, const Value& value) {
+    std::vector<double> values;
+    for (const std::vector<Stage>& seed : m.seeds) values.push_back(value(seed[stage]));
+    return meanOf(values);
+}
+
+class Evaluation {
+public:
+    Evaluation(const TradeMeasurements& m, double flipSeconds) : m_(m), flipSeconds_(flipSeconds) {
+        std::vector<Pixels> pictures;
+        for (const Stage& seed : m.reference) pictures.push_back(seed.pixels);
+        reference_ = meanOfSeeds(pictures);
+        weights_ = relativeWeights(reference_);
+        referenceFloats_.assign(reference_.mean.begin(), reference_.mean.end());
+        scale_ = m.full.pixels() / m.measured.pixels();
+    }
+
+    TradeResult run() {
+        TradeResult result;
+        result.full = m_.full, result.measured = m_.measured;
+        result.referencePixels = reference_.mean;
+        TradeReference& r = result.reference;
+        r.seeds = static_cast<int>(m_.reference.size());
+        for (const Stage& seed : m_.reference) r.samples += seed.samples, r.seconds += seed.seconds;
+        r.error = errorOfMean(reference_, weights_);
+        for (int c = 0; c < 3; ++c)
+            r.mean[static_cast<std::size_t>(c)] = channelMean(reference_, c);
+
+        result.candidates.resize(m_.candidates.size());
+        tbb::parallel_for(std::size_t{0}, m_.candidates.size(), [&](std::size_t i) {
+            result.candidates[i] = evaluate(m_.candidates[i]);
+        });
+        checkReference(result);
+        return result;
+    }
+
+private:
+    CandidateResult evaluate(const OfCandidate& m) const {
+        CandidateResult r;
+        r.candidate = m.candidate;
+        r.biased = m.biased;
+        r.loadSeconds = m.loadSeconds;
+        r.bytes = m.bytes;
+        const std::size_t last = m.seeds.front().size() - 1;
+        const std::vector<Pixels> pictures = picturesAt(m, last);
+        const SeedMean mean = meanOfSeeds(pictures);
+        r.secondsPerSample =
+            overSeeds(m, last, [&](const Stage& s) { return scale_ * s.seconds / s.samples; });
+        r.cpuSecondsPerSample =
+            overSeeds(m, last, [&](const Stage& s) { return scale_ * s.cpuSeconds / s.samples; });
+        r.bias = relativeBias(mean, reference_);
+        r.squaredBias = squaredBias(mean, reference_, weights_);
+
+        std::vector<double> variances = variancesOfSeeds(pictures, mean, weights_);
+        for (std::size_t k = 0; k < variances.size(); ++k) {
+            variances[k] *= m.seeds[k][last].samples;
+            r.model.costs.push_back(variances[k] * scale_ * m.seeds[k][last].seconds /
+                                    m.seeds[k][last].samples);
+        }
+        r.variance = meanOf(variances);
+        r.model.secondsPerSample = r.secondsPerSample.value;
+        if (r.biased) r.model.squaredBias = r.squaredBias;
+        for (std::size_t stage = 0; stage <= last; ++stage) r.points.push_back(point(m, stage));
+        return r;
+    }
+
+    TradePoint point(const OfCandidate& m, std::size_t stage) const {
+        TradePoint point;
+        const std::vector<Pixels> pictures = picturesAt(m, stage);
+        point.samples = m.seeds.front()[stage].samples;
+        point.seconds =
+            overSeeds(m, stage, [&](const Stage& s) { return scale_ * s.seconds; }).value;
+        point.relMse = meanOf(errorsOfSeeds(pictures, reference_, weights_));
+        std::vector<double> flips;
+        for (const Pixels& picture : pictures) {
+            if (watch_.seconds() > flipSeconds_) return point;
+            flips.push_back(flip(picture));
+        }
+        point.flip = meanOf(flips);
+        return point;
+    }
+
+    double flip(const Pixels& picture) const {
+        const std::vector<float> map =
+            flipLdr(referenceFloats_, picture, m_.measured.width, m_.measured.height);
+        double sum = 0;
+        for (const float v : map) sum += double{v};
+        return sum / static_cast<double>(map.size());
+    }
+
+    void checkReference(const TradeResult& result) const {
+        const auto best =
+            std::min_element(result.candidates.begin(), result.candidates.end(),
+                             [](const CandidateResult& a, const CandidateResult& b) {
+                                 return a.points.back().relMse.value < b.points.back().relMse.value;
+                             });
+        const double bestError = best->points.back().relMse.value;
+        const double error = result.reference.error.value;
+        if (error <= bestError && error <= largestReferenceError) return;
+        throw usageError(
+            "the budget is too small for the reference to converge: its relMSE is {:.2g} after "
+            "{} samples per pixel, and that of the best candidate, '{}', is {:.2g}; give more "
+            "time by --budget, or a smaller --res",
+            error, result.reference.samples, best->candidate.name, bestError);
+    }
+
+    const TradeMeasurements& m_;
+    const double flipSeconds_;
+    const Stopwatch watch_;
+    SeedMean reference_;
+    Pixels referenceFloats_;
+    std::vector<double> weights_;
+    double scale_ = 1;
+};
+
+/// The winner, or where unbiased candidates are tied with it, the best of these.
+std::size_t recommend(const TradeResult& result, const Winner& winner, double seconds) {
+    if (!result.candidates[winner.best].biased) return winner.best;
+    std::size_t chosen = winner.best;
+    for (const std::size_t i : winner.tied) {
+        if (result.candidates[i].biased) continue;
+        const bool first = result.candidates[chosen].biased;
+        if (first ||
+            errorDifference(result.candidates[i].model, result.candidates[chosen].model, seconds)
+                    .value < 0)
+            chosen = i;
+    }
+    return chosen;
+}
+
+void readTimes(TradeResult& result) {
+    const std::vector<TradeModel> models = result.models();
+    const TradeModel& plain = models.front();
+    for (const double seconds : readableTimes) {
+        if (plain.samplesIn(seconds) < fewestSamples) continue;
+        if (const auto winner = bestAt(models, seconds))
+            result.equalTime.push_back({seconds, *winner, recommend(result, *winner, seconds)});
+        if (result.equalTime.size() == mostReadings) return;
+    }
+}
+
+void readErrors(TradeResult& result) {
+    const std::vector<TradeModel> models = result.models();
+    for (const double error : readableErrors) {
+        const auto winner = fastestTo(models, error);
+        if (!winner) continue;
+        const TradeModel& best = models[winner->best];
+        const double seconds = best.secondsTo(error)->value;
+        if (best.samplesIn(seconds) < fewestSamples || seconds > longestReading) continue;
+        result.equalError.push_back({error, *winner, recommend(result, *winner, seconds)});
+        if (result.equalError.size() == mostReadings) return;
+    }
+}
+
+void readFront(TradeResult& result) {
+    double longest = 0;
+    for (const TradeReading& r : result.equalTime) longest = std::max(longest, r.target);
+    result.front = paretoFront(result.models(), longest, frontSteps);
+    for (const FrontPoint& point : result.front) result.candidates[point.candidate].onFront = true;
+}
+
+std::string namesOf(const TradeResult& result, const std::vector<std::size_t>& indices) {
+    std::vector<std::string> names;
+    for (const std::size_t i : indices)
+        names.push_back(fmt::format("'{}'", result.candidates[i].candidate.name));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void noteTies(TradeResult& result) {
+    for (const TradeReading& r : result.equalTime)
+        if (!r.winner.tied.empty())
+            result.notes.push_back(fmt::format(
+                "the budget was too small to tell {} from '{}' at {}",
+                namesOf(result, r.winner.tied), result.candidates[r.winner.best].candidate.name,
+                formatDuration(r.target)));
+    std::vector<std::size_t> unresolved;
+    for (std::size_t i = 0; i < result.candidates.size(); ++i)
+        if (result.candidates[i].biased && !result.candidates[i].biasResolved())
+            unresolved.push_back(i);
+    if (!unresolved.empty())
+        result.notes.push_back(
+            fmt::format("no bias was found beyond noise in {}", namesOf(result, unresolved)));
+}
+
+}  // namespace
+
+void TradeMeasurements::dropRound(int k) {
+    for (OfCandidate& c : candidates)
+        c.seeds.resize(std::min(c.seeds.size(), static_cast<std::size_t>(k)));
+    const std::size_t rounds =
+        static_cast<std::size_t>(k) * static_cast<std::size_t>(tradeReferenceSeeds / tradeSeeds);
+    reference.resize(std::min(reference.size(), rounds));
+}
+
+std::vector<TradeModel> TradeResult::models() const {
+    std::vector<TradeModel> all;
+    for (const CandidateResult& c : candidates) all.push_back(c.model);
+    return all;
+}
+
+TradeResult evaluateTrade(const TradeMeasurements& measurements, double flipSeconds) {
+    TradeResult result = Evaluation(measurements, flipSeconds).run();
+    readTimes(result);
+    readErrors(result);
+    readFront(result);
+    noteTies(result);
+    return result;
+}
+
+}  // namespace woodcock

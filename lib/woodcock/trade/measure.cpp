@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/trade/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <set>
+
+#include "woodcock/render/session.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/load.h"
+
+namespace woodcock {
+namespace {
+
+/// What decides what is loaded and built. The size of the picture counts with levels of detail.
+SceneDescription loadKey(SceneDescription scene) {
+    const RenderDescription render = scene.render;
+    scene.places.clear();
+    scene.output = {};
+    scene.render = {};
+    scene.render.storage = render.storage;
+    scene.render.lookup = render.lookup;
+    scene.render.majorantScale = render.majorantScale;
+    if (render.levelOfDetail > 0) {
+        scene.render.levelOfDetail = render.levelOfDetail;
+        scene.render.width = render.width, scene.render.height = render.height;
+    }
+    return scene;
+}
+
+std::size_t bytesOf(const Scene& scene) {
+    std::set<const Field*> fields;  // parts may share one
+    std::size_t bytes = 0;
+    const auto add = [&](const Medium& medium) {
+        for (const MediumPart& part : medium.parts) {
+            bytes += part.majorants().bytes();
+            for (const Field* field : {part.field(), part.albedo()})
+                if (field && fields.insert(field).second) bytes += field->bytes();
+        }
+    };
+    add(scene.medium);
+    for (const Medium& medium : scene.interiors) add(medium);
+    return bytes;
+}
+
+/// Of all threads of this process.
+double processorSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+Pixels pixelsOf(const Film& film) {
+    Pixels pixels;
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x) {
+            const Rgb radiance = film.radiance(x, y);
+            for (int c = 0; c < 3; ++c) pixels.push_back(radiance[c]);
+        }
+    return pixels;
+}
+
+int meanSamples(const Film& film) {
+    double sum = 0;
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x) sum += static_cast<double>(film.at(x, y).samples);
+    return std::max(1, static_cast<int>(std::lround(sum / film.width() / film.height())));
+}
+
+}  // namespace
+
+bool SceneStore::has(const SceneDescription& scene) const {
+    const SceneDescription key = loadKey(scene);
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [&](const Entry& entry) { return entry.key == key; });
+}
+
+const BuiltScene& SceneStore::get(const SceneDescription& scene) {
+    const SceneDescription key = loadKey(scene);
+    for (const Entry& entry : entries_)
+        if (entry.key == key) return entry.built;
+    const Stopwatch watch;
+    Scene built = buildScene(scene, loadScene(scene));
+    const double seconds = watch.seconds();
+    const std::size_t bytes = bytesOf(built);
+    entries_.push_back({key, {std::move(built), seconds, bytes}});
+    return entries_.back().built;
+}
+
+std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint64_t seed,
+                                               const std::vector<int>& samples, int threads,
+                                               const GoOn& goOn) {
+    RenderSettings settings = renderSettings(subject.render);
+    settings.seed = seed;
+    settings.threads = threads;
+    settings.timeLimit = settings.noise = 0;
+    std::vector<Stage> stages;
+    std::optional<Film> film;
+    double seconds = 0, cpuSeconds = 0;
+    int done = 0;
+    for (const int count : samples) {
+        // Where adaptive samples go depends on those before: such a picture is rendered at once.
+        const bool atOnce = settings.adaptive;
+        if (atOnce) film.reset(), seconds = cpuSeconds = 0;
+        settings.firstSample = atOnce ? 0 : done;
+        settings.endSample = count;
+        const double cpuStart = processorSeconds();
+        const Stopwatch watch;
+        RenderResult result =
+            render(*subject.scene, settings, [&](const RenderProgress&) { return goOn(); });
+        seconds += watch.seconds();
+        cpuSeconds += processorSeconds() - cpuStart;
+        if (result.reason == StopReason::Interrupted) return std::nullopt;
+        if (film)
+            film->merge(result.film);
+        else
+            film = std::move(result.film);
+        done = count;
+        stages.push_back({meanSamples(*film), pixelsOf(*film), seconds, cpuSeconds});
+    }
+    return stages;
+}
+
+std::vector<int> stageCounts(int samples) {
+    std::vector<int> counts;
+    for (const int divisor : {16, 4, 1})
+        if (samples / divisor > (counts.empty() ? 0 : counts.back()))
+            counts.push_back(samples / divisor);
+    return counts;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <optional>
+#include <vector>
+
+#include "woodcock/render/scene.h"
+#include "woodcock/scene/description.h"
+#include "woodcock/trade/estimate.h"
+#include "woodcock/trade/plan.h"
+
+namespace woodcock {
+
+/// Seconds since it was made.
+class Stopwatch {
+public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// A scene that is ready to be rendered.
+struct BuiltScene {
+    Scene scene;
+    double loadSeconds = 0;  ///< loading and building
+    std::size_t bytes = 0;   ///< held by fields and majorants
+};
+
+/// Loads each scene once: candidates that differ in what happens while rendering share theirs.
+class SceneStore {
+public:
+    const BuiltScene& get(const SceneDescription& scene);
+    bool has(const SceneDescription& scene) const;
+
+private:
+    struct Entry {
+        SceneDescription key;
+        BuiltScene built;
+    };
+    std::list<Entry> entries_;
+};
+
+/// What there is to render of a candidate, at the size at which it is measured. Levels of detail
+/// are those of the scene's own size, at which it was loaded.
+struct Subject {
+    const Scene* scene = nullptr;
+    RenderDescription render;
+    Subject() = default;
+    Subject(const BuiltScene& built, const SceneDescription& description, PictureSize size)
+        : scene(&built.scene), render(description.render) {
+        render.width = size.width, render.height = size.height;
+    }
+};
+
+/// Whether to go on; asked a few times a second.
+using GoOn = std::function<bool()>;
+
+/// A picture after some number of samples, and what all up to then took.
+struct Stage {
+    int samples = 0;  ///< per pixel, in the mean
+    Pixels pixels;
+    double seconds = 0, cpuSeconds = 0;
+};
+/// Renders `samples` samples per pixel; the stages are at these counts, which rise. Absent where
+/// `goOn` said no.
+std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint64_t seed,
+                                               const std::vector<int>& samples, int threads,
+                                               const GoOn& goOn);
+
+/// A sixteenth and a quarter of the samples, where these are samples, and all.
+std::vector<int> stageCounts(int samples);
+
+}  // namespace woodcock

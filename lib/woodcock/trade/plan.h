@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace woodcock {
+
+// How a budget of seconds is shared among pictures of which each is rendered from several seeds.
+
+inline constexpr int tradeSeeds = 4;           ///< of each candidate
+inline constexpr int tradeReferenceSeeds = 8;  ///< of the reference, which all lean on
+
+struct PilotCost {
+    double secondsPerSample = 0;  ///< of every pixel
+    double variance = 0;          ///< of one sample
+    double weight = 1;            ///< how much its error matters
+};
+
+/// Samples per pixel of each seed.
+struct TradePlan {
+    std::vector<int> candidates;
+    int reference = 0;
+    double seconds = 0;  ///< that it takes
+};
+
+/// Errors of squared biases are proportional to variance / samples of candidate and reference
+/// together. The weighted sum of these is least where each gets time in proportion to the root of
+/// weight x variance x seconds per sample (Neyman 1934, allocation), the reference's weight being
+/// the sum of all. None gets less than `least` samples, so that the plan may take longer than
+/// `seconds` where these are too few.
+TradePlan planTrade(const std::vector<PilotCost>& candidates, const PilotCost& reference,
+                    double seconds, int least);
+
+/// A size in the shape of width x height with about so many pixels, at most its own.
+struct PictureSize {
+    int width = 1, height = 1;
+    double pixels() const { return double(width) * height; }
+};
+PictureSize sizeOfPixels(PictureSize full, double pixels);
+
+/// What the least plan takes of samples per pixel, all pictures and the pilot together.
+double leastSamplesPerPixel(std::size_t candidates);
+/// What a plan takes that tells candidates apart.
+double goodSamplesPerPixel(std::size_t candidates);
+
+}  // namespace woodcock

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "woodcock/trade/candidates.h"
+#include "woodcock/trade/measure.h"
+#include "woodcock/trade/model.h"
+
+namespace woodcock {
+
+// What candidates cost on one scene and what they bring, measured against the scene's own unbiased
+// reference. Pictures are rendered smaller than the scene says, where the budget demands it; all
+// seconds are those of the scene's own size, in proportion to pixels, and leave loading out.
+
+struct TradeSettings {
+    double budget = 120;  ///< seconds for everything
+    int threads = 0;      ///< 0: all cores
+    std::uint64_t seed = 0;
+    Extent extent = Extent::All;  ///< of the built-in candidates
+    bool crops = false;           ///< also render pictures of equal time to look at
+    /// Told the share that is done and what is at work; false stops.
+    std::function<bool(double fraction, const std::string& what)> onProgress = {};
+};
+
+struct TradePoint {
+    int samples = 0;
+    double seconds = 0;
+    Measured relMse;               ///< standard error over seeds
+    std::optional<Measured> flip;  ///< of one exposure, see flipLdr(); absent: no time for it
+};
+
+struct CandidateResult {
+    Candidate candidate;
+    bool biased = false;  ///< by what it is, whatever was measured
+    double loadSeconds = 0;
+    std::size_t bytes = 0;      ///< fields and majorants
+    Measured secondsPerSample;  ///< wall clock
+    Measured cpuSecondsPerSample;
+    Measured bias;         ///< of the mean of the picture, relative
+    Measured squaredBias;  ///< relative, mean over pixels; below zero by noise alone
+    Measured variance;     ///< of one sample, relative: relMSE = variance / samples + squaredBias
+    std::vector<TradePoint> points;
+    TradeModel model;
+    bool onFront = false;
+    std::optional<std::size_t> crop;  ///< index into TradeResult::crops
+
+    /// Whether the measured squared bias is more than noise: by three standard errors.
+    bool biasResolved() const { return squaredBias.value > 3 * squaredBias.se; }
+};
+
+struct TradeReference {
+    int samples = 0;  ///< per pixel, all seeds together
+    int seeds = 0;
+    double seconds = 0;
+    Measured error;
+    std::array<Measured, 3> mean;
+};
+
+struct TradeCrop {
+    std::string title;
+    Pixels pixels;
+};
+
+/// Who is best at a time or an error.
+struct TradeReading {
+    double target = 0;
+    Winner winner;
+    /// The winner, or an unbiased candidate that is tied with it.
+    std::size_t recommended = 0;
+};
+
+struct TradeResult {
+    PictureSize full, measured;
+    double seconds = 0;
+    TradeReference reference;
+    std::vector<CandidateResult> candidates;
+    std::vector<FrontPoint> front;
+    std::vector<TradeReading> equalTime, equalError;
+    std::vector<double> referencePixels;
+    std::vector<TradeCrop> crops;  ///< the first is the reference
+    std::vector<std::string> notes;
+
+    std::vector<TradeModel> models() const;
+};
+
+/// `given` are a user's candidates; without any, the built-in ones. `parse` gives `complete` before
+/// it was completed. Absent where onProgress said no. Throws Error{Usage} where the budget is too
+/// small, for anything or for the reference.
+std::optional<TradeResult> runTrade(const SceneDescription& complete, const ParseScene& parse,
+                                    const std::vector<Candidate>& given,
+                                    const TradeSettings& settings);
+
+}  // namespace woodcock

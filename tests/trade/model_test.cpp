@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/trade/model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace woodcock {
+namespace {
+
+/// Unbiased: variance 4 at half a second a sample.
+const TradeModel slow{0.5, {}, {2, 2, 2, 2}};
+/// A fifth of the noise, a bias of 10 %.
+const TradeModel biased{0.1, {0.01, 0}, {0.4, 0.4, 0.4, 0.4}};
+
+TEST(TradeModel, ErrorFallsWithTimeToTheBias) {
+    EXPECT_DOUBLE_EQ(slow.errorAt(10)->value, 0.2);
+    EXPECT_DOUBLE_EQ(biased.errorAt(10)->value, 0.05);
+    EXPECT_DOUBLE_EQ(biased.errorAt(1e9)->value, 0.01 + 0.4e-9);
+    EXPECT_EQ(slow.samplesIn(10.3), 20);
+    EXPECT_EQ(slow.samplesIn(0.4), 0);
+    EXPECT_FALSE(slow.errorAt(0.4));
+}
+
+TEST(TradeModel, TimeToAnErrorIsTheInverse) {
+    EXPECT_DOUBLE_EQ(slow.secondsTo(0.2)->value, 10);
+    EXPECT_DOUBLE_EQ(biased.secondsTo(0.05)->value, 10);
+    EXPECT_FALSE(biased.secondsTo(0.01));
+    EXPECT_DOUBLE_EQ(slow.secondsTo(1e6)->value, 0.5) << "a sample at least";
+}
+
+TEST(TradeModel, ErrorsCarryThoseOfNoiseAndBias) {
+    const TradeModel model{1, {0.02, 0.003}, {1, 3}};  // mean 2, standard error 1
+    EXPECT_NEAR(model.errorAt(100)->se, std::hypot(0.003, 0.01), 1e-12);
+    // d t / d cost = 1 / room, d t / d bias = t / room, at room = 0.04 and t = 50.
+    EXPECT_NEAR(model.secondsTo(0.06)->se, std::hypot(1 / 0.04, 50 * 0.003 / 0.04), 1e-9);
+    EXPECT_DOUBLE_EQ(model.careful().biasError(), 0.026);
+}
+
+TEST(TradeModel, ANegativeSquareIsNoise) {
+    const TradeModel model{1, {-0.1, 0.2}, {1, 1}};
+    EXPECT_DOUBLE_EQ(model.errorAt(10)->value, 0.1);
+    EXPECT_DOUBLE_EQ(model.careful().errorAt(10)->value, 0.5);
+}
+
+// Lines cross where 2 / t = 0.01 + 0.4 / t: at 160 seconds.
+TEST(Pareto, BiasWinsEarlyAndLoses) {
+    const std::vector<TradeModel> models{slow, biased};
+    EXPECT_EQ(bestAt(models, 159)->best, 1u);
+    EXPECT_EQ(bestAt(models, 161)->best, 0u);
+    EXPECT_TRUE(bestAt(models, 161)->tied.empty());
+    EXPECT_EQ(bestAt(models, 0.2)->best, 1u) << "the other has no time for a sample";
+    EXPECT_FALSE(bestAt(models, 0.05));
+    EXPECT_EQ(fastestTo(models, 0.02)->best, 1u);
+    EXPECT_EQ(fastestTo(models, 0.012)->best, 0u);
+
+    const std::vector<FrontPoint> front = paretoFront(models, 1000, 200);
+    ASSERT_EQ(front.size(), 200u);
+    EXPECT_NEAR(front.front().seconds, 0.1, 1e-6);
+    EXPECT_NEAR(front.back().seconds, 1000, 1e-6);
+    for (const FrontPoint& p : front) {
+        EXPECT_EQ(p.candidate, p.seconds < 160 ? 1u : 0u) << p.seconds;
+        EXPECT_DOUBLE_EQ(p.error, models[p.candidate].errorAt(p.seconds)->value);
+    }
+}
+
+// Costs scatter by far more than they differ, and in step: only seed by seed can they be told
+// apart.
+TEST(Pareto, SeedsAreCompared) {
+    TradeModel a{1, {}, {1, 2, 4, 8}}, b{1, {}, {1.1, 2.1, 4.1, 8.1}};
+    EXPECT_TRUE(bestAt({a, b}, 10)->tied.empty());
+    b.costs = {8.1, 4.1, 2.1, 1.1};
+    EXPECT_EQ(bestAt({a, b}, 10)->tied, std::vector<std::size_t>{1});
+    EXPECT_NEAR(errorDifference(b, a, 10).value, 0.01, 1e-12);
+}
+
+TEST(Pareto, AnUncertainBiasTies) {
+    TradeModel uncertain = biased;
+    uncertain.squaredBias.se = 0.01;
+    const std::vector<TradeModel> models{slow, uncertain};
+    EXPECT_EQ(bestAt(models, 250)->best, 0u);
+    EXPECT_EQ(bestAt(models, 250)->tied, std::vector<std::size_t>{1});
+}
+
+}  // namespace
+}  // namespace woodcock

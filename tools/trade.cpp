@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <thread>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "option_kinds.h"
+#include "progress.h"
+#include "scene_input.h"
+#include "trade_output.h"
+#include "trade_pictures.h"
+#include "woodcock/base/whole_file.h"
+#include "woodcock/scene/write.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int interruptedCode = 130;
+constexpr double defaultBudget = 120;
+
+struct TradeOptions {
+    SceneInput input;
+    std::optional<double> budget;
+    std::optional<int> threads;
+    std::optional<std::uint64_t> seed;
+    std::filesystem::path report, candidates;
+    bool json = false;
+};
+
+void prepareReport(const std::filesystem::path& directory) {
+    if (directory.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error)
+        throw usageError("--report: cannot make the directory '{}': {}", directory.string(),
+                         error.message());
+    for (const char* name : {"trade.json", "trade.csv"}) checkWritable(directory / name);
+}
+
+void writeText(const std::filesystem::path& file, const std::string& text) {
+    writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    spdlog::info("wrote {}", file.string());
+}
+
+void writeReport(const std::filesystem::path& directory, const TradeReport& report) {
+    writeText(directory / "trade.json", tradeJson(report, false).dump(1) + "\n");
+    writeText(directory / "trade.csv", tradeCsv(report));
+}
+
+std::string joinedFiles(const std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> names;
+    for (const auto& file : files) names.push_back(file.string());
+    return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription& complete,
+                                   const std::vector<Candidate>& given) {
+    const ParseScene parse = [&](const std::vector<std::string>& more) {
+        SceneInput input = o.input;
+        input.overrides.insert(input.overrides.end(), more.begin(), more.end());
+        return parseInput(input);
+    };
+    WorkProgress progress(progressStyle("auto"), "trade");
+    TradeSettings settings;
+    settings.budget = o.budget.value_or(defaultBudget);
+    settings.threads = o.threads.value_or(0);
+    settings.seed = o.seed.value_or(0);
+    settings.crops = !o.report.empty();
+    settings.onProgress = [&](double fraction, const std::string&) {
+        progress.update(fraction);
+        return !interrupted();
+    };
+    return runTrade(complete, parse, given, settings);
+}
+
+void run(const TradeOptions& o, const std::string& commandLine) {
+    checkInput(o.input);
+    const std::vector<Candidate> given =
+        o.candidates.empty() ? std::vector<Candidate>() : readCandidates(o.candidates);
+    prepareReport(o.report);
+    catchInterrupts();
+    SceneDescription complete = parseInput(o.input);
+    loadAndComplete(complete);
+
+    std::optional<TradeResult> result = measure(o, complete, given);
+    if (!result) throw CLI::RuntimeError(interruptedCode);
+    TradeReport report{commandLine, joinedFiles(o.input.files), sceneDigest(complete),
+                       RenderCommand(o.input, complete.output.files.empty())};
+    report.threads = o.threads.value_or(0) > 0
+                         ? *o.threads
+                         : static_cast<int>(std::thread::hardware_concurrency());
+    report.budget = o.budget.value_or(defaultBudget);
+    report.result = std::move(*result);
+    if (!o.report.empty()) report.pictures = tradePictures(report.result, complete);
+    if (o.json)
+        fmt::print("{}\n", tradeJson(report, false).dump(1));
+    else
+        fmt::print("{}", tradeText(report));
+    if (!o.report.empty()) writeReport(o.report, report);
+}
+
+}  // namespace
+
+CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
+    CLI::App* command = app.add_subcommand(
+        "trade", "Measures what each choice costs and brings on a scene, and tells which to take");
+    const auto o = std::make_shared<TradeOptions>();
+    command->add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
+        ->required()
+        ->type_name("FILE");
+    addParsed(*command, "--budget", o->budget, parseDuration, "The time it may take (2m)")
+        ->type_name("TIME");
+    command
+        ->add_option("--candidates", o->candidates,
+                     "What to compare, instead of what the program comes with: a TOML file of "
+                     "[[candidate]] name = \"...\", quality = \"...\", set = [\"KEY=VALUE\"]")
+        ->type_name("FILE");
+    command
+        ->add_option("--report", o->report,
+                     "Writes DIR/trade.json and DIR/trade.csv, and DIR/trade.html, a page that "
+                     "needs nothing else")
+        ->type_name("DIR");
+    command->add_flag("--json", o->json, "One JSON document on stdout instead of the tables");
+    addList(*command, "--set", o->input.overrides,
+            "Set a value of the scene, such as volume[0].scale=2")
+        ->type_name("KEY=VALUE");
+    addParsed(*command, "--res", o->input.size, parseImageSize,
+              "Image size; a width alone keeps the scene's shape")
+        ->type_name("WIDTHxHEIGHT");
+    addCount(*command, "--threads", o->threads, 0, 4096, "0: one for each core");
+    addCount(*command, "--seed", o->seed, 0, INT64_MAX / 2, "Of the random numbers");
+    command->callback([o, commandLine] { run(*o, commandLine); });
+    return *command;
+}
+
+}  // namespace woodcock::tool
