@@ -196,6 +196,12 @@ void writeTextFile(const std::filesystem::path& file, const std::string& text) {
     writeWholeFile(file, {bytes, text.size()});
 }
 
+bool haveSameFields(const SceneDescription& a, const SceneDescription& b) {
+    const RenderDescription &ra = a.render, &rb = b.render;
+    return a.volumes == b.volumes && ra.storage == rb.storage && ra.lookup == rb.lookup &&
+           ra.levelOfDetail == rb.levelOfDetail;
+}
+
 RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
                                 ProgressStyle style) {
     spdlog::info("{}", findNeeds(scene).describe());
@@ -242,9 +248,10 @@ void run(const RenderOptions& options, const std::string& commandLine) {
                       writeScene(description, options.writeScene.parent_path()));
     if (!options.rendersImages()) return;
     if (options.choosesQuality()) {
+        const SceneDescription before = description;
         if (!chooseQuality(description, options, commandLine))
             throw CLI::RuntimeError(interruptedCode);
-        loaded = loadScene(description);
+        if (!haveSameFields(before, description)) loaded = loadScene(description);
         settings = renderSettings(description, options);
     }
     std::vector<std::string> notes;

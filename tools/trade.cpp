@@ -28,6 +28,7 @@ struct TradeOptions {
     std::optional<int> threads;
     std::optional<std::uint64_t> seed;
     std::filesystem::path report, candidates;
+    std::string progress = "auto";
     bool json = false;
 };
 
@@ -64,7 +65,7 @@ std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription
         input.overrides.insert(input.overrides.end(), more.begin(), more.end());
         return parseInput(input);
     };
-    WorkProgress progress(progressStyle("auto"), "trade");
+    WorkProgress progress(progressStyle(o.progress), "trade");
     TradeSettings settings;
     settings.budget = o.budget.value_or(defaultBudget);
     settings.threads = o.threads.value_or(0);
@@ -131,6 +132,9 @@ CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
     addParsed(*command, "--res", o->input.size, parseImageSize,
               "Image size; a width alone keeps the scene's shape")
         ->type_name("WIDTHxHEIGHT");
+    addChoice(*command, "--progress", o->progress, {"auto", "bar", "json", "none"},
+              "How to show it:")
+        ->type_name("STYLE");
     addCount(*command, "--threads", o->threads, 0, 4096, "0: one for each core");
     addCount(*command, "--seed", o->seed, 0, INT64_MAX / 2, "Of the random numbers");
     command->callback([o, commandLine] { run(*o, commandLine); });

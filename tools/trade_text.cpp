@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "trade_output.h"
 #include "woodcock/base/parse.h"
@@ -12,7 +13,7 @@ namespace woodcock::tool {
 
 namespace {
 
-constexpr std::size_t nameWidth = 26;
+constexpr std::size_t nameWidth = 27, lineWidth = 100;
 
 /// Letters of UTF-8 count once.
 std::string padded(std::string text, std::size_t width) {
@@ -59,16 +60,42 @@ std::string candidatesText(const TradeResult& result) {
            "bias)^2\n";
 }
 
-/// "a = b, c": the best and those that are tied with it.
-std::string winnerText(const TradeResult& result, const Winner& winner) {
-    std::vector<std::string> tied;
-    for (const std::size_t i : winner.tied) tied.push_back(nameOf(result, i));
-    if (tied.empty()) return "";
-    constexpr std::size_t most = 3;
-    const std::size_t more = tied.size() > most ? tied.size() - most : 0;
-    tied.resize(tied.size() - more);
-    return fmt::format("tied: {}{}", fmt::join(tied, ", "),
-                       more ? fmt::format(" and {} more", more) : "");
+/// As many of those that are tied with it as a line has room for.
+std::string tiedText(const TradeResult& result, const std::vector<std::size_t>& tied,
+                     std::size_t room) {
+    std::string text;
+    for (std::size_t i = 0; i < tied.size(); ++i) {
+        const std::size_t more = tied.size() - i;
+        const std::string next = (i ? ", " : "tied: ") + nameOf(result, tied[i]);
+        if (text.size() + next.size() + 10 > room)
+            return fmt::format("{}{}{}", text, i ? " +" : "tied: ", more);
+        text += next;
+    }
+    return text;
+}
+
+/// Broken between words, what follows the first line indented.
+std::string wrapped(const std::string& text) {
+    std::istringstream words(text);
+    std::string lines, line;
+    for (std::string word; words >> word;) {
+        if (!line.empty() && line.size() + 1 + word.size() > lineWidth) {
+            lines += line + "\n";
+            line = "   ";
+        }
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return lines + line + "\n";
+}
+
+std::string readingLine(const std::string& target, const TradeResult& result,
+                        const TradeReading& reading, double samples, const Measured& number) {
+    const std::string line = fmt::format("{:>10}  {} {:>9.0f} {:>14}  ", target,
+                                         padded(nameOf(result, reading.recommended), nameWidth),
+                                         samples, withError(number));
+    std::vector<std::size_t> others = reading.winner.tied;
+    std::replace(others.begin(), others.end(), reading.recommended, reading.winner.best);
+    return line + tiedText(result, others, lineWidth - line.size()) + "\n";
 }
 
 std::string readingsText(const TradeReport& report) {
@@ -79,10 +106,8 @@ std::string readingsText(const TradeReport& report) {
                             "samples", "relMSE");
     for (const TradeReading& r : result.equalTime) {
         const TradeModel& model = result.candidates[r.recommended].model;
-        text +=
-            fmt::format("{:>10}  {} {:>9.0f} {:>14}  {}\n", formatDuration(r.target),
-                        padded(nameOf(result, r.recommended), nameWidth), model.samplesIn(r.target),
-                        withError(*model.errorAt(r.target)), winnerText(result, r.winner));
+        text += readingLine(formatDuration(r.target), result, r, model.samplesIn(r.target),
+                            *model.errorAt(r.target));
     }
     if (!result.equalError.empty())
         text += fmt::format("\n{:>10}  {} {:>9} {:>14}\n", "to relMSE", padded("take", nameWidth),
@@ -90,10 +115,8 @@ std::string readingsText(const TradeReport& report) {
     for (const TradeReading& r : result.equalError) {
         const TradeModel& model = result.candidates[r.recommended].model;
         const Measured seconds = *model.secondsTo(r.target);
-        text += fmt::format("{:>10.0e}  {} {:>9.0f} {:>14}  {}\n", r.target,
-                            padded(nameOf(result, r.recommended), nameWidth),
-                            std::ceil(seconds.value / model.secondsPerSample), withError(seconds),
-                            winnerText(result, r.winner));
+        text += readingLine(fmt::format("{:.0e}", r.target), result, r,
+                            std::ceil(seconds.value / model.secondsPerSample), seconds);
     }
     return text;
 }
@@ -110,7 +133,7 @@ std::string tradeText(const TradeReport& report) {
         result.measured.height, formatDuration(result.seconds), r.samples, r.seeds, r.error.value,
         r.error.se);
     text += candidatesText(result) + readingsText(report);
-    for (const std::string& note : result.notes) text += "note: " + note + "\n";
+    for (const std::string& note : result.notes) text += wrapped("note: " + note);
     text += "\n";
     for (const TradeReading& reading : result.equalTime)
         text += fmt::format("{}: {}\n", formatDuration(reading.target),

@@ -23,9 +23,7 @@ std::vector<Pixels> pictures(std::mt19937& random, std::size_t seeds, double mea
 }
 
 /// Each number counts 1 / (numbers): what is weighted is a plain mean.
-std::vector<double> evenWeights() {
-    return std::vector<double>(3 * pixels, 1.0 / (3 * pixels));
-}
+std::vector<double> evenWeights() { return std::vector<double>(3 * pixels, 1.0 / (3 * pixels)); }
 
 // Noise of 0.5 in each picture, of which four and eight stand against each other: their means'
 // variances, 0.06 and 0.03, would drown a squared bias of 0.01 or stand for one where there is

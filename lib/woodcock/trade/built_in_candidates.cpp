@@ -96,13 +96,13 @@ SceneFacts sceneFacts(const SceneDescription& description, const Scene& scene) {
 
 std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent) {
     std::vector<Candidate> list{{"as the scene says", "", {}}};
+    for (const std::string& quality : qualityNames) list.push_back({quality, quality, {}});
     add(list, "adaptive", "render.adaptive=true");
     if (facts.grids) addMarching(list, extent);
     if (facts.scattering) addScatteringChoices(list, facts, extent);
     if (facts.grids) addFieldChoices(list, facts, extent);
     addClamps(list, facts, extent);
     if (facts.dielectrics) add(list, "transparent shadows", "render.transparent_shadows=true");
-    for (const std::string& quality : qualityNames) list.push_back({quality, quality, {}});
     return list;
 }
 

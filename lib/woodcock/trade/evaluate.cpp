@@ -195,11 +195,15 @@ void readFront(TradeResult& result) {
     for (const FrontPoint& point : result.front) result.candidates[point.candidate].onFront = true;
 }
 
+/// The first few by name.
 std::string namesOf(const TradeResult& result, const std::vector<std::size_t>& indices) {
+    constexpr std::size_t most = 5;
     std::vector<std::string> names;
-    for (const std::size_t i : indices)
-        names.push_back(fmt::format("'{}'", result.candidates[i].candidate.name));
-    return fmt::format("{}", fmt::join(names, ", "));
+    for (std::size_t i = 0; i < std::min(most, indices.size()); ++i)
+        names.push_back(fmt::format("'{}'", result.candidates[indices[i]].candidate.name));
+    return fmt::format(
+        "{}{}", fmt::join(names, ", "),
+        indices.size() > most ? fmt::format(" and {} more", indices.size() - most) : "");
 }
 
 void noteTies(TradeResult& result) {

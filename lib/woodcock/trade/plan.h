@@ -10,6 +10,7 @@ namespace woodcock {
 
 inline constexpr int tradeSeeds = 4;           ///< of each candidate
 inline constexpr int tradeReferenceSeeds = 8;  ///< of the reference, which all lean on
+inline constexpr int mostTradeSeeds = 8;       ///< of each candidate, where there is time for more
 
 struct PilotCost {
     double secondsPerSample = 0;  ///< of every pixel

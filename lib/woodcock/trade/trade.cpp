@@ -225,14 +225,16 @@ private:
                                     {}});
         }
         double longestRound = 0;
-        for (int k = 0; k < tradeSeeds; ++k) {
-            if (k >= pilotSeeds && left(renderingShare) < 0.8 * longestRound) break;
+        for (int k = 0; k < mostTradeSeeds; ++k) {
+            const double needed = (k < tradeSeeds ? 0.8 : 1.05) * longestRound;
+            if (k >= pilotSeeds && left(renderingShare) < needed) break;
             const Stopwatch round;
             try {
                 renderRound(plan, k);
             } catch (const TimeIsUp&) {
                 if (k < pilotSeeds) throw tooSmall(2 * settings_.budget);
                 m.dropRound(k);
+                break;
             }
             longestRound = std::max(longestRound, round.seconds());
         }
@@ -250,7 +252,7 @@ private:
             m.candidates[i].seeds.push_back(
                 render(subjects_[i], Use::Candidate, k, stageCounts(plan.candidates[i])));
         }
-        tell(fmt::format("round {} of {}: the reference", k + 1, tradeSeeds));
+        tell("seeds of the reference");
         constexpr int perRound = tradeReferenceSeeds / tradeSeeds;
         for (int j = 0; j < perRound; ++j)
             m.reference.push_back(
