@@ -322,7 +322,7 @@ void trackDistance(const Medium& medium, std::span<DistanceQuery<N>> queries,
     for (DistanceQuery<N>& q : queries) {
         q.part = -1, q.t = q.tMax;
         Roulette roulette(q.roulette, q.random);
-        if (medium.parts.size() == 1)
+        if (medium.parts.size() == 1 && !medium.superposed)
             trackOnePart(medium, q, roulette, counters);
         else
             trackManyParts(medium, q, roulette, processes, counters);

@@ -51,6 +51,7 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
     const Flight flight = flightOf(p);
     if (p.standIn > 0 && !flight.medium->scatters) return;
     const auto lamps = scene_.lights.local();
+    if (lamps.empty()) return;
     const double scaled = pick * static_cast<double>(lamps.size());
     const int light = lamps[std::min(static_cast<std::size_t>(scaled), lamps.size() - 1)];
     const Vec3d lamp = *lampPosition(light);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ inline double powerHeuristic(double own, double other) {
 class LightChoice {
 public:
     explicit LightChoice(const LightSet& lights)
-        : lights_(lights), pick_(lights.sampled().size()) {}
+        : lights_(lights), pick_(std::max<std::size_t>(lights.sampled().size(), 1)) {}
 
     struct Chosen {
         int light;
@@ -51,7 +52,7 @@ public:
 
 private:
     const LightSet& lights_;
-    std::vector<float> pick_;
+    std::vector<float> pick_;  // one for each; a 0 where there are none
 };
 
 }  // namespace woodcock

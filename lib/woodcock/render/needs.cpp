@@ -6,7 +6,7 @@
 namespace woodcock {
 
 Needs findNeeds(const Scene& scene) {
-    Needs n;
+    Needs n = scene.pretended;
     Box3d bounds;  // of what scatters
     const auto look = [&](const Medium& medium) {
         for (const MediumPart& p : medium.parts) {
@@ -20,8 +20,8 @@ Needs findNeeds(const Scene& scene) {
     };
     look(scene.medium);
     for (const Medium& medium : scene.interiors) look(medium);
-    n.surfaces = scene.surfaces != nullptr;
-    n.lightSampling = (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
+    n.surfaces |= scene.surfaces != nullptr;
+    n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
         const Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];

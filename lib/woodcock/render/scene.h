@@ -7,6 +7,7 @@
 #include "woodcock/camera/camera.h"
 #include "woodcock/light/light_set.h"
 #include "woodcock/medium/medium.h"
+#include "woodcock/render/needs.h"
 #include "woodcock/surface/surface_set.h"
 
 namespace woodcock {
@@ -20,6 +21,9 @@ struct Scene {
     std::shared_ptr<const SurfaceSet> surfaces = {};  ///< null: none
     std::vector<Medium> interiors =
         {};  ///< what surfaces hold: SurfaceObject::medium - 1 is the index
+    /// What is run whether or not it is needed: to measure what that costs. See pretend() in
+    /// trade/needs_cost.h.
+    Needs pretended = {};
 
     /// World box of all finite media and surfaces.
     Box3d bounds() const;
