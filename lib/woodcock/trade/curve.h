@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "woodcock/trade/timing.h"
+
+namespace woodcock {
+
+/// A measured cost at one place.
+struct CurvePoint {
+    double x = 0, y = 0, se = 0;
+};
+
+/// The exponent of the power of x that runs nearest to the points: least squares of log y over log
+/// x, all points alike, as none of these curves is a power law throughout. Its error is what the
+/// scatter about that line says, or what the points' own errors do, whichever is the larger. Points
+/// that are not positive are left out; fewer than two places leave slope 0 with an infinite error.
+Measured fitSlope(const std::vector<CurvePoint>& points);
+
+struct CurveSeries {
+    std::string name;
+    std::vector<CurvePoint> points;
+
+    Measured slope() const { return fitSlope(points); }
+};
+
+/// How something grows with something.
+struct Curve {
+    std::string name, xLabel, yLabel, note;
+    std::vector<CurveSeries> series;
+};
+
+struct CurveTable {
+    std::string title;
+    std::vector<std::string> columns;
+    std::vector<std::vector<double>> rows;
+};
+
+}  // namespace woodcock

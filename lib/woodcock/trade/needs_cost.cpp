@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/trade/needs_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "woodcock/base/error.h"
+#include "woodcock/base/parse.h"
+#include "woodcock/base/statistics.h"
+
+namespace woodcock {
+namespace {
+
+constexpr std::array<bool Needs::*, needNames.size()> members{
+    &Needs::chromatic,     &Needs::overlap,     &Needs::scattering, &Needs::emission,
+    &Needs::lightSampling, &Needs::localLights, &Needs::surfaces};
+
+constexpr int fewestPairs = 3, usualPairs = 12;
+/// One run: long beside the clock's ticks, short beside what else the machine does.
+constexpr double shortestRun = 0.01, longestRun = 0.3;
+constexpr int largestSide = 64;
+
+bool Needs::*memberOf(Need need) { return members[static_cast<std::size_t>(need)]; }
+
+struct Run {
+    double seconds = 0;  ///< for each sample
+    double mean = 0;     ///< of the picture
+    RenderResult result;
+};
+
+Run run(const Scene& scene, const RenderSettings& settings) {
+    const double start = processorSeconds();
+    Run r{0, 0, render(scene, settings)};
+    r.seconds = (processorSeconds() - start) / settings.endSample;
+    for (int y = 0; y < settings.height; ++y)
+        for (int x = 0; x < settings.width; ++x) r.mean += r.result.film.radiance(x, y).mean();
+    r.mean /= settings.width * settings.height;
+    return r;
+}
+
+bool sameBits(const Film& a, const Film& b) {
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x)
+            if (a.radiance(x, y) != b.radiance(x, y) || a.alpha(x, y) != b.alpha(x, y))
+                return false;
+    return true;
+}
+
+/// The same view, small, in as many samples as one run of about `seconds` takes.
+RenderSettings plan(const Scene& scene, RenderSettings s, double seconds) {
+    const double shrink = std::min(1.0, double{largestSide} / std::max(s.width, s.height));
+    s.width = std::max(1, static_cast<int>(std::lround(s.width * shrink)));
+    s.height = std::max(1, static_cast<int>(std::lround(s.height * shrink)));
+    s.crop.reset();
+    s.threads = 1;
+    s.timeLimit = s.noise = 0;
+    s.adaptive = false;
+    s.firstSample = 0, s.endSample = 1;
+    run(scene, s);  // fills the caches
+    while (s.endSample < (1 << 20)) {
+        const double start = wallSeconds();
+        run(scene, s);
+        const double taken = wallSeconds() - start;  // it is the wall clock's budget
+        if (taken >= seconds / 2) break;
+        s.endSample *= std::clamp(static_cast<int>(seconds / std::max(taken, 1e-6)), 2, 16);
+    }
+    return s;
+}
+
+NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double seconds,
+                 double precision) {
+    const Scene pretending = pretend(scene, need);
+    const double end = wallSeconds() + seconds;
+    NeedCost cost{.need = need, .sameBits = true};
+    std::vector<double> with, without, ratios;
+    Moments difference;
+    const std::uint64_t seed = settings.seed;
+    run(pretending, settings);
+    while (true) {
+        settings.seed = seed + static_cast<std::uint64_t>(cost.pairs);
+        // A B, B A, A B: what drifts, drifts for both.
+        const bool swap = cost.pairs % 2;
+        const Run first = run(swap ? pretending : scene, settings);
+        const Run second = run(swap ? scene : pretending, settings);
+        const Run &a = swap ? second : first, &b = swap ? first : second;
+        without.push_back(a.seconds), with.push_back(b.seconds);
+        ratios.push_back(b.seconds / a.seconds);
+        cost.sameBits &= sameBits(a.result.film, b.result.film);
+        if (a.mean > 0) difference.add(b.mean / a.mean - 1);
+        ++cost.pairs;
+        cost.ratio = medianOf(ratios);
+        const bool known = cost.pairs >= usualPairs && cost.ratio.se < precision * cost.ratio.value;
+        if (known || (cost.pairs >= fewestPairs && wallSeconds() > end)) break;
+    }
+    cost.with = medianOf(with), cost.without = medianOf(without);
+    cost.difference = {difference.mean(), difference.standardError()};
+    return cost;
+}
+
+}  // namespace
+
+bool has(const Needs& needs, Need need) { return needs.*memberOf(need); }
+
+Scene pretend(Scene scene, Need need) {
+    scene.pretended.*memberOf(need) = true;
+    if (need == Need::Overlap) {
+        scene.medium.superposed = true;
+        for (Medium& medium : scene.interiors) medium.superposed = true;
+    }
+    if (need == Need::Surfaces && !scene.surfaces)
+        scene.surfaces = std::make_shared<SurfaceSet>(SurfaceSet{Geometry({}, {}), {}, {}, {}});
+    return scene;
+}
+
+std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
+                                const NeedsCostOptions& options) {
+    const double start = wallSeconds();
+    const Needs needs = findNeeds(scene);
+    const auto missing = static_cast<int>(
+        std::count_if(members.begin(), members.end(), [&](auto m) { return !(needs.*m); }));
+    const double runs = std::max(1, missing) * 2.0 * usualPairs;
+    const double wanted = options.budget / (2 * runs);
+    settings = plan(scene, settings, std::clamp(wanted, shortestRun, longestRun));
+    const double planned = wallSeconds();
+    run(scene, settings);
+    const double oneRun = wallSeconds() - planned;
+    const double least = (wallSeconds() - start) + missing * (2 * fewestPairs + 1) * oneRun;
+    if (least > options.budget)
+        throw usageError("a budget of {} is too small: {} needs of this scene take {} at least",
+                         formatDuration(options.budget), missing, formatDuration(least));
+    std::vector<NeedCost> costs;
+    int left = missing;
+    for (std::size_t i = 0; i < needNames.size(); ++i) {
+        const Need need = static_cast<Need>(i);
+        if (has(needs, need)) {
+            costs.push_back({.need = need, .needed = true});
+        } else {
+            const double share = (start + options.budget - wallSeconds()) / left--;
+            costs.push_back(measure(scene, need, settings, share, options.precision));
+        }
+        if (options.onResult) options.onResult(costs.back());
+    }
+    return costs;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "woodcock/render/session.h"
+#include "woodcock/trade/timing.h"
+
+namespace woodcock {
+
+/// What a scene may need of the path loop: the members of Needs.
+enum class Need {
+    Chromatic,
+    Overlap,
+    Scattering,
+    Emission,
+    LightSampling,
+    LocalLights,
+    Surfaces,
+};
+inline const std::array<std::string, 7> needNames{
+    "three colour channels", "overlapping media",    "scattering", "emission",
+    "light sampling",        "equiangular sampling", "surfaces"};
+
+bool has(const Needs& needs, Need need);
+
+/// The scene, to be drawn as if it had a need that it has not: the same picture up to noise, by the
+/// more general way. Grey media as three channels that agree, one part as a superposition of one,
+/// no surfaces as an empty set of them.
+Scene pretend(Scene scene, Need need);
+
+/// What a feature costs a scene that does not need it.
+struct NeedCost {
+    Need need{};
+    bool needed = false;  ///< then there is nothing to compare, and the rest is empty
+    /// Processor seconds of one sample of every pixel: with the need pretended, and as the scene
+    /// is; and the median of the ratios of runs beside each other.
+    Measured with{}, without{}, ratio{};
+    int pairs = 0;          ///< of runs
+    bool sameBits = false;  ///< all pictures were the same to the last bit
+    Measured difference{};  ///< of the means of the pictures, relative
+
+    /// A specialisation earns its place where the general way takes a tenth longer.
+    static constexpr double leastRatio = 1.1;
+    bool earns() const { return ratio.value >= leastRatio; }
+};
+
+struct NeedsCostOptions {
+    double budget = 60;       ///< seconds for all needs together
+    double precision = 0.01;  ///< of a ratio: its standard error to stop at
+    std::function<void(const NeedCost&)> onResult = {};
+};
+
+/// Of every need. The picture is drawn small, by one thread, in pairs of runs with and without the
+/// need, in turns and with the same random numbers. Throws Error{Usage} where the budget is too
+/// small for three pairs of each need.
+std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
+                                const NeedsCostOptions& options);
+
+}  // namespace woodcock

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "woodcock/render/scene.h"
+#include "woodcock/trade/timing.h"
+
+namespace woodcock {
+
+/// A cumulus, baked at some resolution, and what loading it cost.
+struct ScalingCloud {
+    int side = 0;  ///< voxels along its longest side
+    double boxVoxels = 0;
+    std::uint64_t activeVoxels = 0;
+    std::shared_ptr<const Field> field;
+    Affine3d worldFromIndex;
+    /// Mean along the camera's rays of its views, where sigma_t is 1 times the density.
+    double unitDepth = 0;
+    double bakeSeconds = 0;
+    Measured load, peer;  ///< wall clock, from the file: to our field, and by OpenVDB's own reading
+    std::uint64_t fieldBytes = 0, majorantBytes = 0, peerBytes = 0;  ///< majorants: at depth 10
+};
+
+/// Bakes the preset `cumulus` through a file in `directory`, which is loaded `loads` times by us
+/// and by OpenVDB in turns, and removed.
+ScalingCloud bakeScalingCloud(int side, const std::filesystem::path& directory, int loads);
+
+/// What is varied of a picture of the cloud, under a sun and a sky.
+struct ScalingView {
+    double opticalDepth = 10;  ///< mean over the picture, by exact integration
+    double albedo = 0.9, g = 0.6;
+    int majorantSmallestLog2 = 1;
+    /// So many volumes, either all in one place, each of its part of the optical depth; or one in
+    /// the picture and the others of the same depth a hundred sizes away, where hardly any light
+    /// comes by.
+    int volumes = 1;
+    bool apart = false;
+};
+
+Scene scalingScene(const ScalingCloud& cloud, const ScalingView& view);
+
+/// Mean optical depth along the camera's rays through the first part, by exact integration.
+double meanOpticalDepth(const Scene& scene);
+
+}  // namespace woodcock

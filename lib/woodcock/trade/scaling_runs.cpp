@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/trade/scaling_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "woodcock/base/parse.h"
+
+namespace woodcock {
+namespace {
+
+constexpr int rounds = 9, fewestRounds = 3;
+constexpr int side = 16, threadedSide = 128;  ///< pixels; threads share tiles of 16
+constexpr int mostSamples = 1 << 16;
+
+struct Job {
+    TimedRender* render;
+    RenderSettings settings;
+    std::vector<double> microseconds = {};
+
+    double run() {
+        const double start = render->wallClock ? wallSeconds() : processorSeconds();
+        const RenderResult result = woodcock::render(render->scene, settings);
+        const double taken = (render->wallClock ? wallSeconds() : processorSeconds()) - start;
+        const RenderCounters& c = result.counters;
+        microseconds.push_back(1e6 * taken / static_cast<double>(c.paths));
+        render->seconds += taken;
+        RenderCounters& sum = render->counters;
+        sum.paths += c.paths, sum.scatterings += c.scatterings, sum.shadowRays += c.shadowRays;
+        sum.distanceSegments += c.distanceSegments, sum.shadowSegments += c.shadowSegments;
+        sum.distanceCollisions += c.distanceCollisions;
+        sum.shadowCollisions += c.shadowCollisions;
+        return taken;
+    }
+    void forget() {
+        microseconds.clear();
+        render->seconds = 0, render->counters = {};
+    }
+};
+
+/// Makes a run of the job take about `seconds`; false where not even one sample does so thrice.
+bool plan(Job& job, double seconds) {
+    job.settings.endSample = 1;
+    double taken = job.run();  // fills the caches too
+    if (taken > rounds * seconds / fewestRounds) return false;
+    while (taken < seconds / 4 && job.settings.endSample < mostSamples) {
+        const double factor = std::clamp(seconds / std::max(taken, 1e-6), 2.0, 16.0);
+        job.settings.endSample =
+            static_cast<int>(std::min<double>(mostSamples, job.settings.endSample * factor));
+        taken = job.run();
+    }
+    return true;
+}
+
+}  // namespace
+
+void timeRenders(std::vector<TimedRender>& renders, double seconds,
+                 std::vector<std::string>& notes) {
+    const double end = wallSeconds() + seconds;
+    // What planning itself takes is about two rounds.
+    const double oneRun = seconds / static_cast<double>(renders.size()) / (rounds + 2);
+    std::vector<Job> jobs;
+    for (TimedRender& render : renders) {
+        Job job{&render, {}};
+        job.settings.width = job.settings.height = render.wallClock ? threadedSide : side;
+        job.settings.threads = render.threads;
+        const bool planned = plan(job, oneRun);
+        if (!planned)
+            notes.push_back(fmt::format(
+                "{} is left out: one sample takes {}, its share of the "
+                "budget is {}",
+                render.name, formatDuration(render.seconds), formatDuration(oneRun * rounds)));
+        job.forget();
+        if (planned) jobs.push_back(std::move(job));
+    }
+    for (int round = 0; round < rounds; ++round) {
+        if (round >= fewestRounds && wallSeconds() > end) break;
+        for (Job& job : jobs) {
+            job.settings.seed = static_cast<std::uint64_t>(round) + 1;
+            job.run();
+        }
+    }
+    for (Job& job : jobs) job.render->microseconds = medianOf(job.microseconds);
+}
+
+}  // namespace woodcock

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "woodcock/render/session.h"
+#include "woodcock/trade/timing.h"
+
+namespace woodcock {
+
+/// A render whose samples are timed.
+struct TimedRender {
+    Scene scene;
+    std::string name;  ///< for notes
+    double x = 0;      ///< where on its curve it is
+    int threads = 1;
+    bool wallClock = false;  ///< else processor time
+
+    // What timeRenders() finds; microseconds stay 0 where the time did not suffice:
+    Measured microseconds = {};  ///< of one sample of one pixel
+    RenderCounters counters = {};
+    double seconds = 0;  ///< that all counted runs took, by its clock
+
+    double perSample(std::uint64_t count) const {
+        return static_cast<double>(count) / static_cast<double>(counters.paths);
+    }
+    double collisions() const {
+        return static_cast<double>(counters.distanceCollisions + counters.shadowCollisions);
+    }
+};
+
+/// Runs all of them in turns for about so many seconds of wall clock, each round with other random
+/// numbers. Notes tell which were left out, as they take too long.
+void timeRenders(std::vector<TimedRender>& renders, double seconds,
+                 std::vector<std::string>& notes);
+
+}  // namespace woodcock

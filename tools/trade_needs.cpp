@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include "trade_parts.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/trade/needs_cost.h"
+
+namespace woodcock::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string& nameOf(const NeedCost& c) { return needNames[static_cast<std::size_t>(c.need)]; }
+
+/// Without the risk that chance decides: two standard errors beyond the mark on either side.
+bool resolved(const NeedCost& c) {
+    return std::abs(c.ratio.value - NeedCost::leastRatio) > 2 * c.ratio.se;
+}
+
+std::string verdict(const NeedCost& c) {
+    return c.needed ? "needed" : c.earns() ? "earns" : "does not earn";
+}
+
+std::string pictures(const NeedCost& c) {
+    if (c.needed) return "";
+    return c.sameBits ? "same bits"
+                      : fmt::format("{:+.1e} +- {:.0e}", c.difference.value, c.difference.se);
+}
+
+void print(const NeedCost& c) {
+    if (c.needed) {
+        fmt::print("{:<22} {:>11} {:>11} {:>16}  needed\n", nameOf(c), "", "", "");
+    } else {
+        fmt::print("{:<22} {:>11.3g} {:>11.3g} {:>8.3f} +- {:.3f}  {}; picture: {}\n", nameOf(c),
+                   c.without.value, c.with.value, c.ratio.value, c.ratio.se, verdict(c),
+                   pictures(c));
+    }
+    std::fflush(stdout);
+}
+
+std::vector<std::string> notesOn(const std::vector<NeedCost>& costs) {
+    std::vector<std::string> notes;
+    for (const NeedCost& c : costs) {
+        if (c.needed) continue;
+        if (!resolved(c))
+            notes.push_back(
+                fmt::format("the budget was too small to tell whether '{}' earns 10 %: {:.3f} "
+                            "+- {:.3f} in {} pairs of runs",
+                            nameOf(c), c.ratio.value, c.ratio.se, c.pairs));
+        if (!c.sameBits && std::abs(c.difference.value) > 4 * c.difference.se + 1e-5)
+            notes.push_back(fmt::format("'{}' changed the picture by {:.2e} +- {:.0e}: a bug",
+                                        nameOf(c), c.difference.value, c.difference.se));
+    }
+    return notes;
+}
+
+Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
+               const std::vector<std::string>& notes) {
+    Json rows = Json::array();
+    for (const NeedCost& c : costs) {
+        Json row{{"need", nameOf(c)}, {"needed", c.needed}};
+        if (c.needed) {
+            row.update({{"seconds", nullptr}, {"without", nullptr}, {"ratio", nullptr}});
+        } else {
+            row.update({{"seconds", toJson(c.with)},
+                        {"without", toJson(c.without)},
+                        {"ratio", toJson(c.ratio)},
+                        {"pairs", c.pairs},
+                        {"same_bits", c.sameBits},
+                        {"difference", toJson(c.difference)}});
+        }
+        row["verdict"] = verdict(c);
+        rows.push_back(row);
+    }
+    return {{"woodcock", aboutWoodcock()}, {"scene", scene}, {"rows", rows}, {"notes", notes}};
+}
+
+std::string needsCsv(const std::vector<NeedCost>& costs) {
+    std::string text =
+        "need,needed,seconds,seconds_se,without,without_se,ratio,ratio_se,pairs,verdict\n";
+    for (const NeedCost& c : costs)
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", nameOf(c), int{c.needed},
+                            c.with.value, c.with.se, c.without.value, c.without.se, c.ratio.value,
+                            c.ratio.se, c.pairs, verdict(c));
+    return text;
+}
+
+}  // namespace
+
+void runNeeds(const SceneInput& input, double budget, const std::filesystem::path& report) {
+    checkInput(input);
+    prepareReport(report, {"needs.json", "needs.csv"});
+    SceneDescription description = parseInput(input);
+    LoadedScene loaded = loadAndComplete(description);
+    const RenderSettings settings = renderSettings(description.render);
+    const Scene scene = buildScene(description, std::move(loaded));
+
+    bool first = true;
+    const auto show = [&](const NeedCost& cost) {
+        if (std::exchange(first, false))
+            fmt::print("{:<22} {:>11} {:>11} {:>16}\n", "need", "without [s]", "with [s]", "ratio");
+        print(cost);
+    };
+    const auto costs = needsCost(scene, settings, {.budget = budget, .onResult = show});
+    const std::vector<std::string> notes = notesOn(costs);
+    for (const std::string& note : notes) fmt::print("note: {}\n", note);
+    if (report.empty()) return;
+    const std::string name = input.files.front().filename().string();
+    writeReport(report / "needs.json", needsJson(name, costs, notes).dump(1) + "\n");
+    writeReport(report / "needs.csv", needsCsv(costs));
+    fmt::print("wrote {} and needs.csv\n", (report / "needs.json").string());
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "trade_parts.h"
+#include "woodcock/trade/scaling.h"
+
+namespace woodcock::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A directory of its own, removed at the end.
+class Scratch {
+public:
+    Scratch()
+        : path_(std::filesystem::temp_directory_path() /
+                fmt::format("woodcock_scaling_{}", getpid())) {
+        std::filesystem::create_directories(path_);
+    }
+    ~Scratch() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+void print(const ScalingReport& report) {
+    for (const Curve& curve : report.curves) {
+        fmt::print("{}\n", curve.name);
+        for (const CurveSeries& series : curve.series) {
+            const Measured slope = series.slope();
+            fmt::print("  {}{}\n", series.name,
+                       std::isfinite(slope.se)
+                           ? fmt::format(": slope {:.3f} +- {:.3f}", slope.value, slope.se)
+                           : "");
+            for (const CurvePoint& p : series.points)
+                fmt::print(
+                    "    {:<12.5g} {:>12.5g} +- {:<10.2g} {}\n", p.x, p.y, p.se,
+                    &p == series.points.data() ? curve.yLabel + " over " + curve.xLabel : "");
+        }
+    }
+    for (const CurveTable& table : report.tables) {
+        fmt::print("{}\n ", table.title);
+        for (const std::string& column : table.columns) fmt::print(" {:>10}", column);
+        fmt::print("\n");
+        for (const std::vector<double>& row : table.rows) {
+            fmt::print(" ");
+            for (std::size_t i = 0; i < row.size(); ++i)
+                fmt::print(" {:>{}.4g}", row[i],
+                           std::max<std::size_t>(10, table.columns[i].size()));
+            fmt::print("\n");
+        }
+    }
+    for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
+}
+
+Json curveJson(const Curve& curve) {
+    Json series = Json::array();
+    for (const CurveSeries& s : curve.series) {
+        Json points = Json::array();
+        for (const CurvePoint& p : s.points)
+            points.push_back(Json{{"x", p.x}, {"y", p.y}, {"se", p.se}});
+        series.push_back(Json{{"name", s.name}, {"points", points}, {"slope", toJson(s.slope())}});
+    }
+    return {{"name", curve.name},
+            {"x", {{"label", curve.xLabel}, {"log", curve.name != "albedo"}}},
+            {"y", {{"label", curve.yLabel}, {"log", true}}},
+            {"series", series},
+            {"note", curve.note}};
+}
+
+Json scalingJson(const ScalingReport& report) {
+    Json curves = Json::array(), tables = Json::array();
+    for (const Curve& curve : report.curves) curves.push_back(curveJson(curve));
+    for (const CurveTable& t : report.tables)
+        tables.push_back(Json{{"title", t.title}, {"columns", t.columns}, {"rows", t.rows}});
+    return {{"woodcock", aboutWoodcock()},
+            {"curves", curves},
+            {"tables", tables},
+            {"notes", report.notes}};
+}
+
+std::string scalingCsv(const ScalingReport& report) {
+    std::string text = "curve,series,x_label,x,y_label,y,se\n";
+    for (const Curve& curve : report.curves)
+        for (const CurveSeries& s : curve.series)
+            for (const CurvePoint& p : s.points)
+                text += fmt::format("{},\"{}\",\"{}\",{},{},{},{}\n", curve.name, s.name,
+                                    curve.xLabel, p.x, curve.yLabel, p.y, p.se);
+    return text;
+}
+
+}  // namespace
+
+void runScaling(double budget, const std::filesystem::path& report) {
+    prepareReport(report, {"scaling.json", "scaling.csv"});
+    const Scratch scratch;
+    const ScalingReport found =
+        measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
+                            spdlog::info("{}", what);
+                        }});
+    print(found);
+    if (report.empty()) return;
+    writeReport(report / "scaling.json", scalingJson(found).dump(1) + "\n");
+    writeReport(report / "scaling.csv", scalingCsv(found));
+    fmt::print("wrote {} and scaling.csv\n", (report / "scaling.json").string());
+}
+
+}  // namespace woodcock::tool
