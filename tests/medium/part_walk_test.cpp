@@ -19,6 +19,27 @@ std::vector<Segment> segments(const MediumPart& part, const TestRay& ray) {
     return all;
 }
 
+TEST(PartWalk, WhatMayNotBeMetIsNotMet) {
+    int missed = 0, rays = 0;
+    for (const PlainMedium& plain : {greyMedium(), hazyMedium(), chromaticMedium()}) {
+        const Medium medium = plain.medium();
+        for (const MediumPart& part : medium.parts)
+            for (const TestRay& ray : testRays(medium, 2000, 3)) {
+                const Vec3d d = ray.direction, inverse{1 / d.x, 1 / d.y, 1 / d.z};
+                const bool met = !segments(part, ray).empty();
+                const bool may = part.mayMeet(ray.origin, inverse, ray.tMax);
+                ASSERT_TRUE(may || !met);
+                rays += !met, missed += !may;
+                // The other way round: all is behind a ray that starts where it left.
+                if (part.unbounded()) continue;
+                const double far = 1e4 * length(part.worldBounds().size());
+                ASSERT_FALSE(part.mayMeet(ray.origin + d * far, inverse, ray.tMax));
+            }
+    }
+    EXPECT_GT(missed, 0.8 * rays);  // of those that meet nothing
+    EXPECT_GT(rays, 100);
+}
+
 TEST(PartWalk, SegmentsAreOrderedWithoutGapsAndBoundTheField) {
     RandomStream random(1);
     for (const PlainMedium& plain : {greyMedium(), hazyMedium(), chromaticMedium()}) {

@@ -15,13 +15,13 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     indexFromWorld_ = d_.worldFromIndex.inverse();
     albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
     takeCoefficients();
+    support_ = d_.field ? d_.field->support() : d_.box;
+    if (d_.field) background_ = d_.field->storedRange(d_.field->blocks().outside());
+    reach_ = findReach();
     if (!d_.field) {
-        support_ = d_.box;
         meanExtinction_ = largestExtinction_;
         return;
     }
-    support_ = d_.field->support();
-    background_ = d_.field->storedRange(d_.field->blocks().outside());
     const double voxelWidth = std::cbrt(std::abs(determinant));
     majorants_ = std::make_shared<MajorantGrid>(
         *d_.field, MajorantGrid::Options{largestExtinction_ * voxelWidth, d_.majorantScale,
@@ -71,6 +71,17 @@ MediumPart MediumPart::with(const Coefficients& coefficients) const {
     if (largestExtinction_ > 0)
         part.meanExtinction_ *= part.largestExtinction_ / largestExtinction_;
     return part;
+}
+
+Box3d MediumPart::findReach() const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const Vec3d everywhere{infinity, infinity, infinity};
+    if (unbounded() || support_.empty()) return {-everywhere, everywhere};
+    const Box3d box = worldBounds();
+    const Vec3d far = max(max(box.lower, -box.lower), max(box.upper, -box.upper));
+    const double margin = 1e-9 * std::max({far.x, far.y, far.z});
+    const Vec3d more{margin, margin, margin};
+    return {box.lower - more, box.upper + more};
 }
 
 float MediumPart::value(Vec3d world, int channel) const {

@@ -66,6 +66,18 @@ public:
     IndexRay indexRay(Vec3d origin, Vec3d direction) const {
         return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
     }
+    /// False only where the ray surely meets nothing of this part before tMax: a quick answer, with
+    /// room for rounding. `inverse`: one over each component of the direction.
+    bool mayMeet(Vec3d origin, Vec3d inverse, double tMax) const {
+        double enter = 0, leave = tMax;
+        for (int i = 0; i < 3; ++i) {
+            const double a = (reach_.lower[i] - origin[i]) * inverse[i];
+            const double b = (reach_.upper[i] - origin[i]) * inverse[i];
+            enter = std::max(enter, std::min(a, b));  // what is NaN (0 x inf) bounds nothing
+            leave = std::min(leave, std::max(a, b));
+        }
+        return !(leave < enter * (1 - 1e-9));
+    }
     Vec3d albedoIndex(Vec3d world) const { return albedoIndexFromWorld_.point(world); }
     /// Index-space box outside which f is the background.
     const Box3d& support() const { return support_; }
@@ -88,12 +100,14 @@ public:
 private:
     void takeCoefficients();
     Rgb albedoAt(Vec3d world) const;
+    Box3d findReach() const;
 
     Description d_;
     float loss_ = 1;
     Rgb extinction_;
     Affine3d indexFromWorld_, albedoIndexFromWorld_;
     Box3d support_;
+    Box3d reach_;  // of world space: a little more than all that is not 0
     Range background_;
     float largestExtinction_ = 0;
     Rgb channelWeight_;

@@ -187,6 +187,8 @@ bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) 
     return false;
 }
 
+Vec3d inverseOf(Vec3d v) { return {1 / v.x, 1 / v.y, 1 / v.z}; }
+
 template <int N>
 void trackOnePart(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
                   TrackingCounters& counters) {
@@ -202,9 +204,12 @@ template <int N>
 void trackManyParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
                     std::vector<CollisionProcess>& processes, TrackingCounters& counters) {
     processes.clear();
-    for (std::size_t i = 0; i < medium.parts.size(); ++i)
-        processes.emplace_back(medium.parts[i], static_cast<int>(i), q,
-                               i == 0 ? q.u : q.random.uniformOpenLow());
+    const Vec3d inverse = inverseOf(q.direction);
+    for (std::size_t i = 0; i < medium.parts.size(); ++i) {
+        const double u = i == 0 ? q.u : q.random.uniformOpenLow();  // also of those that are missed
+        if (medium.parts[i].mayMeet(q.origin, inverse, q.tMax))
+            processes.emplace_back(medium.parts[i], static_cast<int>(i), q, u);
+    }
     std::vector<bool> waiting(processes.size(), false);  // stands at a collision not yet met
     while (true) {
         CollisionProcess* nearest = nullptr;
@@ -336,10 +341,16 @@ void trackTransmittance(const Medium& medium, std::span<TransmittanceQuery<N>> q
     for (TransmittanceQuery<N>& q : queries) {
         Roulette roulette(q.roulette, q.random);
         bool alive = !roulette.kills(q.contribution.maximum());
-        for (std::size_t i = 0; alive && i < medium.parts.size(); ++i)
-            alive = medium.parts[i].extinctionVaries()
-                        ? trackPart<N, true>(medium.parts[i], q, roulette, counters)
-                        : trackPart<N, false>(medium.parts[i], q, roulette, counters);
+        const bool several = medium.parts.size() > 1;
+        const Vec3d inverse = several ? inverseOf(q.direction) : Vec3d{};
+        for (std::size_t i = 0; alive && i < medium.parts.size(); ++i) {
+            if (several && !medium.parts[i].mayMeet(q.origin, inverse, q.tMax))
+                q.random.bits();  // as trackPart() would draw
+            else
+                alive = medium.parts[i].extinctionVaries()
+                            ? trackPart<N, true>(medium.parts[i], q, roulette, counters)
+                            : trackPart<N, false>(medium.parts[i], q, roulette, counters);
+        }
         if (alive)
             roulette.lift(q.contribution);
         else
