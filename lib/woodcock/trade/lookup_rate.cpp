@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/trade/lookup_rate.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "woodcock/base/random.h"
 
 namespace woodcock {
+Field fieldOfBricks(std::size_t bricks) {
+    const int n = std::max(1, static_cast<int>(std::lround(std::cbrt(double(bricks)))));
+    FieldSource source;
+    for (int i = 0; i < n * n * n; ++i)
+        source.leafOrigins.push_back({8 * (i / (n * n)), 8 * (i / n % n), 8 * (i % n)});
+    source.copyLeaf = [](std::size_t leaf, std::span<float> values) {
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = static_cast<float>(mixBits(leaf * values.size() + i) >> 40) * 0x1p-24f;
+    };
+    return buildField(source, Storage::Float);
+}
+
 double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std::uint64_t seed) {
     const Box3d& box = field.support();
     const Vec3d size = box.size() * (1 - 1e-6);

@@ -5,14 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "woodcock/base/parse.h"
-
 namespace woodcock {
 namespace {
 
 constexpr int rounds = 9, fewestRounds = 3;
-constexpr int side = 16, threadedSide = 128;  ///< pixels; threads share tiles of 16
+constexpr int side = 16, threadedSide = 64;  ///< pixels; threads share tiles of 16
 constexpr int mostSamples = 1 << 16;
 
 struct Job {
@@ -40,16 +37,22 @@ struct Job {
     }
 };
 
-/// Makes a run of the job take about `seconds`; false where not even one sample does so thrice.
+/// Makes a run of the job take about `seconds` of wall clock; false where not even one sample a
+/// pixel does so thrice in the time of all rounds.
 bool plan(Job& job, double seconds) {
+    const auto taken = [&] {
+        const double start = wallSeconds();
+        job.run();
+        return wallSeconds() - start;
+    };
     job.settings.endSample = 1;
-    double taken = job.run();  // fills the caches too
-    if (taken > rounds * seconds / fewestRounds) return false;
-    while (taken < seconds / 4 && job.settings.endSample < mostSamples) {
-        const double factor = std::clamp(seconds / std::max(taken, 1e-6), 2.0, 16.0);
+    double last = taken();  // fills the caches too
+    if (last * fewestRounds > rounds * seconds) return false;
+    while (last < seconds / 4 && job.settings.endSample < mostSamples) {
+        const double factor = std::clamp(seconds / std::max(last, 1e-6), 2.0, 16.0);
         job.settings.endSample =
             static_cast<int>(std::min<double>(mostSamples, job.settings.endSample * factor));
-        taken = job.run();
+        last = taken();
     }
     return true;
 }
@@ -62,19 +65,19 @@ void timeRenders(std::vector<TimedRender>& renders, double seconds,
     // What planning itself takes is about two rounds.
     const double oneRun = seconds / static_cast<double>(renders.size()) / (rounds + 2);
     std::vector<Job> jobs;
+    std::string leftOut;
     for (TimedRender& render : renders) {
         Job job{&render, {}};
         job.settings.width = job.settings.height = render.wallClock ? threadedSide : side;
         job.settings.threads = render.threads;
         const bool planned = plan(job, oneRun);
         if (!planned)
-            notes.push_back(fmt::format(
-                "{} is left out: one sample takes {}, its share of the "
-                "budget is {}",
-                render.name, formatDuration(render.seconds), formatDuration(oneRun * rounds)));
+            leftOut += fmt::format("{}{} ({:.2g} s a run)", leftOut.empty() ? "" : ", ",
+                                   render.name, render.seconds);
         job.forget();
         if (planned) jobs.push_back(std::move(job));
     }
+    if (!leftOut.empty()) notes.push_back("the budget was too small for " + leftOut);
     for (int round = 0; round < rounds; ++round) {
         if (round >= fewestRounds && wallSeconds() > end) break;
         for (Job& job : jobs) {
