@@ -13,7 +13,6 @@ CLI::App& addBakeCommand(CLI::App& app);
 CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine);
 CLI::App& addConvertCommand(CLI::App& app);
 CLI::App& addInfoCommand(CLI::App& app);
-CLI::App& addTradeCommand(CLI::App& app);
 CLI::App& addVerifyCommand(CLI::App& app);
 // `commandLine` goes into the images' headers.
 CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine);

@@ -25,7 +25,7 @@ section(s => {
         {name: "Need", key: r => r.index, html: r => `<b class="key c${r.index % colourCount}">${r.key}</b> ${escape(r.need)}`},
         {name: "Of this scene", key: r => Number(r.needed), text: r => r.needed ? "needed" : "not needed"},
         {name: "Time as it renders", key: r => r.seconds?.value, text: r => withSe(r.seconds, " s")},
-        {name: "With the feature", key: r => r.without?.value, text: r => withSe(r.without, " s")},
+        {name: "With the feature", key: r => r.pretended?.value, text: r => withSe(r.pretended, " s")},
         {name: "Ratio", key: r => r.ratio?.value, text: r => withSe(r.ratio)},
         {name: "Verdict", key: r => ["does not earn", "earns", "needed"].indexOf(r.verdict), text: r => signs[r.verdict] || r.verdict || "–", mood: r => r.verdict === "earns" ? "good" : r.verdict === "does not earn" ? "bad" : "soft"},
     ];

@@ -11,8 +11,9 @@
 #include "progress.h"
 #include "scene_input.h"
 #include "trade_output.h"
+#include "trade_parts.h"
 #include "trade_pictures.h"
-#include "woodcock/base/whole_file.h"
+#include "trade_report.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::tool {
@@ -29,28 +30,8 @@ struct TradeOptions {
     std::optional<std::uint64_t> seed;
     std::filesystem::path report, candidates;
     std::string progress = "auto";
-    bool json = false;
+    bool json = false, needs = false, scaling = false;
 };
-
-void prepareReport(const std::filesystem::path& directory) {
-    if (directory.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    if (error)
-        throw usageError("--report: cannot make the directory '{}': {}", directory.string(),
-                         error.message());
-    for (const char* name : {"trade.json", "trade.csv"}) checkWritable(directory / name);
-}
-
-void writeText(const std::filesystem::path& file, const std::string& text) {
-    writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-    spdlog::info("wrote {}", file.string());
-}
-
-void writeReport(const std::filesystem::path& directory, const TradeReport& report) {
-    writeText(directory / "trade.json", tradeJson(report, false).dump(1) + "\n");
-    writeText(directory / "trade.csv", tradeCsv(report));
-}
 
 std::string joinedFiles(const std::vector<std::filesystem::path>& files) {
     std::vector<std::string> names;
@@ -78,11 +59,11 @@ std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription
     return runTrade(complete, parse, given, settings);
 }
 
-void run(const TradeOptions& o, const std::string& commandLine) {
+void weighCandidates(const TradeOptions& o, const std::string& commandLine) {
     checkInput(o.input);
     const std::vector<Candidate> given =
         o.candidates.empty() ? std::vector<Candidate>() : readCandidates(o.candidates);
-    prepareReport(o.report);
+    prepareReport(o.report, {"trade.json", "trade.csv", "trade.html"});
     catchInterrupts();
     SceneDescription complete = parseInput(o.input);
     loadAndComplete(complete);
@@ -101,7 +82,38 @@ void run(const TradeOptions& o, const std::string& commandLine) {
         fmt::print("{}\n", tradeJson(report, false).dump(1));
     else
         fmt::print("{}", tradeText(report));
-    if (!o.report.empty()) writeReport(o.report, report);
+    if (o.report.empty()) return;
+    writeReport(o.report / "trade.json", tradeJson(report, false).dump(1) + "\n");
+    writeReport(o.report / "trade.csv", tradeCsv(report));
+    writeReport(o.report / "trade.html", tradePage(tradeJson(report, true)));
+}
+
+/// Throws Error{Usage} where an option speaks of what is not asked for.
+void check(const TradeOptions& o) {
+    if (o.needs && o.scaling) throw usageError("--needs contradicts --scaling; take one at a time");
+    const char* const mode = o.needs ? "--needs" : "--scaling";
+    if (o.needs || o.scaling) {
+        if (!o.candidates.empty())
+            throw usageError("{} contradicts --candidates: it compares none", mode);
+        if (o.json) throw usageError("{} contradicts --json; --report DIR writes its JSON", mode);
+        if (o.threads || o.seed)
+            throw usageError("{} contradicts {}", mode, o.threads ? "--threads" : "--seed");
+    }
+    if (!o.scaling && o.input.files.empty())
+        throw usageError("there is no input; name a scene (.toml) or volumes (.vdb)");
+    if (o.scaling && !o.input.files.empty())
+        throw usageError("--scaling makes its own scenes, but '{}' is given",
+                         o.input.files.front().string());
+}
+
+void run(const TradeOptions& o, const std::string& commandLine) {
+    check(o);
+    if (o.needs)
+        runNeeds(o.input, o.budget.value_or(60), o.report);
+    else if (o.scaling)
+        runScaling(o.budget.value_or(600), o.report);
+    else
+        weighCandidates(o, commandLine);
 }
 
 }  // namespace
@@ -111,9 +123,14 @@ CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
         "trade", "Measures what each choice costs and brings on a scene, and tells which to take");
     const auto o = std::make_shared<TradeOptions>();
     command->add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
-        ->required()
         ->type_name("FILE");
-    addParsed(*command, "--budget", o->budget, parseDuration, "The time it may take (2m)")
+    command->add_flag("--needs", o->needs,
+                      "Measures what features that the scene does not need would cost it, instead");
+    command->add_flag("--scaling", o->scaling,
+                      "Measures how cost grows with voxels, optical depth, albedo, overlapping "
+                      "volumes and threads, instead; takes no input");
+    addParsed(*command, "--budget", o->budget, parseDuration,
+              "The time it may take (2m; --needs: 1m; --scaling: 10m)")
         ->type_name("TIME");
     command
         ->add_option("--candidates", o->candidates,
@@ -122,8 +139,8 @@ CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
         ->type_name("FILE");
     command
         ->add_option("--report", o->report,
-                     "Writes DIR/trade.json and DIR/trade.csv, and DIR/trade.html, a page that "
-                     "needs nothing else")
+                     "Writes DIR/trade.json, DIR/trade.csv and DIR/trade.html, a page that needs "
+                     "nothing else (--needs, --scaling: under their names)")
         ->type_name("DIR");
     command->add_flag("--json", o->json, "One JSON document on stdout instead of the tables");
     addList(*command, "--set", o->input.overrides,

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include "trade_parts.h"
+#include "trade_report.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/trade/needs_cost.h"
 
@@ -60,10 +61,10 @@ Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
     for (const NeedCost& c : costs) {
         Json row{{"need", nameOf(c)}, {"needed", c.needed}};
         if (c.needed) {
-            row.update({{"seconds", nullptr}, {"without", nullptr}, {"ratio", nullptr}});
+            row.update({{"seconds", nullptr}, {"pretended", nullptr}, {"ratio", nullptr}});
         } else {
-            row.update({{"seconds", toJson(c.with)},
-                        {"without", toJson(c.without)},
+            row.update({{"seconds", toJson(c.without)},
+                        {"pretended", toJson(c.with)},
                         {"ratio", toJson(c.ratio)},
                         {"pairs", c.pairs},
                         {"same_bits", c.sameBits},
@@ -77,10 +78,10 @@ Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
 
 std::string needsCsv(const std::vector<NeedCost>& costs) {
     std::string text =
-        "need,needed,seconds,seconds_se,without,without_se,ratio,ratio_se,pairs,verdict\n";
+        "need,needed,seconds,seconds_se,pretended,pretended_se,ratio,ratio_se,pairs,verdict\n";
     for (const NeedCost& c : costs)
         text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", nameOf(c), int{c.needed},
-                            c.with.value, c.with.se, c.without.value, c.without.se, c.ratio.value,
+                            c.without.value, c.without.se, c.with.value, c.with.se, c.ratio.value,
                             c.ratio.se, c.pairs, verdict(c));
     return text;
 }
@@ -89,7 +90,7 @@ std::string needsCsv(const std::vector<NeedCost>& costs) {
 
 void runNeeds(const SceneInput& input, double budget, const std::filesystem::path& report) {
     checkInput(input);
-    prepareReport(report, {"needs.json", "needs.csv"});
+    prepareReport(report, {"needs.json", "needs.csv", "needs.html"});
     SceneDescription description = parseInput(input);
     LoadedScene loaded = loadAndComplete(description);
     const RenderSettings settings = renderSettings(description.render);
@@ -106,9 +107,10 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
     for (const std::string& note : notes) fmt::print("note: {}\n", note);
     if (report.empty()) return;
     const std::string name = input.files.front().filename().string();
-    writeReport(report / "needs.json", needsJson(name, costs, notes).dump(1) + "\n");
+    const Json json = needsJson(name, costs, notes);
+    writeReport(report / "needs.json", json.dump(1) + "\n");
     writeReport(report / "needs.csv", needsCsv(costs));
-    fmt::print("wrote {} and needs.csv\n", (report / "needs.json").string());
+    writeReport(report / "needs.html", needsPage(json));
 }
 
 }  // namespace woodcock::tool

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trade_parts.h"
 
+#include <spdlog/spdlog.h>
+
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
@@ -20,6 +22,7 @@ void prepareReport(const std::filesystem::path& directory,
 
 void writeReport(const std::filesystem::path& file, const std::string& text) {
     writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    spdlog::info("wrote {}", file.string());
 }
 
 // JSON's library writes numbers that are not finite as null.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "trade_parts.h"
+#include "trade_report.h"
 #include "woodcock/trade/scaling.h"
 
 namespace woodcock::tool {
@@ -102,7 +103,7 @@ std::string scalingCsv(const ScalingReport& report) {
 }  // namespace
 
 void runScaling(double budget, const std::filesystem::path& report) {
-    prepareReport(report, {"scaling.json", "scaling.csv"});
+    prepareReport(report, {"scaling.json", "scaling.csv", "scaling.html"});
     const Scratch scratch;
     const ScalingReport found =
         measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
@@ -110,9 +111,10 @@ void runScaling(double budget, const std::filesystem::path& report) {
                         }});
     print(found);
     if (report.empty()) return;
-    writeReport(report / "scaling.json", scalingJson(found).dump(1) + "\n");
+    const Json json = scalingJson(found);
+    writeReport(report / "scaling.json", json.dump(1) + "\n");
     writeReport(report / "scaling.csv", scalingCsv(found));
-    fmt::print("wrote {} and scaling.csv\n", (report / "scaling.json").string());
+    writeReport(report / "scaling.html", scalingPage(json));
 }
 
 }  // namespace woodcock::tool

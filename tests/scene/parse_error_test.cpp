@@ -266,9 +266,9 @@ TEST(ParseErrors, OfRenderSettings) {
         sectionMistake("[render]\nmax_scatterings = -1"),
         "scene.toml:4:19: render.max_scatterings is -1; it must lie between 0 and 2147483647");
     EXPECT_EQ(sectionMistake("[render]\nmarch_estimate = \"jackknife\""),
-              "scene.toml:2:18: render.march_estimate needs march_step: tracking takes no steps");
+              "scene.toml:4:18: render.march_estimate needs march_step: tracking takes no steps");
     EXPECT_EQ(sectionMistake("[render]\noctaves = 3\nsimilarity_after = 2"),
-              "scene.toml:2:11: render.octaves contradicts similarity_after: octaves have no paths "
+              "scene.toml:5:11: render.octaves contradicts similarity_after: octaves have no paths "
               "that go on");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 0.5"),
               "scene.toml:4:18: render.majorant_scale is 0.5; it must lie between 1 and 1000");

@@ -57,7 +57,7 @@ TEST_F(TradeParts, NeedsAreMeasuredAndReported) {
             EXPECT_TRUE(row.at("ratio").is_null());
             continue;
         }
-        for (const char* key : {"seconds", "without", "ratio"}) {
+        for (const char* key : {"seconds", "pretended", "ratio"}) {
             EXPECT_GT(row.at(key).at("value"), 0.0) << row;
             EXPECT_GE(row.at(key).at("se"), 0.0) << row;
         }

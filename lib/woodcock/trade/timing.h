@@ -3,12 +3,9 @@
 
 #include <vector>
 
-namespace woodcock {
+#include "woodcock/trade/measured.h"
 
-/// A number and its standard error.
-struct Measured {
-    double value = 0, se = 0;
-};
+namespace woodcock {
 
 /// Processor seconds that all threads of this process have taken so far. Unlike the wall clock's,
 /// they say the same beside other programs, but for what those do to caches and clock rates.
