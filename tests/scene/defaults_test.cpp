@@ -306,6 +306,35 @@ TEST(Defaults, OfFilesAloneAreNotedAsTheWholeScene) {
     EXPECT_EQ(sceneDigest(printed), sceneDigest(scene));
 }
 
+TEST(Defaults, SayHowFireGlows) {
+    const TempDir dir;
+    GridSpec smoke = ball({}), flame = ball({}), hot = ball({});
+    smoke.name = "density", flame.name = "Flames", hot.name = "temperature";
+    writeVdb(dir / "smoke.vdb", {smoke});
+    writeVdb(dir / "flame.vdb", {smoke, flame});
+    writeVdb(dir / "fire.vdb", {smoke, flame, hot});
+    const auto complete = [&](const char* file, const std::vector<std::string>& overrides = {}) {
+        SceneDescription scene = parseSceneText(defaultSceneText({dir / file}), "", "", overrides);
+        scene.places.clear();
+        const std::string note = completeScene(scene, loadScene(scene)).at(0);
+        const auto from = note.find("--set '"), to = note.find('\'', from + 7);
+        return std::pair(scene, from == note.npos ? "" : note.substr(from + 7, to - from - 7));
+    };
+    EXPECT_EQ(complete("smoke.vdb").second, "");
+    for (const char* file : {"flame.vdb", "fire.vdb"}) {
+        const auto [dark, hint] = complete(file);
+        EXPECT_FALSE(dark.volumes[0].emission || dark.volumes[0].blackbody);
+        // What is said works, and is not said again.
+        const auto [bright, none] = complete(file, {hint});
+        EXPECT_EQ(none, "");
+        if (file == std::string("fire.vdb")) {
+            EXPECT_EQ(bright.volumes[0].blackbody.value().scale, 1400);
+        } else {
+            EXPECT_EQ(bright.volumes[0].emission.value().grid, "Flames");
+        }
+    }
+}
+
 TEST(Defaults, NameTheDensityThatWasFound) {
     const TempDir dir;
     GridSpec smoke = ball({});

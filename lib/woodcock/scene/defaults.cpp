@@ -102,6 +102,20 @@ Choice chooseScale(VolumeDescription& volume, const LoadedVolume& loaded) {
                                 typicalDepth)};
 }
 
+/// A comment in TOML: how what may be fire is lit. Nobody but the user knows how bright it is.
+std::string glowHint(const VolumeDescription& volume, const LoadedVolume& loaded, size_t index) {
+    if (volume.emission || volume.blackbody) return {};
+    if (!loaded.temperatures.empty())
+        return fmt::format(
+            "# '{}' glows with --set 'volume[{}].blackbody={{ scale = 1400 }}' where its values go "
+            "up to 1 or so,\n# and with scale = 1 where they are kelvins\n",
+            loaded.temperatures, index);
+    if (!loaded.flames.empty())
+        return fmt::format("# '{0}' glows with --set 'volume[{1}].emission={{ grid = \"{0}\" }}'\n",
+                           loaded.flames, index);
+    return {};
+}
+
 std::optional<std::string> chooseVolume(SceneDescription& scene, const LoadedScene& loaded,
                                         size_t index) {
     VolumeDescription& volume = scene.volumes[index];
@@ -110,7 +124,7 @@ std::optional<std::string> chooseVolume(SceneDescription& scene, const LoadedSce
     std::string toml = density.toml + scale.toml;
     if (!volume.file.empty() &&
         findPlace(scene.places, fmt::format("volume[{}].file", index)).empty())
-        toml = writeVolume(volume);
+        toml = writeVolume(volume) + glowHint(volume, loaded.volumes[index], index);
     if (toml.empty()) return std::nullopt;
     return fmt::format("chosen for volume[{}]{}:\n{}", index, scale.reason, toml);
 }

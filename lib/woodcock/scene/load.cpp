@@ -158,6 +158,11 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     if (volume.blackbody)
         loaded.blackbody =
             inPlace(placeOf("blackbody"), [&] { return loader.blackbody(volume, loaded.ambient); });
+    const auto nameOf = [&](GridRole role) {
+        return hasRole(file, role) ? findGrid(file, role).grid.uniqueName : std::string();
+    };
+    loaded.temperatures = nameOf(GridRole::Temperature);
+    loaded.flames = nameOf(GridRole::Emission);
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
 }

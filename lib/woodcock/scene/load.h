@@ -30,7 +30,9 @@ struct LoadedVolume {
     LoadedField blackbody;        ///< radiance of the temperature grid, as blackbodySource() says
     float ambient = 0;            ///< the temperature grid's background, where nothing glows
     LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
-    UpAxis up = UpAxis::Y;        ///< Z where the file's metadata say that Blender wrote it
+    /// Grids of the file that usually mean fire, whether or not they are asked for; empty: none.
+    std::string temperatures, flames;
+    UpAxis up = UpAxis::Y;  ///< Z where the file's metadata say that Blender wrote it
 };
 
 /// All that a scene reads from disk.
