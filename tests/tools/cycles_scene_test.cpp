@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cycles_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/expect_error.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/write_vdb.h"
+#include "tests/tools/fog_scene.h"
+#include "woodcock/scene/defaults.h"
+#include "woodcock/scene/parse.h"
+
+namespace woodcock::test {
+namespace {
+
+/// What the scene for Cycles is made of.
+nlohmann::json written(const std::string& text) {
+    SceneDescription scene = parseSceneText(text, "test.toml", "");
+    const LoadedScene loaded = loadScene(scene);
+    completeScene(scene, loaded);
+    return nlohmann::json::parse(tool::cyclesScene(scene, loaded, {}));
+}
+
+TEST(CyclesScene, ScatteringsBecomeBounces) {
+    const std::string fog = fogScene;
+    EXPECT_EQ(written(fog)["render"]["bounces"]["volume"], 1024);
+    EXPECT_EQ(written(fog + "max_scatterings = 5\n")["render"]["bounces"]["volume"], 4);
+    // Those off surfaces are bounded together only where nothing else bounces.
+    const std::string bounded = fog + "max_bounces = 3\n";
+    EXPECT_EQ(written(bounded)["render"]["bounces"]["surface"], 1024);
+    const std::string floor = "[[surface]]\nplane = { size = [4, 4] }\n";
+    EXPECT_EQ(written(bounded + floor)["render"]["bounces"]["surface"], 2);
+    EXPECT_EQ(written(bounded + floor)["render"]["bounces"]["all"], 1024);
+    const std::string empty = bounded.substr(bounded.find("[[light]]"));
+    EXPECT_EQ(written(empty + floor)["render"]["bounces"]["all"], 2);
+    // Without any, what would scatter is lost.
+    const auto none = written(fog + "max_scatterings = 0\n")["volumes"][0];
+    EXPECT_FALSE(none["scatters"]);
+    EXPECT_EQ(none["density"], 1.5);
+    EXPECT_EQ(none["absorb_colour"], (std::vector<float>{0, 0, 0}));
+}
+
+TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
+    const std::string fog = fogScene;
+    const auto refused = [&](const std::string& text, const std::vector<std::string>& said) {
+        for (const std::string& words : said)
+            expectError(ErrorKind::Input, words, [&] { written(text); });
+    };
+    std::string forward = fog;
+    forward.replace(forward.find("g = 0.3"), 7, "g = 0.9999");
+    refused(forward, {"test.toml:5:", "Cycles cannot express", "0.9999", "0.999"});
+    refused(
+        fog + "[[light]]\ntype = \"sun\"\nelevation = 40\nangular_diameter = 5\nvisible = true\n",
+        {"test.toml:19:", "a sun that the camera sees"});
+    refused(fog + "transparent_shadows = true\n", {"test.toml:15:", "transparent shadows"});
+    refused(fog + "[[surface]]\nplane = {}\n", {"an infinite plane"});
+    refused(fog + "[[surface]]\nsphere = {}\nmatte = true\n", {"matte"});
+    refused(fog +
+                "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\n[[surface]]\nsphere = "
+                "{}\nmaterial = \"glass\"\n",
+            {"replaces volume[0]"});
+}
+
+/// Its grids hold `value`; those of `wide` have voxels twice as wide.
+GridSpec smallGrid(const std::string& name, double value, double background = 0,
+                   bool wide = false) {
+    GridSpec grid;
+    grid.name = name;
+    grid.worldFromIndex = Affine3d::scale(Vec3d{1, 1, 1} * (wide ? 1.0 : 0.5));
+    grid.box = {{0, 0, 0}, {3, 3, 3}};
+    grid.background = {background, 0, 0};
+    grid.value = [value](Vec3i) { return value; };
+    return grid;
+}
+
+class CyclesFire : public testing::Test {
+protected:
+    void SetUp() override {
+        writeVdb(dir / "fire.vdb",
+                 {smallGrid("density", 1), smallGrid("flame", 2), smallGrid("temperature", 3),
+                  smallGrid("heat", 1, 0, true), smallGrid("air", 300, 293)});
+    }
+    nlohmann::json volumes(const std::string& keys) const {
+        return written("[[volume]]\nfile = \"" + (dir / "fire.vdb").string() + "\"\n" + keys +
+                       "\n[[light]]\ntype = \"environment\"\n")["volumes"];
+    }
+    TempDir dir;
+};
+
+TEST_F(CyclesFire, GlowsFromTheSameObjectWhereTheVoxelsAreTheSame) {
+    const auto smoke = volumes(
+        "scale = 2\nemission = { grid = \"flame\", scale = [1, 4, 2] }\n"
+        "blackbody = { scale = 1400, intensity = 0.5, colour = [1, 0.5, 0.25] }");
+    ASSERT_EQ(smoke.size(), 1u);
+    EXPECT_EQ(smoke[0]["grid"], "density");
+    EXPECT_EQ(
+        smoke[0]["emission"],
+        nlohmann::json::parse(R"({"grid": "flame", "strength": 4.0, "colour": [0.25, 1.0, 0.5]})"));
+    EXPECT_EQ(smoke[0]["blackbody"],
+              nlohmann::json::parse(R"({"grid": "temperature", "temperature": 1400.0,
+                                        "intensity": 1.0, "tint": [0.5, 0.25, 0.125]})"));
+
+    const auto apart = volumes("scale = 2\nemission = { grid = \"heat\" }");
+    ASSERT_EQ(apart.size(), 2u);
+    EXPECT_EQ(apart[0]["emission"], nullptr);
+    EXPECT_EQ(apart[1]["grid"], nullptr);
+    EXPECT_FALSE(apart[1]["scatters"]);
+    EXPECT_EQ(apart[1]["emission"]["grid"], "heat");
+
+    const auto fire = volumes("sigma_a = 0\nblackbody = {}");
+    ASSERT_EQ(fire.size(), 1u);
+    EXPECT_EQ(fire[0]["grid"], nullptr);
+    EXPECT_EQ(volumes("scale = 1\nemission = 3")[0]["emission"]["grid"], "density");
+    EXPECT_EQ(volumes("scale = 1\nemission = 0")[0]["emission"], nullptr);
+}
+
+TEST_F(CyclesFire, IsEvenInBoxesAndSurfaces) {
+    const std::string box = "box = { min = [-1, -1, -1], max = [1, 1, 1] }\n";
+    const auto scene = written(
+        "[[volume]]\n" + box + "emission = [1, 2, 4]\n[[surface]]\n" + box +
+        "transform = { translate = [5, 0, 0] }\nmaterial = \"glass\"\nmedium = { emission = 9 }\n"
+        "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.5\n");
+    EXPECT_EQ(scene["volumes"][0]["emission"]["strength"], 4);
+    EXPECT_EQ(scene["volumes"][0]["emission"]["grid"], "");
+    EXPECT_EQ(scene["surfaces"][0]["medium"]["emission"]["strength"], 4);
+}
+
+TEST_F(CyclesFire, IsRefusedByNameWhereCyclesDiffers) {
+    const auto refused = [&](const std::string& blackbody, const std::string& words) {
+        expectError(ErrorKind::Input, words,
+                    [&] { volumes("scale = 1\nblackbody = { " + blackbody + " }"); });
+    };
+    refused("offset = 273", "test.toml:4:24: Cycles cannot express an offset of temperatures, 273");
+    refused("scale = -1", "test.toml:4:23: Cycles cannot express a scale of temperatures below 0");
+    refused(
+        "temperature = \"air\"",
+        "test.toml:4:13: Cycles cannot express the background 293 of the temperature grid 'air'");
+}
+
+}  // namespace
+}  // namespace woodcock::test
