@@ -10,6 +10,7 @@
 #include "tests/support/expect_mean.h"
 #include "tests/support/statistics.h"
 #include "woodcock/medium/optical_depth.h"
+#include "woodcock/medium/similar_medium.h"
 
 namespace woodcock::test {
 namespace {
@@ -212,10 +213,10 @@ void expectExact(const PlainMedium& plain, Spectrum<N> throughput, float roulett
     const Medium medium = plain.medium();
     const MarchSettings fine{0.25, true};
     Moments pooledEscape, pooledScatter, pooledAcross;
-    const std::vector<TestRay> rays = testRays(medium, 12, 5);
+    const std::vector<TestRay> rays = testRays(medium, 8, 5);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const TestRay& ray = rays[i];
-        const auto events = marchInto<N>(medium, fine, ray, 3000, i, roulette, throughput);
+        const auto events = marchInto<N>(medium, fine, ray, 2000, i, roulette, throughput);
         double scatterSurplus = 0, escapeSurplus = 0, acrossSurplus = 0;
         const auto check = [&](int part, const Vec3d& share, double& surplus) {
             for (int c = 0; c < N; ++c) {
@@ -232,7 +233,7 @@ void expectExact(const PlainMedium& plain, Spectrum<N> throughput, float roulett
             check(static_cast<int>(part),
                   plain.scattered(plain.parts()[part], ray.origin, ray.direction, ray.tMax),
                   scatterSurplus);
-        const auto across = marchAcross<N>(medium, fine, ray, 2000, i, roulette, throughput);
+        const auto across = marchAcross<N>(medium, fine, ray, 1000, i, roulette, throughput);
         for (int c = 0; c < N; ++c) {
             Moments m;
             for (const auto& q : across) m.add(q.contribution[c]);
@@ -346,6 +347,14 @@ TEST(Marching, RefusesStepsThatWouldNeedMillions) {
     EXPECT_NO_THROW(prepareMarch(medium, {1e-3, true}));
     EXPECT_NO_THROW(prepareMarch(Medium{}, {1e-9, true}));
     EXPECT_NO_THROW(prepareMarch(constantMedium().medium(), {0.01, true}));
+}
+
+TEST(Marching, RefusesStandInsWhoseExtinctionFollowsTheAlbedo) {
+    const Medium medium = chromaticMedium().medium();
+    EXPECT_NO_THROW(prepareMarch(medium, {1, true}));
+    expectError(ErrorKind::Usage, "march_step contradicts similarity and octaves", [&] {
+        prepareMarch(similarMedium(medium), {1, true});
+    });
 }
 
 TEST(Marching, RaysOfEveryKindEnd) {

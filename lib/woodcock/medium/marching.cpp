@@ -187,7 +187,7 @@ double placeWithin(const Step<N>& step, const March<N>& march, int c, RandomStre
 }
 
 /// Marches one part to the first event of channel c before `event`, which it replaces. `depth`:
-/// all channels' up to there, or to the ray's end.
+/// all channels' up to there, or to the ray's end. True: it did.
 template <int N>
 bool findEvent(March<N> march, int part, int c, double u, RandomStream& random, Event<N>& event,
                Numbers<N>& depth, TrackingCounters& counters) {
@@ -317,6 +317,10 @@ void prepareMarch(const Medium& medium, const MarchSettings& settings) {
         throw usageError("march_step is {} voxels; expected a number above 0", settings.step);
     constexpr double blockDiagonal = 8 * 1.7320508075688772;
     for (const MediumPart& part : medium.parts) {
+        if (part.extinctionVaries())
+            throw usageError(
+                "march_step contradicts similarity and octaves where a volume's albedo is a grid: "
+                "its extinction then changes with the albedo");
         const double voxels = std::min(length(part.support().size()),
                                        part.marchCells().varyingBlocks() * blockDiagonal);
         const double least = voxels * (settings.jackknife ? 2 : 1) / mostLookUps;

@@ -33,7 +33,7 @@ struct MarchSettings {
 };
 
 /// Makes what marching needs. Throws Error{Usage} where the step is not above 0, or so small that
-/// a ray might need more than a million look-ups.
+/// a ray might need more than a million look-ups, and where a part's extinctionVaries().
 void prepareMarch(const Medium& medium, const MarchSettings& settings);
 
 /// As trackDistance(), from an optical depth drawn for one channel; the channel is drawn by

@@ -58,6 +58,8 @@ void prepare(const Scene& scene, const Approximations& approximations) {
     prepareMarch(scene.medium, marchSettings(approximations));
     for (const Medium& medium : scene.interiors)
         prepareMarch(medium, marchSettings(approximations));
+    for (const StandIns::Set& set : StandIns(scene, approximations).sets)
+        for (const Medium& medium : set) prepareMarch(medium, marchSettings(approximations));
 }
 
 /// Samples [first, end) of each pixel in the mean.
