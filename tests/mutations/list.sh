@@ -61,7 +61,7 @@ defect "null collisions weighted as if grey" 'Distance.*' "chromatic slabs" \
 
 defect "residual control dropped" 'Transmittance.*' "linear ramp" \
     $tracking \
-    'control += (s.t1 - s.t0) * s.range.min;' ''
+    'control += (s.t1 - s.t0) * least();' ''
 
 defect "control of cut cells dropped" 'Transmittance.*:RefinedWalk.*' "" \
     $tracking \
@@ -79,6 +79,10 @@ defect "phase function samples the wrong side" 'Phase.*' "phase function" \
     lib/woodcock/medium/phase.h \
     'const double cosine = below < above ? 1 - below : above - 1;' \
     'const double cosine = below < above ? below - 1 : 1 - above;'
+
+defect "similar media absorb less under an albedo grid" 'SimilarMedium.*' "" \
+    lib/woodcock/medium/similar_medium.cpp \
+    'c.loss = part.loss() * static_cast<float>(1 / kept);' ''
 
 # ---- light
 
@@ -103,6 +107,11 @@ defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of
     $light \
     'henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g)' \
     'henyeyGreenstein(dot(p.from.forward, s.direction), -p.from.g)'
+
+defect "all octaves come through the first one's medium" 'Octaves.*' "" \
+    lib/woodcock/render/batch_tracer_stand_ins.h \
+    'return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};' \
+    'return {1, octave::total(octaves), octave::phase(i)};'
 
 defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
     $tracer \

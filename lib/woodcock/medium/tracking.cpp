@@ -35,16 +35,20 @@ Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64
     return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
 }
 
+/// Of a part that has a grid of it.
+template <int N>
+Spectrum<N> albedoTap(const MediumPart& part, Vec3d world, std::uint64_t bits) {
+    const Field& field = *part.albedo();
+    return tap<N>(field, field.nearSupport(part.albedoIndex(world)), bits);
+}
+
 /// What a tentative collision meets. Where the bounds meet, f is known without a lookup.
 template <int N>
 Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, Vec3d direction,
                     double t, Range range, bool tight, RandomStream& random) {
     Sampled<N> s{Spectrum<N>(range.max), Spectrum<N>(1.0f)};
     if (range.min != range.max) s.f = density<N>(part, ray.at(t), tight, random.bits());
-    if (const Field* albedo = part.albedo()) {
-        const Vec3d index = albedo->nearSupport(part.albedoIndex(origin + direction * t));
-        s.albedo = tap<N>(*albedo, index, random.bits());
-    }
+    if (part.albedo()) s.albedo = albedoTap<N>(part, origin + direction * t, random.bits());
     return s;
 }
 
@@ -237,19 +241,19 @@ double effort(float weight, float roulette) {
 /// exp() of minus this is zero as a float.
 constexpr double vanished = 104;
 
-/// sigma_t over part.extinction() at one point.
+/// sigma_t over f x part.extinction() where the albedo is such.
 template <int N>
-Spectrum<N> relativeExtinction(const MediumPart& part, const Sampled<N>& s) {
+Spectrum<N> relativeExtinction(const MediumPart& part, const Spectrum<N>& albedo) {
     return Spectrum<N>::map([&](int c) {
-        const float lost = s.albedo[c] + part.loss() * (1 - s.albedo[c]);
+        const float lost = albedo[c] + part.loss() * (1 - albedo[c]);
         const float bound = part.extinction()[c];
-        return bound > 0 ? s.f[c] * (part.absorption()[c] + part.scattering()[c] * lost) / bound
-                         : 0.0f;
+        return bound > 0 ? (part.absorption()[c] + part.scattering()[c] * lost) / bound : 0.0f;
     });
 }
 
 /// Multiplies q.contribution by an estimate of one part's transmittance; false once it is killed.
-/// Varies: part.extinctionVaries(), and then f's lower bound bounds nothing.
+/// Varies: part.extinctionVaries(), and then f's lower bound bounds nothing. (Such parts have
+/// fields.)
 template <int N, bool Varies>
 bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
                TrackingCounters& counters) {
@@ -291,12 +295,10 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
             t += depth / rate;
-            Spectrum<N> f;
+            Spectrum<N> f = density<N>(part, ray.at(t), walk.tight(), q.random.bits());
             if constexpr (Varies)
-                f = relativeExtinction<N>(part, sampleAt<N>(part, ray, q.origin, q.direction, t,
-                                                            s.range, walk.tight(), q.random));
-            else
-                f = density<N>(part, ray.at(t), walk.tight(), q.random.bits());
+                f *= relativeExtinction<N>(
+                    part, albedoTap<N>(part, q.origin + q.direction * t, q.random.bits()));
             for (int c = 0; c < N; ++c)
                 ratio[c] *=
                     std::max(0.0f, 1 - (f[c] - least()) * extinction[c] / static_cast<float>(rate));

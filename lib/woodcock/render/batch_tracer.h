@@ -273,10 +273,7 @@ private:
         const EventNumbers u = numbers(p);
         // What equiangular sampling of this flight leaves to this event; see addEquiangular.
         const FlightShare share{!needs_.localLights, flightOf(p), t};
-        const Onward onward = onwardFrom(p);
-        p.standIn = onward.standIn;
-        p.throughput *= static_cast<float>(onward.amount);
-        g *= onward.phase;
+        if (standsIn_) g *= enterStandIn(p);
         p.from = {position, p.direction, g};
         if constexpr (Surfaces) {
             AmongSurfaces& s = p.surfaces;
@@ -300,7 +297,7 @@ private:
             p.throughput *= 1.41421356f;
         }
         p.equiangular = u.equiangular, p.lamp = u.pick;
-        p.alive = options_.approximations.octaves == 0 || octavesMeetLight_;
+        if (octavesEnd_) p.alive = false;
     }
 
     EventNumbers numbers(Path& p) {
@@ -339,6 +336,8 @@ private:
         double amount = 1, phase = 1;
     };
     Onward onwardFrom(Path& p) const;
+    /// Goes on so, and returns Onward::phase.
+    double enterStandIn(Path& p) const;
     void clampRadiance(Rgb& radiance);
 
     // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
@@ -441,7 +440,8 @@ private:
     const Options options_;
     const float typicalRadiance_;
     std::vector<MediumSummary> media_;  // of the outside, and of what surfaces hold; stand-ins
-    bool octavesMeetLight_ = false;     // on their flights, by chance
+    bool standsIn_ = false;             // there are stand-ins
+    bool octavesEnd_ = false;           // with next-event estimation: their flights meet no light
     LightChoice choice_;
     EmissionSampler emission_;
     RenderCounters counters_;

@@ -14,25 +14,31 @@ void BatchTracer<N, Surfaces>::gatherMedia() {
     if constexpr (Surfaces)
         for (const Medium& medium : scene_.interiors) own.push_back(&medium);
     for (const Medium* medium : own) media_.emplace_back(*medium);
-    if (!options_.standIns) return;
+    standsIn_ = options_.standIns && !options_.standIns->sets.empty();
+    if (!standsIn_) return;
     for (const StandIns::Set& set : options_.standIns->sets)
         for (std::size_t i = 0; i < own.size(); ++i) media_.emplace_back(set[i], *own[i]);
-    octavesMeetLight_ = Surfaces || needs_.emission;
+    bool flightsMeetLight = Surfaces || needs_.emission;
     for (const Light& light : scene_.lights.lights()) {
         const auto* sun = std::get_if<Sun>(&light);
-        octavesMeetLight_ |= std::holds_alternative<Environment>(light) || (sun && !sun->delta());
+        flightsMeetLight |= std::holds_alternative<Environment>(light) || (sun && !sun->delta());
     }
+    octavesEnd_ = options_.approximations.octaves > 0 && !flightsMeetLight;
 }
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::gatherStandIns() {
-    if (!Surfaces && media_.size() > 1)
+    if (!Surfaces && standsIn_)
         std::partition(paths_.begin(), paths_.end(), [](const Path& p) { return p.standIn > 0; });
 }
 
 template <int N, bool Surfaces>
 template <class Items, class F>
 void BatchTracer<N, Surfaces>::forRuns(const Items& items, F&& f) const {
+    if (!standsIn_) {
+        f(media_[0], std::size_t{0}, items.size());
+        return;
+    }
     for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
         const std::uint8_t standIn = items[first].standIn;
         while (end < items.size() && items[end].standIn == standIn) ++end;
@@ -62,6 +68,14 @@ auto BatchTracer<N, Surfaces>::onwardFrom(Path& p) const -> Onward {
     if (octaves == 0) return {standInAfter(p.scatterings + 1)};
     const int i = octave::draw(octaves, p.random.uniform());
     return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};
+}
+
+template <int N, bool Surfaces>
+double BatchTracer<N, Surfaces>::enterStandIn(Path& p) const {
+    const Onward onward = onwardFrom(p);
+    p.standIn = onward.standIn;
+    p.throughput *= static_cast<float>(onward.amount);
+    return onward.phase;
 }
 
 template <int N, bool Surfaces>
