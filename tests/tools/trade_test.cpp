@@ -119,6 +119,9 @@ TEST_F(Trade, FindsTheBiasThatIsThereAndNoOther) {
     const std::string csv = readText(dir / "report/trade.csv");
     EXPECT_NE(csv.find("\"loose majorants, \"\"unbiased\"\"\",false,"), std::string::npos) << csv;
 
+    EXPECT_NE(readText(dir / "report/trade.html").find("data:image/png;base64,"),
+              std::string::npos);
+
     const json& recommended = report.at("recommendations").back();
     EXPECT_EQ(recommended.at("kind"), "error");
     std::vector<std::string> words = wordsOf(recommended.at("command"));
