@@ -28,8 +28,9 @@ TEST(Quality, BringsItsChoices) {
         EXPECT_EQ(parse("quality = \"" + name + "\"").render, parse(written).render) << name;
         EXPECT_EQ(parse("", {"render.quality=" + name}).render, parse(written).render) << name;
     }
-    expectError(ErrorKind::Input, "did you mean 'final'?", [] { parse("quality = \"finall\""); });
-    expectError(ErrorKind::Input, "q.toml:4", [] { parse("quality = 3"); });
+    expectError(ErrorKind::Input, "unknown quality 'finall'; known: draft",
+                [] { parse("quality = \"finall\""); });
+    expectError(ErrorKind::Input, "q.toml:5:11", [] { parse("quality = 3"); });
 }
 
 TEST(Quality, FinalAndReferenceAreUnbiased) {

@@ -62,7 +62,8 @@ TEST_F(Candidates, MistakesAreNamedWithTheirPlace) {
     expectMistake("[candidate]\nname = \"a\"", "write [[candidate]]");
     expectMistake("[[candidate]]\nset = []", "name");
     expectMistake("[[candidate]]\nname = \"a\"\nsets = []", "c.toml:3");
-    expectMistake("[[candidate]]\nname = \"a\"\nquality = \"finl\"", "'final'");
+    expectMistake("[[candidate]]\nname = \"a\"\nquality = \"finl\"",
+                  "c.toml:3:11: unknown quality 'finl'");
     expectMistake("[[candidate]]\nname = \"a\"\n[[candidate]]\nname = \"a\"", "is called 'a'");
     const auto set = [](const std::string& text) {
         return "[[candidate]]\nname = \"a\"\nset = [" + text + "]";

@@ -58,7 +58,7 @@ TEST(TradePlan, NoNeighbourIsBetter) {
 }
 
 TEST(TradePlan, NobodyGetsLessThanTheLeast) {
-    const std::vector<PilotCost> costs{{0.001, 0, 1}, {1, 0.01, 1}, {0.001, 1, 1}};
+    const std::vector<PilotCost> costs{{0.001, 0, 1}, {1, 1e-6, 1}, {0.001, 1, 1}};
     const PilotCost reference{0.001, 1, 1};
     const TradePlan enough = planTrade(costs, reference, 40, 4);
     EXPECT_EQ(enough.candidates[0], 4);
