@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/medium/media.h"
 #include "tests/oracle/adding_doubling.h"
 #include "tests/proof/measure.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
+#include "woodcock/render/stand_ins.h"
 
 namespace woodcock::test {
 namespace {
@@ -52,21 +55,21 @@ void expectSameBits(const Film& a, const Film& b) {
             }
 }
 
-class Similarity : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Surfaces, Similarity, testing::Bool());
+class Similar : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Surfaces, Similar, testing::Bool());
 
-TEST_P(Similarity, AfterAllOrdersChangesNoBit) {
+TEST_P(Similar, AfterAllOrdersChangesNoBit) {
     const Scene scene = fog(0.7, GetParam());
     expectSameBits(draw(scene, 1'000'000).film, draw(scene, {}).film);
 }
 
-TEST_P(Similarity, OfIsotropicMediaChangesNoBit) {
+TEST_P(Similar, OfIsotropicMediaChangesNoBit) {
     const Scene scene = fog(0, GetParam());
     const RenderResult unreduced = draw(scene, {});
     for (const int after : {0, 1, 3}) expectSameBits(draw(scene, after).film, unreduced.film);
 }
 
-TEST_P(Similarity, ThreadsAndNeighboursDoNotShow) {
+TEST_P(Similar, ThreadsAndNeighboursDoNotShow) {
     const Scene scene = fog(0.7, GetParam());
     RenderSettings one, other;
     one.threads = 1;
@@ -75,7 +78,7 @@ TEST_P(Similarity, ThreadsAndNeighboursDoNotShow) {
     expectSameBits(draw(scene, 2, other).film, draw(scene, 2, one).film);
 }
 
-TEST_P(Similarity, ChangesWhatItShould) {
+TEST_P(Similar, ChangesWhatItShould) {
     const Scene scene = fog(0.7, GetParam());
     const RenderResult a = draw(scene, 1), b = draw(scene, {});
     EXPECT_NE(a.film.at(12, 8).radiance[0], b.film.at(12, 8).radiance[0]);
@@ -132,6 +135,17 @@ TEST_P(SimilarSlab, FromTheCameraOnIsTheReducedOneExactly) {
     // The test can tell: the slab itself answers otherwise.
     const double unreduced = answer(row.depth, row.albedo, row.g).transmittance[0];
     EXPECT_GT(std::abs(unreduced - expected.transmittance[0]), 4 * seen[2].error);
+}
+
+TEST(Similarity, IsNotMarchedThroughAlbedoGrids) {
+    Scene scene = fog(0, false);
+    scene.medium = chromaticMedium().medium();
+    Approximations choice;
+    choice.similarityAfter = 0;
+    EXPECT_NO_THROW(StandIns(scene, choice));
+    choice.marchStep = 1;
+    expectError(ErrorKind::Usage, "march_step and similarity_after do not go together",
+                [&] { StandIns(scene, choice); });
 }
 
 /// What similarity costs a thick conservative slab is little, by tables alone.
