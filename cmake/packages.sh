@@ -10,7 +10,7 @@ packages=(
     libembree-dev libassimp-dev libnanovdb-dev libblosc-dev
     libtbb-dev libfmt-dev libspdlog-dev
     libtomlplusplus-dev libmuparser-dev nlohmann-json3-dev libcli11-dev
-    libgtest-dev
+    libgtest-dev libbenchmark-dev
     clang libclang-rt-14-dev
 )
 

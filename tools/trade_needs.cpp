@@ -15,7 +15,7 @@ const std::string& nameOf(const NeedCost& c) { return needNames[static_cast<std:
 
 /// Without the risk that chance decides: two standard errors beyond the mark on either side.
 bool resolved(const NeedCost& c) {
-    return std::abs(c.ratio.value - NeedCost::leastRatio) > 2 * c.ratio.se;
+    return std::abs(c.cost().value - NeedCost::leastRatio) > 2 * c.cost().se;
 }
 
 std::string verdict(const NeedCost& c) {
@@ -30,11 +30,13 @@ std::string pictures(const NeedCost& c) {
 
 void print(const NeedCost& c) {
     if (c.needed) {
-        fmt::print("{:<22} {:>11} {:>11} {:>16}  needed\n", nameOf(c), "", "", "");
+        fmt::print("{:<22} {:>11} {:>11} {:>16} {:>16}  needed\n", nameOf(c), "", "", "", "");
     } else {
-        fmt::print("{:<22} {:>11.3g} {:>11.3g} {:>8.3f} +- {:.3f}  {}; picture: {}\n", nameOf(c),
-                   c.without.value, c.with.value, c.ratio.value, c.ratio.se, verdict(c),
-                   pictures(c));
+        fmt::print(
+            "{:<22} {:>11.3g} {:>11.3g} {:>8.3f} +- {:.3f} {:>8.3f} +- {:.3f}  {}; picture: "
+            "{}\n",
+            nameOf(c), c.without.value, c.with.value, c.ratio.value, c.ratio.se, c.variance.value,
+            c.variance.se, verdict(c), pictures(c));
     }
     std::fflush(stdout);
 }
@@ -47,7 +49,7 @@ std::vector<std::string> notesOn(const std::vector<NeedCost>& costs) {
             notes.push_back(
                 fmt::format("the budget was too small to tell whether '{}' earns 10 %: {:.3f} "
                             "+- {:.3f} in {} pairs of runs",
-                            nameOf(c), c.ratio.value, c.ratio.se, c.pairs));
+                            nameOf(c), c.cost().value, c.cost().se, c.pairs));
         if (!c.sameBits && std::abs(c.difference.value) > 4 * c.difference.se + 1e-5)
             notes.push_back(fmt::format("'{}' changed the picture by {:.2e} +- {:.0e}: a bug",
                                         nameOf(c), c.difference.value, c.difference.se));
@@ -66,6 +68,8 @@ Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
             row.update({{"seconds", toJson(c.without)},
                         {"pretended", toJson(c.with)},
                         {"ratio", toJson(c.ratio)},
+                        {"variance", toJson(c.variance)},
+                        {"cost", toJson(c.cost())},
                         {"pairs", c.pairs},
                         {"same_bits", c.sameBits},
                         {"difference", toJson(c.difference)}});
@@ -78,11 +82,12 @@ Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
 
 std::string needsCsv(const std::vector<NeedCost>& costs) {
     std::string text =
-        "need,needed,seconds,seconds_se,pretended,pretended_se,ratio,ratio_se,pairs,verdict\n";
+        "need,needed,seconds,seconds_se,pretended,pretended_se,ratio,ratio_se,variance,variance_se,"
+        "pairs,verdict\n";
     for (const NeedCost& c : costs)
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", nameOf(c), int{c.needed},
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", nameOf(c), int{c.needed},
                             c.without.value, c.without.se, c.with.value, c.with.se, c.ratio.value,
-                            c.ratio.se, c.pairs, verdict(c));
+                            c.ratio.se, c.variance.value, c.variance.se, c.pairs, verdict(c));
     return text;
 }
 
@@ -99,7 +104,8 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
     bool first = true;
     const auto show = [&](const NeedCost& cost) {
         if (std::exchange(first, false))
-            fmt::print("{:<22} {:>11} {:>11} {:>16}\n", "need", "without [s]", "with [s]", "ratio");
+            fmt::print("{:<22} {:>11} {:>11} {:>16} {:>16}\n", "need", "without [s]", "with [s]",
+                       "ratio of times", "of variances");
         print(cost);
     };
     const auto costs = needsCost(scene, settings, {.budget = budget, .onResult = show});

@@ -88,7 +88,7 @@ TEST(NeedsCost, WhatIsNeededIsNotCompared) {
     const Scene scene = sceneFrom(foggy + camera);
     RenderSettings settings;
     settings.width = settings.height = 16;
-    const auto costs = needsCost(scene, settings, {.budget = 2, .precision = 0.2});
+    const auto costs = needsCost(scene, settings, {.budget = 10, .precision = 0.2});
     ASSERT_EQ(costs.size(), needNames.size());
     for (const NeedCost& cost : costs) {
         SCOPED_TRACE(needNames[static_cast<std::size_t>(cost.need)]);
@@ -100,7 +100,9 @@ TEST(NeedsCost, WhatIsNeededIsNotCompared) {
         EXPECT_GT(cost.ratio.value, 0);
         EXPECT_LE(std::abs(cost.difference.value), 4 * cost.difference.se + 1e-5);
     }
-    EXPECT_TRUE(costs[static_cast<std::size_t>(Need::Overlap)].sameBits);
+    const NeedCost& overlap = costs[static_cast<std::size_t>(Need::Overlap)];
+    EXPECT_TRUE(overlap.sameBits);
+    EXPECT_EQ(overlap.variance.value, 1);
 }
 
 TEST(NeedsCost, BudgetsThatAreTooSmallAreRefused) {

@@ -24,18 +24,24 @@ constexpr int largestSide = 64;
 bool Needs::*memberOf(Need need) { return members[static_cast<std::size_t>(need)]; }
 
 struct Run {
-    double seconds = 0;  ///< for each sample
-    double mean = 0;     ///< of the picture
+    double seconds = 0;   ///< for each sample
+    double mean = 0;      ///< of the picture
+    double variance = 0;  ///< of a sample, mean over its pixels
     RenderResult result;
 };
 
 Run run(const Scene& scene, const RenderSettings& settings) {
     const double start = processorSeconds();
-    Run r{0, 0, render(scene, settings)};
+    Run r{0, 0, 0, render(scene, settings)};
     r.seconds = (processorSeconds() - start) / settings.endSample;
     for (int y = 0; y < settings.height; ++y)
-        for (int x = 0; x < settings.width; ++x) r.mean += r.result.film.radiance(x, y).mean();
+        for (int x = 0; x < settings.width; ++x) {
+            const double error = r.result.film.standardError(x, y).mean();
+            r.mean += r.result.film.radiance(x, y).mean();
+            r.variance += error * error * settings.endSample;
+        }
     r.mean /= settings.width * settings.height;
+    r.variance /= settings.width * settings.height;
     return r;
 }
 
@@ -73,7 +79,7 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
     const Scene pretending = pretend(scene, need);
     const double end = wallSeconds() + seconds;
     NeedCost cost{.need = need, .sameBits = true};
-    std::vector<double> with, without, ratios;
+    std::vector<double> with, without, ratios, variances;
     Moments difference;
     const std::uint64_t seed = settings.seed;
     run(pretending, settings);
@@ -86,6 +92,9 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
         const Run &a = swap ? second : first, &b = swap ? first : second;
         without.push_back(a.seconds), with.push_back(b.seconds);
         ratios.push_back(b.seconds / a.seconds);
+        // A single sample's variance is unknown, and none at all bears no ratio.
+        if (a.variance > 0 && std::isfinite(a.variance))
+            variances.push_back(b.variance / a.variance);
         cost.sameBits &= sameBits(a.result.film, b.result.film);
         if (a.mean > 0) difference.add(b.mean / a.mean - 1);
         ++cost.pairs;
@@ -93,6 +102,7 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
         const bool known = cost.pairs >= usualPairs && cost.ratio.se < precision * cost.ratio.value;
         if (known || (cost.pairs >= fewestPairs && wallSeconds() > end)) break;
     }
+    cost.variance = variances.empty() ? Measured{1, 0} : medianOf(variances);
     cost.with = medianOf(with), cost.without = medianOf(without);
     cost.difference = {difference.mean(), difference.standardError()};
     return cost;
@@ -101,6 +111,11 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
 }  // namespace
 
 bool has(const Needs& needs, Need need) { return needs.*memberOf(need); }
+
+Measured NeedCost::cost() const {
+    return {ratio.value * variance.value,
+            std::hypot(ratio.se * variance.value, variance.se * ratio.value)};
+}
 
 Scene pretend(Scene scene, Need need) {
     scene.pretended.*memberOf(need) = true;
