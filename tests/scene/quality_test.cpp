@@ -44,10 +44,10 @@ TEST(Quality, FinalAndReferenceAreUnbiased) {
 
 TEST(Quality, KeysBesideItWin) {
     const RenderDescription draft =
-        parse("quality = \"draft\"\nlookup = \"trilinear\"\nclamp = 3").render;
-    EXPECT_EQ(draft.lookup, Lookup::Trilinear);
+        parse("quality = \"draft\"\nstorage = \"float\"\nclamp = 3").render;
+    EXPECT_EQ(draft.storage, Storage::Float);
     EXPECT_EQ(draft.approximations.clamp, 3);
-    EXPECT_GT(draft.levelOfDetail, 0);
+    EXPECT_TRUE(draft.approximations.similarityAfter);
     const RenderDescription preview = parse("quality = \"preview\"\noctaves = 5").render;
     EXPECT_EQ(preview.approximations.octaves, 5) << "which displaces similarity_after";
     EXPECT_FALSE(preview.approximations.similarityAfter);
@@ -76,7 +76,7 @@ TEST(Quality, EveryBiasedChoiceIsNamed) {
     EXPECT_TRUE(biasedChoices(parse("adaptive = true\nmajorant_scale = 2")).empty());
 }
 
-/// "| `draft` | `octaves = 6`, `lookup = "nearest"` | ...": the cells of the line of a quality.
+/// "| `draft` | `clamp = 3`, `lookup = "nearest"` | ...": the cells of the line of a quality.
 std::string documentedChoices(const std::string& quality) {
     std::istringstream text(readText(sourceDir() / "data/scenes/README.md"));
     const std::string start = "| `\"" + quality + "\"` | ";

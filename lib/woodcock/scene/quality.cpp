@@ -30,13 +30,8 @@ bool isReducedPrecision(Storage storage) {
 
 const std::vector<RenderChoice>& qualityChoices(Quality quality) {
     static const std::array<std::vector<RenderChoice>, 4> choices{
-        {{{"octaves", "6"},
-          {"level_of_detail", "2"},
-          {"lookup", "\"nearest\""},
-          {"storage", "\"half\""},
-          {"transparent_shadows", "true"}},
+        {{{"similarity_after", "0"}, {"storage", "\"half\""}, {"transparent_shadows", "true"}},
          {{"similarity_after", "4"},
-          {"level_of_detail", "1"},
           {"storage", "\"half\""},
           {"transparent_shadows", "true"},
           {"adaptive", "true"}},
