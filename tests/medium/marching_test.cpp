@@ -233,7 +233,7 @@ void expectExact(const PlainMedium& plain, Spectrum<N> throughput, float roulett
             check(static_cast<int>(part),
                   plain.scattered(plain.parts()[part], ray.origin, ray.direction, ray.tMax),
                   scatterSurplus);
-        const auto across = marchAcross<N>(medium, fine, ray, 1000, i, roulette, throughput);
+        const auto across = marchAcross<N>(medium, fine, ray, 2000, i, roulette, throughput);
         for (int c = 0; c < N; ++c) {
             Moments m;
             for (const auto& q : across) m.add(q.contribution[c]);

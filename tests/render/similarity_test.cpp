@@ -140,12 +140,13 @@ TEST_P(SimilarSlab, FromTheCameraOnIsTheReducedOneExactly) {
 TEST(Similarity, IsNotMarchedThroughAlbedoGrids) {
     Scene scene = fog(0, false);
     scene.medium = chromaticMedium().medium();
-    Approximations choice;
-    choice.similarityAfter = 0;
-    EXPECT_NO_THROW(StandIns(scene, choice));
-    choice.marchStep = 1;
-    expectError(ErrorKind::Usage, "march_step and similarity_after do not go together",
-                [&] { StandIns(scene, choice); });
+    RenderSettings settings;
+    settings.width = settings.height = 2, settings.endSample = 1;
+    settings.approximations.similarityAfter = 0;
+    EXPECT_NO_THROW(render(scene, settings));
+    settings.approximations.marchStep = 1;
+    expectError(ErrorKind::Usage, "march_step contradicts similarity",
+                [&] { render(scene, settings); });
 }
 
 /// What similarity costs a thick conservative slab is little, by tables alone.

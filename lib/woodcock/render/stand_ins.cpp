@@ -18,16 +18,6 @@ StandIns::StandIns(const Scene& scene, const Approximations& choice) {
     if (choice.similarityAfter) add(similarMedium);
     for (int i = 0; i < choice.octaves; ++i)
         add([&](const Medium& medium) { return octaveMedium(medium, i); });
-
-    // Marching takes extinction to be in proportion to the density grid.
-    if (!(choice.marchStep > 0)) return;
-    for (const Set& set : sets)
-        for (const Medium& medium : set)
-            for (const MediumPart& part : medium.parts)
-                if (part.extinctionVaries())
-                    throw usageError(
-                        "march_step and similarity_after do not go together where a volume has an "
-                        "albedo grid and a g other than 0; leave one of them out");
 }
 
 }  // namespace woodcock
