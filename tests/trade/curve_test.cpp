@@ -8,6 +8,7 @@
 
 #include "woodcock/base/random.h"
 #include "woodcock/base/statistics.h"
+#include "woodcock/base/vec.h"
 
 namespace woodcock::test {
 namespace {

@@ -72,7 +72,6 @@ const std::string foggy = std::string(fog) + environment + sun;
 TEST(NeedsCost, PretendedNeedsDrawTheSamePicture) {
     // Of three channels that agree the sums are rounded otherwise: no bits to compare.
     expectSamePicture(foggy, Need::Chromatic);
-    EXPECT_TRUE(expectSamePicture(foggy, Need::Overlap));
     EXPECT_TRUE(expectSamePicture(foggy, Need::Emission));
     expectSamePicture(foggy, Need::LocalLights);
     EXPECT_TRUE(expectSamePicture(foggy, Need::Surfaces));
@@ -100,9 +99,9 @@ TEST(NeedsCost, WhatIsNeededIsNotCompared) {
         EXPECT_GT(cost.ratio.value, 0);
         EXPECT_LE(std::abs(cost.difference.value), 4 * cost.difference.se + 1e-5);
     }
-    const NeedCost& overlap = costs[static_cast<std::size_t>(Need::Overlap)];
-    EXPECT_TRUE(overlap.sameBits);
-    EXPECT_EQ(overlap.variance.value, 1);
+    const NeedCost& surfaces = costs[static_cast<std::size_t>(Need::Surfaces)];
+    EXPECT_TRUE(surfaces.sameBits);
+    EXPECT_EQ(surfaces.variance.value, 1);
 }
 
 TEST(NeedsCost, BudgetsThatAreTooSmallAreRefused) {

@@ -124,8 +124,6 @@ private:
 struct Medium {
     std::vector<MediumPart> parts;
     std::vector<EmissionPart> emission = {};
-    /// A single part is tracked as several would be: to measure what that costs.
-    bool superposed = false;
 
     /// World box of all parts' supports (the background, where not zero, reaches beyond it).
     Box3d worldBounds() const;

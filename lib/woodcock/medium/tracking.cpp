@@ -131,22 +131,25 @@ public:
     /// After a null collision that left these channels.
     template <int N>
     void redraw(double u, Spectrum<N> throughput) {
+        waiting_ = false;
         depth_ = -std::log(u);
         walk_.setLive(*part_, liveChannels<N>(throughput));
         walk_.collided(*part_, ray_, t_, segment_);
         mu_ = segment_.range.max * walk_.extinction();
     }
 
-    /// Goes on to the next collision before `limit`: true when there is one, at t(). Otherwise the
-    /// walk pauses at `limit` or has ended; it can be called again with a larger limit.
+    /// Goes on to the next collision before `limit`, unless it stands at one that was not met: true
+    /// when it stands at one, at t(). Otherwise the walk pauses at `limit` or has ended; it can be
+    /// called again with a larger limit.
     bool advance(double limit, TrackingCounters& counters) {
-        while (true) {
+        while (!waiting_) {
             const double end = std::min(segment_.t1, limit);
             const double step = mu_ > 0 ? depth_ / mu_ : std::numeric_limits<double>::infinity();
             if (t_ + step < end) {
                 t_ += step;
                 ++counters.collisions;
-                return true;
+                waiting_ = true;
+                break;
             }
             if (mu_ > 0 && end > t_) depth_ = std::max(0.0, depth_ - (end - t_) * mu_);
             t_ = std::max(t_, end);
@@ -159,6 +162,7 @@ public:
             t_ = segment_.t0;
             mu_ = segment_.range.max * walk_.extinction();
         }
+        return true;
     }
 
 private:
@@ -169,7 +173,7 @@ private:
     Segment segment_{0, 0, {}};
     float mu_ = 0;
     double t_ = 0, depth_;
-    bool ended_ = false;
+    bool waiting_ = false, ended_ = false;
 };
 
 /// Meets the collision that `process` stands at; true when the query is decided.
@@ -193,20 +197,12 @@ bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) 
 
 Vec3d inverseOf(Vec3d v) { return {1 / v.x, 1 / v.y, 1 / v.z}; }
 
-template <int N>
-void trackOnePart(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
-                  TrackingCounters& counters) {
-    CollisionProcess process(medium.parts[0], 0, q, q.u);
-    while (process.advance(q.tMax, counters))
-        if (settle(q, process, roulette)) return;
-}
-
 /// Media that add are independent Poisson processes that superpose (Kingman 1993, sec. 2.2): each
 /// part finds its own next collision among its own cells, and the nearest one is what happens. No
 /// part looks further than the nearest collision found so far.
 template <int N>
-void trackManyParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
-                    std::vector<CollisionProcess>& processes, TrackingCounters& counters) {
+void trackParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
+                std::vector<CollisionProcess>& processes, TrackingCounters& counters) {
     processes.clear();
     const Vec3d inverse = inverseOf(q.direction);
     for (std::size_t i = 0; i < medium.parts.size(); ++i) {
@@ -214,18 +210,13 @@ void trackManyParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulett
         if (medium.parts[i].mayMeet(q.origin, inverse, q.tMax))
             processes.emplace_back(medium.parts[i], static_cast<int>(i), q, u);
     }
-    std::vector<bool> waiting(processes.size(), false);  // stands at a collision not yet met
     while (true) {
         CollisionProcess* nearest = nullptr;
         double limit = q.tMax;
-        for (std::size_t i = 0; i < processes.size(); ++i) {
-            if (!waiting[i]) waiting[i] = processes[i].advance(limit, counters);
-            if (waiting[i] && processes[i].t() < limit)
-                nearest = &processes[i], limit = processes[i].t();
-        }
-        if (!nearest) return;
-        if (settle(q, *nearest, roulette)) return;
-        waiting[static_cast<std::size_t>(nearest - processes.data())] = false;
+        for (CollisionProcess& process : processes)
+            if (process.advance(limit, counters) && process.t() < limit)
+                nearest = &process, limit = process.t();
+        if (!nearest || settle(q, *nearest, roulette)) return;
     }
 }
 
@@ -329,10 +320,7 @@ void trackDistance(const Medium& medium, std::span<DistanceQuery<N>> queries,
     for (DistanceQuery<N>& q : queries) {
         q.part = -1, q.t = q.tMax;
         Roulette roulette(q.roulette, q.random);
-        if (medium.parts.size() == 1 && !medium.superposed)
-            trackOnePart(medium, q, roulette, counters);
-        else
-            trackManyParts(medium, q, roulette, processes, counters);
+        trackParts(medium, q, roulette, processes, counters);
         roulette.lift(q.throughput);
     }
 }

@@ -20,13 +20,18 @@ Field fieldOfBricks(std::size_t bricks) {
     return buildField(source, Storage::Float);
 }
 
-double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std::uint64_t seed) {
+namespace {
+
+/// A loop for each kind: a choice within would be a conditional move, which waits for the value
+/// that it does not take, so that all looks would be dependent ones.
+template <bool dependent>
+double look(const Field& field, std::uint64_t count, std::uint64_t seed) {
     const Box3d& box = field.support();
     const Vec3d size = box.size() * (1 - 1e-6);
     double sum = 0;
     std::uint64_t last = seed;
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t bits = mixBits((dependent ? last : seed) + i);
+        const std::uint64_t bits = mixBits(last + i);
         constexpr double unit = 0x1p-21;
         const Vec3d p =
             box.lower + Vec3d{size.x * unit * static_cast<double>(bits & 0x1fffff),
@@ -34,9 +39,15 @@ double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std
                               size.z * unit * static_cast<double>(bits >> 42 & 0x1fffff)};
         const float value = field.stochastic(p, bits * 0xd6e8feb86659fd93u);
         sum += value;
-        last = seed ^ std::bit_cast<std::uint32_t>(value);
+        if constexpr (dependent) last = seed ^ std::bit_cast<std::uint32_t>(value);
     }
     return sum;
+}
+
+}  // namespace
+
+double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std::uint64_t seed) {
+    return dependent ? look<true>(field, count, seed) : look<false>(field, count, seed);
 }
 
 }  // namespace woodcock

@@ -13,7 +13,7 @@ namespace woodcock {
 namespace {
 
 constexpr std::array<bool Needs::*, needNames.size()> members{
-    &Needs::chromatic,     &Needs::overlap,     &Needs::scattering, &Needs::emission,
+    &Needs::chromatic,     &Needs::scattering,  &Needs::emission,
     &Needs::lightSampling, &Needs::localLights, &Needs::surfaces};
 
 constexpr int fewestPairs = 3, usualPairs = 12;
@@ -53,8 +53,14 @@ bool sameBits(const Film& a, const Film& b) {
     return true;
 }
 
-/// The same view, small, in as many samples as one run of about `seconds` takes.
-RenderSettings plan(const Scene& scene, RenderSettings s, double seconds) {
+double wallSecondsOf(const Scene& scene, const RenderSettings& settings) {
+    const double start = wallSeconds();
+    run(scene, settings);
+    return wallSeconds() - start;
+}
+
+/// The same view, small, one sample of each pixel.
+RenderSettings smallView(RenderSettings s) {
     const double shrink = std::min(1.0, double{largestSide} / std::max(s.width, s.height));
     s.width = std::max(1, static_cast<int>(std::lround(s.width * shrink)));
     s.height = std::max(1, static_cast<int>(std::lround(s.height * shrink)));
@@ -63,15 +69,16 @@ RenderSettings plan(const Scene& scene, RenderSettings s, double seconds) {
     s.timeLimit = s.noise = 0;
     s.adaptive = false;
     s.firstSample = 0, s.endSample = 1;
-    run(scene, s);  // fills the caches
+    return s;
+}
+
+/// As many samples as one run of about `seconds` of wall clock takes.
+void lengthen(const Scene& scene, RenderSettings& s, double seconds) {
     while (s.endSample < (1 << 20)) {
-        const double start = wallSeconds();
-        run(scene, s);
-        const double taken = wallSeconds() - start;  // it is the wall clock's budget
+        const double taken = wallSecondsOf(scene, s);
         if (taken >= seconds / 2) break;
         s.endSample *= std::clamp(static_cast<int>(seconds / std::max(taken, 1e-6)), 2, 16);
     }
-    return s;
 }
 
 NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double seconds,
@@ -119,10 +126,6 @@ Measured NeedCost::cost() const {
 
 Scene pretend(Scene scene, Need need) {
     scene.pretended.*memberOf(need) = true;
-    if (need == Need::Overlap) {
-        scene.medium.superposed = true;
-        for (Medium& medium : scene.interiors) medium.superposed = true;
-    }
     if (need == Need::Surfaces && !scene.surfaces)
         scene.surfaces = std::make_shared<SurfaceSet>(SurfaceSet{Geometry({}, {}), {}, {}, {}});
     return scene;
@@ -136,14 +139,13 @@ std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
         std::count_if(members.begin(), members.end(), [&](auto m) { return !(needs.*m); }));
     const double runs = std::max(1, missing) * 2.0 * usualPairs;
     const double wanted = options.budget / (2 * runs);
-    settings = plan(scene, settings, std::clamp(wanted, shortestRun, longestRun));
-    const double planned = wallSeconds();
-    run(scene, settings);
-    const double oneRun = wallSeconds() - planned;
-    const double least = (wallSeconds() - start) + missing * (2 * fewestPairs + 1) * oneRun;
+    settings = smallView(settings);
+    const double oneSample = wallSecondsOf(scene, settings);
+    const double least = missing * (2 * fewestPairs + 1) * oneSample;
     if (least > options.budget)
         throw usageError("a budget of {} is too small: {} needs of this scene take {} at least",
                          formatDuration(options.budget), missing, formatDuration(least));
+    lengthen(scene, settings, std::clamp(wanted, shortestRun, longestRun));
     std::vector<NeedCost> costs;
     int left = missing;
     for (std::size_t i = 0; i < needNames.size(); ++i) {

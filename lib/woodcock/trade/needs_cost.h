@@ -11,25 +11,23 @@
 
 namespace woodcock {
 
-/// What a scene may need of the path loop: the members of Needs.
+/// What a scene may need of the path loop: the members of Needs that its code tells apart.
 enum class Need {
     Chromatic,
-    Overlap,
     Scattering,
     Emission,
     LightSampling,
     LocalLights,
     Surfaces,
 };
-inline const std::array<std::string, 7> needNames{
-    "three colour channels", "overlapping media",    "scattering", "emission",
+inline const std::array<std::string, 6> needNames{
+    "three colour channels", "scattering",           "emission",
     "light sampling",        "equiangular sampling", "surfaces"};
 
 bool has(const Needs& needs, Need need);
 
 /// The scene, to be drawn as if it had a need that it has not: the same picture up to noise, by the
-/// more general way. Grey media as three channels that agree, one part as a superposition of one,
-/// no surfaces as an empty set of them.
+/// more general way. Grey media as three channels that agree, no surfaces as an empty set of them.
 Scene pretend(Scene scene, Need need);
 
 /// What a feature costs a scene that does not need it.

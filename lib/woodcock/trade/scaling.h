@@ -17,8 +17,8 @@ struct ScalingReport {
 };
 
 struct ScalingOptions {
-    double budget = 600;            ///< seconds
-    std::filesystem::path scratch;  ///< a directory for baked volumes, which are removed again
+    double budget = 600;                 ///< seconds
+    std::filesystem::path scratch = {};  ///< a directory for baked volumes, which are removed again
     std::function<void(const std::string&)> onProgress = {};
 };
 
