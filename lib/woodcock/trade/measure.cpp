@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <set>
 
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/load.h"
+#include "woodcock/trade/timing.h"
 
 namespace woodcock {
 namespace {
@@ -42,13 +42,6 @@ std::size_t bytesOf(const Scene& scene) {
     add(scene.medium);
     for (const Medium& medium : scene.interiors) add(medium);
     return bytes;
-}
-
-/// Of all threads of this process.
-double processorSeconds() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 Pixels pixelsOf(const Film& film) {
