@@ -268,7 +268,7 @@ TEST(ParseErrors, OfRenderSettings) {
     EXPECT_EQ(sectionMistake("[render]\nmarch_estimate = \"jackknife\""),
               "scene.toml:4:18: render.march_estimate needs march_step: tracking takes no steps");
     EXPECT_EQ(sectionMistake("[render]\noctaves = 3\nsimilarity_after = 2"),
-              "scene.toml:5:11: render.octaves contradicts similarity_after: octaves have no paths "
+              "scene.toml:4:11: render.octaves contradicts similarity_after: octaves have no paths "
               "that go on");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 0.5"),
               "scene.toml:4:18: render.majorant_scale is 0.5; it must lie between 1 and 1000");
@@ -291,8 +291,8 @@ TEST(ParseErrors, OfOutputs) {
     EXPECT_EQ(sectionMistake("[output]\nfiles = [\"a.exr\", \"b.tga\"]").substr(0, 48),
               "scene.toml:4:19: output.files[1]: cannot write '");
     EXPECT_EQ(sectionMistake("[output]\nlayers = [\"deep\"]"),
-              "scene.toml:4:11: unknown layer 'deep'; known: depth, normal, transmittance, "
-              "samples, error");
+              "scene.toml:4:11: unknown layer 'deep'; known: depth, albedo, normal, "
+              "transmittance, samples, error, variance");
     EXPECT_EQ(sectionMistake("[output]\nlayers = [\"depth\", \"depth\"]"),
               "scene.toml:4:20: output.layers[1] repeats the layer 'depth'");
     EXPECT_EQ(sectionMistake("[output]\nexposure = inf"),

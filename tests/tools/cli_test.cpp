@@ -389,8 +389,8 @@ TEST_F(Cli, AFullDiskLeavesNoPartOfAnImage) {
     writeText(file("out.png"), "yesterday's");
     const ProgramResult result =
         runProgram({"render", file("smoke.vdb"), "-o", file("out.exr"), "-o", file("out.png"),
-                    "--res", "64x64", "--spp", "1", "--threads", "2"},
-                   {.fileSize = 1000});
+                    "--res", "64x64", "--spp", "1", "--threads", "2", "--quiet"},
+                   {.fileSize = 1000});  // of what it says, too
     EXPECT_EQ(result.exitCode, 1) << result.err;
     for (const char* said : {"out.exr", "out.png", "File too large"})
         EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
