@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "option_kinds.h"
 #include "tests/proof/proof.h"
 #include "verify_report.h"
 #include "woodcock/base/error.h"
@@ -27,6 +28,7 @@ constexpr int exitFailed = 1, exitInterrupted = 130;
 
 struct VerifyOptions {
     bool quick = false, full = false, json = false;
+    std::string quality = "reference";
     std::uint64_t seed = 1;
     std::string only;
     std::filesystem::path report;
@@ -128,7 +130,8 @@ void runVerify(const VerifyOptions& o) {
     catchInterrupts();
     validate(o);
     VerifyReport report;
-    report.options = {.full = o.full, .seed = o.seed, .volumes = o.volumes};
+    report.options = {
+        .full = o.full, .adaptive = o.quality == "final", .seed = o.seed, .volumes = o.volumes};
     report.only = o.only;
     report.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
     runChecks(list, !o.json, report);
@@ -155,6 +158,9 @@ CLI::App& addVerifyCommand(CLI::App& app) {
     command->add_flag("--quick", options->quick, "two digits, in about a minute (the default)");
     command->add_flag("--full", options->full,
                       "three digits for tables of slabs; takes an hour or more on two cores");
+    addChoice(*command, "--quality", options->quality, {"reference", "final"},
+              "whose samples to prove (final: adaptive ones; others are biased):")
+        ->type_name("NAME");
     command
         ->add_option("--only", options->only,
                      "checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")

@@ -55,6 +55,7 @@ std::string reportJson(const VerifyReport& report) {
                     {"threads", std::thread::hardware_concurrency()},
                     {"date", report.date},
                     {"full", report.options.full},
+                    {"quality", report.options.adaptive ? "final" : "reference"},
                     {"seed", report.options.seed},
                     {"only", report.only},
                     {"volumes", volumes},

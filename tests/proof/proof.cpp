@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tests/proof/subjects.h"
+#include "tests/support/render_scene.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock::proof {
@@ -87,6 +88,7 @@ const std::vector<Check>& checks() {
 
 std::vector<Case> run(const Check& check, const Options& options) {
     Lab lab(options);
+    test::sampleAdaptively(options.adaptive);
     std::optional<Case> failure;
     try {
         check.run(lab);

@@ -48,7 +48,8 @@ struct Case {
 inline constexpr double largestZ = 4;
 
 struct Options {
-    bool full = false;  ///< three digits and more; else in less than a minute
+    bool full = false;      ///< three digits and more; else in less than a minute
+    bool adaptive = false;  ///< pictures are sampled adaptively, as the quality `final` does
     std::uint64_t seed = 1;
     std::vector<std::filesystem::path> volumes;  ///< to hold properties of any VDB against
     /// Asked now and then while a check runs; where it says true, the check ends early.

@@ -41,8 +41,15 @@ Scene withParts(const Scene& scene, const std::function<void(MediumPart::Descrip
     return edited;
 }
 
+namespace {
+bool adaptiveSamples = false;
+}
+
+void sampleAdaptively(bool adaptive) { adaptiveSamples = adaptive; }
+
 RenderResult renderScene(const Scene& scene, const Picture& picture) {
     RenderSettings settings;
+    settings.adaptive = adaptiveSamples;
     settings.width = picture.width, settings.height = picture.height;
     settings.endSample = picture.samples;
     settings.seed = picture.seed;

@@ -24,6 +24,9 @@ struct Picture {
     bool depthLayers = false, featureLayers = false;
 };
 
+/// From here on, whether renderScene() samples adaptively: a proof of what does is one of that.
+void sampleAdaptively(bool adaptive);
+
 /// Renders; throws where a sample was NaN or infinite.
 RenderResult renderScene(const Scene& scene, const Picture& picture);
 

@@ -44,14 +44,6 @@ position = [0, 30, 0]
 intensity = 1000
 )";
 
-bool sameBits(const Film& a, const Film& b) {
-    for (int y = 0; y < a.height(); ++y)
-        for (int x = 0; x < a.width(); ++x)
-            if (a.radiance(x, y) != b.radiance(x, y) || a.alpha(x, y) != b.alpha(x, y))
-                return false;
-    return true;
-}
-
 /// Draws the scene with the need pretended and without: are they the same to the last bit?
 bool expectSamePicture(const std::string& text, Need need, double largestError = 0.005) {
     const Scene scene = sceneFrom(text + camera), pretending = pretend(scene, need);

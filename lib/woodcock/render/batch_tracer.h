@@ -109,10 +109,6 @@ private:
 
     void walk() {
         walks_.clear();
-        if (!Surfaces && !needs_.scattering) {
-            absorb();
-            return;
-        }
         for (Path& p : paths_)
             walks_.push_back({p.origin, p.direction, flightOf(p).tMax, p.flight, p.random,
                               pathRoulette, false, p.throughput, 0, -1});
@@ -137,16 +133,7 @@ private:
         counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
     }
 
-    /// The short way of media that only absorb: every path escapes, with its transmittance.
-    void absorb() {
-        TrackingCounters c;
-        for (Path& p : paths_) {
-            walks_.push_back({p.origin, p.direction, infinity, p.flight, p.random, 0, false,
-                              p.throughput, 0, -1});
-            absorbAlong(media_[0], walks_.back(), c);
-        }
-        counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
-    }
+    /// Media that only absorb: the path escapes, with its transmittance.
     void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk,
                      TrackingCounters& c) const {
         TransmittanceQuery<N> q{walk.origin, walk.direction, walk.tMax, walk.random,

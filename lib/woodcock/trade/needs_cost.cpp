@@ -45,14 +45,6 @@ Run run(const Scene& scene, const RenderSettings& settings) {
     return r;
 }
 
-bool sameBits(const Film& a, const Film& b) {
-    for (int y = 0; y < a.height(); ++y)
-        for (int x = 0; x < a.width(); ++x)
-            if (a.radiance(x, y) != b.radiance(x, y) || a.alpha(x, y) != b.alpha(x, y))
-                return false;
-    return true;
-}
-
 double wallSecondsOf(const Scene& scene, const RenderSettings& settings) {
     const double start = wallSeconds();
     run(scene, settings);
@@ -116,6 +108,14 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
 }
 
 }  // namespace
+
+bool sameBits(const Film& a, const Film& b) {
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x)
+            if (a.radiance(x, y) != b.radiance(x, y) || a.alpha(x, y) != b.alpha(x, y))
+                return false;
+    return true;
+}
 
 bool has(const Needs& needs, Need need) { return needs.*memberOf(need); }
 

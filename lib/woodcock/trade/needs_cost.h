@@ -30,6 +30,9 @@ bool has(const Needs& needs, Need need);
 /// more general way. Grey media as three channels that agree, no surfaces as an empty set of them.
 Scene pretend(Scene scene, Need need);
 
+/// Whether radiance and alpha of two films of equal size agree to the last bit.
+bool sameBits(const Film& a, const Film& b);
+
 /// What a feature costs a scene that does not need it.
 struct NeedCost {
     Need need{};
