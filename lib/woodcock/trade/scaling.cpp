@@ -15,7 +15,6 @@ namespace woodcock {
 namespace {
 
 constexpr int sides[]{64, 128, 256, 512, 1024};
-constexpr int usualSide = 128;     ///< of all curves but that over voxels
 constexpr double bakeShare = 0.4;  ///< of the budget, at most, for bakes and loads
 constexpr const char* microseconds = "microseconds per sample";
 
