@@ -51,7 +51,7 @@ RenderResult renderScene(const Scene& scene, const Picture& picture) {
     RenderSettings settings;
     settings.adaptive = adaptiveSamples;
     settings.width = picture.width, settings.height = picture.height;
-    settings.endSample = picture.samples;
+    settings.endSample = picture.samples * (adaptiveSamples ? 2 : 1);
     settings.seed = picture.seed;
     settings.maxScatterings = picture.maxScatterings;
     settings.depthLayers = picture.depthLayers;

@@ -24,7 +24,8 @@ struct Picture {
     bool depthLayers = false, featureLayers = false;
 };
 
-/// From here on, whether renderScene() samples adaptively: a proof of what does is one of that.
+/// From here on, whether renderScene() samples adaptively, with twice the samples, as proofs set
+/// them for the errors of even ones: a proof of what does is one of that.
 void sampleAdaptively(bool adaptive);
 
 /// Renders; throws where a sample was NaN or infinite.
