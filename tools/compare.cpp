@@ -143,10 +143,11 @@ struct CompareWords {
         if (both && !(files.empty() && more.empty() && colourSpaces.empty()))
             throw usageError(
                 "--cycles renders both images itself; give images or --cycles, not both");
-        if (!both && (cycles.spp || cycles.seeds || cycles.mode || cycles.stepRate ||
-                      !cycles.blender.empty() || !cycles.input.overrides.empty()))
+        if (!both && (cycles.spp || cycles.seeds || cycles.mode || cycles.interpolation ||
+                      cycles.stepRate || !cycles.blender.empty() || !cycles.input.overrides.empty()))
             throw usageError(
-                "--spp, --seeds, --mode, --step-rate, --blender and --set belong to --cycles");
+                "--spp, --seeds, --mode, --step-rate, --interpolation, --blender and --set belong "
+                "to --cycles");
     }
 
     CompareOptions sorted() const {
@@ -268,6 +269,9 @@ CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
     addChoice(*command, "--mode", words->cycles.mode, {"null", "biased"},
               "of --cycles: null-collision tracking or ray marching:")
         ->type_name("MODE");
+    addChoice(*command, "--interpolation", words->cycles.interpolation,
+              {"stochastic", "trilinear"}, "of --cycles: how it reads grids:")
+        ->type_name("KIND");
     addParsed(
         *command, "--step-rate", words->cycles.stepRate,
         [](const std::string& text) { return parseNumber(text, 1e-3, 100); },

@@ -50,6 +50,7 @@ CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene
                           const std::string& commandLine, ProgressStyle style) {
     CyclesOptions cycles;
     cycles.settings.mode = o.mode.value_or("");
+    cycles.settings.interpolation = o.interpolation.value_or("");
     cycles.settings.stepRate = o.stepRate.value_or(cycles.settings.stepRate);
     cycles.blender = o.blender;
     cycles.image = file;

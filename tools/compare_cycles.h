@@ -14,7 +14,7 @@ namespace woodcock::tool {
 struct BothOptions {
     SceneInput input;
     std::optional<int> spp, seeds;
-    std::optional<std::string> mode;
+    std::optional<std::string> mode, interpolation;
     std::optional<double> stepRate;
     std::string blender;
 };

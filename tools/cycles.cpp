@@ -22,7 +22,7 @@ struct Options {
     SceneInput input;
     std::optional<int> spp, threads;
     std::optional<std::uint64_t> seed;
-    std::optional<std::string> mode;
+    std::optional<std::string> mode, interpolation;
     std::optional<double> stepRate;
     std::filesystem::path image, blend;
     std::string blender, progress = "auto";
@@ -65,6 +65,7 @@ void run(const Options& options, const std::string& commandLine) {
 
     CyclesOptions cycles;
     cycles.settings.mode = options.mode.value_or("");
+    cycles.settings.interpolation = options.interpolation.value_or("");
     cycles.settings.stepRate = options.stepRate.value_or(cycles.settings.stepRate);
     cycles.settings.threads = options.threads.value_or(0);
     cycles.blender = options.blender;
@@ -113,6 +114,10 @@ CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
               "Null-collision tracking (from Blender 5.0 on, and the default there) or ray "
               "marching:")
         ->type_name("MODE");
+    addChoice(command, "--interpolation", o->interpolation, {"stochastic", "trilinear"},
+              "Of grids: one voxel at random (from Blender 5.0 on, and the default there), or all "
+              "eight:")
+        ->type_name("KIND");
     addParsed(
         command, "--step-rate", o->stepRate,
         [](const std::string& text) { return parseNumber(text, 1e-3, 100); },

@@ -33,7 +33,9 @@ inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters,
                                  Rgb emission = Rgb(0)) {
     if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
     const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
-    return {{"density", medium.density},
+    return {{"sigma_a", toJson(medium.sigmaA)},
+            {"sigma_s", toJson(medium.sigmaS)},
+            {"density", medium.density},
             {"scatter_colour", toJson(medium.scatterColour)},
             {"absorb_colour", toJson(medium.absorbColour)},
             {"scatters", medium.scatters()},

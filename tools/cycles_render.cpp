@@ -105,6 +105,7 @@ void writeImage(const fs::path& drawn, const SceneDescription& scene, const Cycl
         {"woodcock/renderer", "cycles"},
         {"woodcock/blender", result.version},
         {"woodcock/cyclesMode", result.mode},
+        {"woodcock/cyclesInterpolation", result.interpolation},
         {"woodcock/samples", scene.render.spp},
         {"woodcock/seed", fmt::format("{}", scene.render.seed)},
         {"woodcock/sceneDigest", sceneDigest(scene)},
@@ -148,6 +149,7 @@ CyclesResult renderWithCycles(const SceneDescription& scene, const LoadedScene& 
     if (child.exitCode != 0 || !said.is_object()) throw blenderFailed(blender, child);
     result.version = said.value("version", "");
     result.mode = said.value("mode", "");
+    result.interpolation = said.value("interpolation", "");
     result.seconds = said.value("seconds", 0.0);
     if (settings.draw && !fs::exists(directory / "image.exr")) throw blenderFailed(blender, child);
     if (settings.save) save(directory / "scene.blend", options.blend);

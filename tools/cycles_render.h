@@ -23,6 +23,7 @@ struct CyclesResult {
     bool stopped = false;  ///< nothing was written
     std::string version;   ///< Blender's, such as "5.0.1"
     std::string mode;      ///< null or biased
+    std::string interpolation;  ///< of grids: stochastic or trilinear
     double seconds = 0;    ///< of the render alone
 };
 

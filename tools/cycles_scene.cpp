@@ -221,6 +221,7 @@ json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
             {"seed", render.seed % seeds},
             {"mode", settings.mode},
             {"step_rate", settings.stepRate},
+            {"interpolation", settings.interpolation},
             {"threads", settings.threads},
             {"draw", settings.draw},
             {"bounces", bouncesJson(scene)}};

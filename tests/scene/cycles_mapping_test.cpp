@@ -29,6 +29,8 @@ TEST(CyclesMapping, MediaKeepTheirCoefficients) {
                        {{5, 0, 1}, {0, 0, 0}}};
     for (const auto& c : cases) {
         const CyclesMedium m = cyclesMedium(c.sigmaA, c.sigmaS);
+        EXPECT_EQ(m.sigmaA, c.sigmaA);
+        EXPECT_EQ(m.sigmaS, c.sigmaS);
         expectNear(scattering(m), c.sigmaS);
         expectNear(absorption(m), c.sigmaA);
         EXPECT_EQ(m.scatters(), c.sigmaS.maximum() > 0);

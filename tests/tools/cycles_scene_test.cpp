@@ -39,6 +39,8 @@ TEST(CyclesScene, ScatteringsBecomeBounces) {
     const auto none = written(fog + "max_scatterings = 0\n")["volumes"][0];
     EXPECT_FALSE(none["scatters"]);
     EXPECT_EQ(none["density"], 1.5);
+    EXPECT_EQ(none["sigma_s"], (std::vector<float>{0, 0, 0}));
+    EXPECT_EQ(none["sigma_a"][0], 1.5);
     EXPECT_EQ(none["absorb_colour"], (std::vector<float>{0, 0, 0}));
 }
 

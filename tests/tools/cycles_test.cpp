@@ -100,6 +100,7 @@ TEST_F(Cycles, RefusesWrongUsage) {
     expectFailure({"cycles", file("fog.toml"), "-o", file("out.png")}, 2, {"is no .exr file"});
     expectFailure(cycles(blender, {"--save", file("out.exr")}), 2, {"is no .blend file"});
     expectFailure(cycles(blender, {"--mode", "nul"}), 2, {"unknown word 'nul'", "null"});
+    expectFailure(cycles(blender, {"--interpolation", "cubic"}), 2, {"'cubic'", "trilinear"});
     expectFailure(cycles(blender, {"--mode", "null", "--step-rate", "1"}), 2, {"--step-rate"});
     expectFailure({"cycles", file("none.toml"), "-o", file("out.exr")}, 3, {"none.toml"});
 }
@@ -133,14 +134,23 @@ TEST_F(Cycles, EndsWhatItStartedWhenInterrupted) {
     EXPECT_NE(kill(std::atoi(readText(dir / "pid").c_str()), 0), 0);
 }
 
-TEST(BlenderAddOn, MapsCyclesParameters) {
+void expectPythonTests(int count, const std::string& program,
+                       const std::vector<std::string>& directories) {
     if (!fs::exists("/usr/bin/python3")) GTEST_SKIP() << "no python3";
-    const ProgramResult result =
-        runProgram({(sourceDir() / "tests/programs/blender_mapping.py").string(),
-                    (sourceDir() / "tools/blender/woodcock_addon").string()},
-                   {}, "/usr/bin/python3");
+    std::vector<std::string> arguments{(sourceDir() / "tests/programs" / program).string()};
+    for (const std::string& directory : directories)
+        arguments.push_back((sourceDir() / directory).string());
+    const ProgramResult result = runProgram(arguments, {}, "/usr/bin/python3");
     EXPECT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_NE(result.err.find("Ran 10 tests"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(fmt::format("Ran {} tests", count)), std::string::npos) << result.err;
+}
+
+TEST(BlenderAddOn, MapsCyclesParameters) {
+    expectPythonTests(10, "blender_mapping.py", {"tools/blender/woodcock_addon"});
+}
+
+TEST(BlenderBridge, MakesMediaOfTheNodesThatThereAre) {
+    expectPythonTests(4, "blender_volumes.py", {"tools/blender", "tools/blender/woodcock_addon"});
 }
 
 TEST(Ladder, ScenesParse) {
@@ -262,6 +272,7 @@ TEST_F(WithBlender, FogIsAsBright) {
     expectSameMeans(theirs, readBack(dir / "ours.exr"), 0.002);
     EXPECT_TRUE(theirs.attributes.contains("woodcock/blender"));
     EXPECT_TRUE(theirs.attributes.contains("woodcock/cyclesMode"));
+    EXPECT_TRUE(theirs.attributes.contains("woodcock/cyclesInterpolation"));
 }
 
 TEST_F(WithBlender, CompareRendersBoth) {

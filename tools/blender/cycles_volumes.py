@@ -7,10 +7,29 @@ from cycles_nodes import Nodes, Refused
 from mapping import voxel_offset
 
 
-def medium(nodes, description, density=None, albedo=None):
-    """Sockets of shaders that scatter and absorb: sigma_s = density x scatter_colour,
-    sigma_a = density x (1 - absorb_colour). The sockets `density` (a number, or a colour) and
-    `albedo` multiply the description's own numbers."""
+def coefficients(nodes, description, density=None, albedo=None):
+    """Sockets of shaders that scatter and absorb, by Volume Coefficients: sigma_s and sigma_a as
+    they are. The sockets `density` (a number, or a colour) and `albedo` multiply them."""
+    if not (description["scatters"] or description["absorbs"]):
+        return []
+    sigma_s = description["sigma_s"]
+    sigma_a = description["sigma_a"]
+    if albedo is not None:
+        # What an albedo's grid takes from scattering is absorbed.
+        sigma_a = nodes.multiply_add(albedo, [-s for s in sigma_s],
+                                     [s + a for s, a in zip(sigma_s, sigma_a)])
+        sigma_s = nodes.multiply_add(albedo, sigma_s, (0, 0, 0))
+    if density is not None:
+        sigma_s = nodes.multiply_add(density, sigma_s, (0, 0, 0))
+        sigma_a = nodes.multiply_add(density, sigma_a, (0, 0, 0))
+    return [nodes.add("ShaderNodeVolumeCoefficients", Scatter_Coefficients=sigma_s,
+                      Absorption_Coefficients=sigma_a,
+                      Anisotropy=description["g"]).outputs[0]]
+
+
+def scatter_absorption(nodes, description, density=None, albedo=None):
+    """The same by Volume Scatter and Volume Absorption: sigma_s = density x scatter_colour,
+    sigma_a = density x (1 - absorb_colour)."""
     amount = description["density"]
     scatter_colour = description["scatter_colour"]
     absorb_colour = description["absorb_colour"]
@@ -35,20 +54,27 @@ def medium(nodes, description, density=None, albedo=None):
     return parts
 
 
-def glow(nodes, description, volume=None):
-    """Sockets of shaders that emit; their grids are those of `volume`."""
+def medium(nodes, description, density=None, albedo=None):
+    """By the node that takes coefficients as they are, where there is one: from 4.5 on."""
+    known = hasattr(bpy.types, "ShaderNodeVolumeCoefficients")
+    make = coefficients if known else scatter_absorption
+    return make(nodes, description, density, albedo)
+
+
+def glow(nodes, description, grids=None):
+    """Sockets of shaders that emit."""
     parts = []
     emission = description["emission"]
     if emission:
         colour = emission["colour"]
         if emission["grid"]:
-            grid = grid_socket(nodes, volume, emission["grid"], "Color")
+            grid = grids.socket(nodes, emission["grid"], "Color")
             colour = nodes.multiply_add(grid, colour, (0, 0, 0))
         parts.append(nodes.add("ShaderNodeEmission", Color=colour,
                                Strength=emission["strength"]).outputs[0])
     blackbody = description.get("blackbody")
     if blackbody:
-        check_grid(volume, blackbody["grid"])
+        grids.check(blackbody["grid"])
         parts.append(nodes.add("ShaderNodeVolumePrincipled", Density=0.0, Density_Attribute="",
                                Temperature_Attribute=blackbody["grid"],
                                Temperature=blackbody["temperature"],
@@ -62,16 +88,40 @@ def fill(nodes, output, parts):
         nodes.tree.links.new(nodes.sum(parts), output.inputs["Volume"])
 
 
-def check_grid(volume, name):
-    found = [grid.name for grid in volume.grids].count(name)
-    if found != 1:
-        raise Refused("Blender finds %d grids named '%s' in %s, not one"
-                      % (found, name, volume.filepath))
+class Grids:
+    """Those of a volume, each interpolated in this way where Cycles leaves a choice."""
+
+    def __init__(self, volume, interpolation):
+        self.volume = volume
+        self.interpolation = interpolation
+
+    def check(self, name):
+        found = [grid.name for grid in self.volume.grids].count(name)
+        if found != 1:
+            raise Refused("Blender finds %d grids named '%s' in %s, not one"
+                          % (found, name, self.volume.filepath))
+
+    def socket(self, nodes, name, output):
+        self.check(name)
+        read = nodes.add("ShaderNodeAttribute", {"attribute_name": name}).outputs[output]
+        if self.interpolation == "stochastic" or not can_be_stochastic():
+            return read
+        # Cycles reads one voxel alone only where what follows is linear.
+        same = nodes.add("ShaderNodeVectorMath", {"operation": "MAXIMUM"})
+        nodes.set(same.inputs[0], read)
+        nodes.set(same.inputs[1], (0.0, 0.0, 0.0))
+        return same.outputs[0]
 
 
-def grid_socket(nodes, volume, name, output):
-    check_grid(volume, name)
-    return nodes.add("ShaderNodeAttribute", {"attribute_name": name}).outputs[output]
+def can_be_stochastic():
+    return bpy.app.version >= (5, 0, 0)
+
+
+def chosen_interpolation(word):
+    if word == "stochastic" and not can_be_stochastic():
+        raise Refused("Blender %s reads all eight voxels around a point; 5.0 is the first that "
+                      "reads one at random" % bpy.app.version_string)
+    return word or ("stochastic" if can_be_stochastic() else "trilinear")
 
 
 def check_alike(description):
@@ -84,7 +134,7 @@ def check_alike(description):
                                         description["albedo_grid"]))
 
 
-def add_grid(scene, name, description):
+def add_grid(scene, name, description, interpolation):
     volume = bpy.data.volumes.new(name)
     volume.filepath = description["file"]
     if not volume.grids.load():
@@ -95,19 +145,20 @@ def add_grid(scene, name, description):
     material = bpy.data.materials.new(name)
     nodes = Nodes(material)
     output = nodes.add("ShaderNodeOutputMaterial")
+    grids = Grids(volume, interpolation)
     density = None
     if description["grid"]:
-        density = grid_socket(nodes, volume, description["grid"],
-                              "Color" if description["colour"] else "Fac")
+        density = grids.socket(nodes, description["grid"],
+                               "Color" if description["colour"] else "Fac")
     albedo = description["albedo_grid"]
     if albedo:
         if description["colour"]:
             raise Refused("the density grid '%s' is of colours, and so is '%s'"
                           % (description["grid"], albedo))
-        albedo = grid_socket(nodes, volume, albedo, "Color")
+        albedo = grids.socket(nodes, albedo, "Color")
         check_alike(description)
     fill(nodes, output,
-         medium(nodes, description, density, albedo) + glow(nodes, description, volume))
+         medium(nodes, description, density, albedo) + glow(nodes, description, grids))
     volume.materials.append(material)
     placed = bpy.data.objects.new(name, volume)
     voxel = Matrix(description["object_from_index"]).to_3x3()
@@ -133,5 +184,8 @@ def add_box(scene, name, description):
     scene.collection.objects.link(placed)
 
 
-def add(scene, name, description):
-    (add_box if "box" in description else add_grid)(scene, name, description)
+def add(scene, name, description, interpolation):
+    if "box" in description:
+        add_box(scene, name, description)
+    else:
+        add_grid(scene, name, description, interpolation)

@@ -110,6 +110,7 @@ def add_camera(scene, description):
 
 
 def build(description, directory):
+    """Returns how: the mode, and the interpolation of grids."""
     if bpy.app.version < (3, 4, 0):
         raise Refused("Blender %s is too old; 3.4 is the oldest that will do"
                       % bpy.app.version_string)
@@ -121,12 +122,13 @@ def build(description, directory):
     mode = set_up_sampling(scene, description["render"])
     set_up_image(scene, description["render"], os.path.join(directory, "image.exr"))
     add_camera(scene, description["camera"])
+    interpolation = cycles_volumes.chosen_interpolation(description["render"]["interpolation"])
     for i, volume in enumerate(description["volumes"]):
-        cycles_volumes.add(scene, "volume%d" % i, volume)
+        cycles_volumes.add(scene, "volume%d" % i, volume, interpolation)
     cycles_lights.add(scene, description["lights"])
     for i, surface in enumerate(description["surfaces"]):
         cycles_surfaces.add(scene, "surface%d" % i, surface, directory)
-    return mode
+    return {"mode": mode, "interpolation": interpolation}
 
 
 def run(directory):
@@ -134,7 +136,7 @@ def run(directory):
         description = json.load(file)
     result = {"version": bpy.app.version_string}
     try:
-        result["mode"] = build(description, directory)
+        result.update(build(description, directory))
         if description["save"]:
             bpy.ops.wm.save_as_mainfile(filepath=os.path.join(directory, "scene.blend"),
                                         relative_remap=False)

@@ -9,7 +9,7 @@
 namespace woodcock {
 
 CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
-    CyclesMedium medium;
+    CyclesMedium medium{.sigmaA = sigmaA, .sigmaS = sigmaS};
     medium.density = (sigmaA + sigmaS).maximum();
     if (medium.density > 0) {
         const double density = medium.density;

@@ -11,9 +11,11 @@ namespace woodcock {
 
 // Woodcock's parameters in Blender Cycles' terms. The other direction is tools/blender/mapping.py.
 
-/// What Volume Scatter and Volume Absorption take, as object densities are those of the world:
+/// What Volume Coefficients takes, sigma_a and sigma_s as they are; and what Volume Scatter and
+/// Volume Absorption take, as object densities are those of the world:
 /// sigma_s = density x scatterColour, sigma_a = density x (1 - absorbColour).
 struct CyclesMedium {
+    Rgb sigmaA{0.0f}, sigmaS{0.0f};
     float density = 0;
     Rgb scatterColour{0.0f}, absorbColour{1.0f};
     bool scatters() const { return density > 0 && scatterColour.maximum() > 0; }
