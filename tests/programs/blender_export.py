@@ -72,6 +72,23 @@ shader.inputs["Temperature"].default_value = 1500
 smoke.materials.append(made)
 place("smoke", smoke, scale=(0.5, 0.4, 0.3), rotation_euler=(0.3, 0.2, 0.5), location=(0.1, 0, 0.2))
 
+if hasattr(bpy.types, "ShaderNodeVolumeCoefficients"):  # from 4.5 on
+    mist = bpy.data.volumes.new("mist")
+    mist.filepath = smoke.filepath
+    mist.render.clipping = 0
+    made, shader = material("mist", "ShaderNodeVolumeCoefficients", "Volume", Anisotropy=-0.3)
+    grid = made.node_tree.nodes.new("ShaderNodeAttribute")
+    grid.attribute_name = "density"
+    for name, amount in (("Scatter", (4, 2, 1)), ("Absorption", (0.5, 1, 2)),
+                         ("Emission", (0.2, 0.4, 0.1))):
+        times = made.node_tree.nodes.new("ShaderNodeVectorMath")
+        times.operation = "MULTIPLY"
+        times.inputs[1].default_value = amount
+        made.node_tree.links.new(grid.outputs["Fac"], times.inputs[0])
+        made.node_tree.links.new(times.outputs[0], shader.inputs[name + " Coefficients"])
+    mist.materials.append(made)
+    place("mist", mist, scale=(0.4, 0.5, 0.2), rotation_euler=(0.2, 0.4, 0), location=(-0.8, 0.5, 0))
+
 floor = material("floor", "ShaderNodeBsdfDiffuse", "Surface", Color=(0.7, 0.4, 0.3, 1))[0]
 mesh("floor", lambda shape: bmesh.ops.create_grid(shape, x_segments=2, y_segments=2, size=4), floor,
      location=(0, 0, -0.8))
