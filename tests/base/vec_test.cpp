@@ -103,5 +103,25 @@ TEST(Affine, BoxHoldsTheImageOfEveryCornerTightly) {
     expectNear(image.upper, {std::sqrt(2.0), std::sqrt(2.0), 1}, 1e-15);
 }
 
+TEST(Affine, FlawsAreNamed) {
+    const double inf = std::numeric_limits<double>::infinity();
+    const Affine3d good = Affine3d::translate({1e7, -1, 0}) * Affine3d::rotate(1, 30);
+    for (const double s : {1e-49, 1e-6, 1.0, 1e50}) {
+        EXPECT_EQ(flawOf(good * Affine3d::scale({s, -s, s})), "") << s;
+        EXPECT_EQ(flawOf(Affine3d::scale({s, 1, 1})), "") << s;
+    }
+    EXPECT_EQ(flawOf(Affine3d::translate({0, inf, 0})), "is not finite");
+    EXPECT_EQ(flawOf(Affine3d::scale({1, std::nan(""), 1})), "is not finite");
+    EXPECT_EQ(flawOf(Affine3d::scale({1, 1, 1e-315})),
+              "has an axis 1e-315 long; 1e-50 to 1e+50 is possible");
+    EXPECT_EQ(flawOf(Affine3d::scale({1, 1e308, 1})),
+              "has an axis 1e+308 long; 1e-50 to 1e+50 is possible");
+    EXPECT_EQ(flawOf(Affine3d::translate({0, 0, -1e60})),
+              "moves by 1e+60; up to 1e+50 is possible");
+    const char* flat = "is singular: it flattens space (its determinant is 0)";
+    EXPECT_EQ(flawOf(Affine3d::scale({1, 0, 1})), flat);
+    EXPECT_EQ(flawOf({{Vec3d{1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {}}), flat);
+}
+
 }  // namespace
 }  // namespace woodcock::test

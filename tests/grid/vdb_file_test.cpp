@@ -87,6 +87,10 @@ TEST_F(VdbFileTest, SingularTransform) {
     writeVdb(file_, {{.voxels = one, .worldFromIndex = Affine3d::scale({voxel, voxel, voxel})}});
     patchFile(file_, bytes(voxel), bytes(0));
     expectError(ErrorKind::Input, "its transform is singular", [&] { loadGrid(file_, "density"); });
+    writeVdb(file_, {{.voxels = one, .worldFromIndex = Affine3d::scale({voxel, voxel, voxel})}});
+    patchFile(file_, bytes(voxel), bytes(1e-315));
+    expectError(ErrorKind::Input, "its transform has an axis 1e-315 long",
+                [&] { loadGrid(file_, "density"); });
 }
 
 TEST_F(VdbFileTest, TinyVoxelsKeepTheirTransform) {

@@ -54,7 +54,8 @@ TEST(InstanceFile, MistakesNameTheLine) {
     EXPECT_EQ(mistakeIn("1 2 1e999"),
               "places.txt:1: found '1e999', which is no number that can be used; " + expected);
     EXPECT_EQ(mistakeIn("1 2 3 0"),
-              "places.txt:1: found a transform that flattens the surface (its determinant is 0)");
+              "places.txt:1: found a transform that is singular: it flattens space (its "
+              "determinant is 0)");
     EXPECT_EQ(mistakeIn("# none\n"), "places.txt places no instance; expected lines of " +
                                          expected.substr(std::string("expected ").size()));
 }

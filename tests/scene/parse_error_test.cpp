@@ -145,6 +145,9 @@ TEST(ParseErrors, OfBoxes) {
 TEST(ParseErrors, OfTransforms) {
     EXPECT_EQ(volumeMistake("transform = { scale = [1, 0, 1] }"),
               "scene.toml:3:23: volume[0].transform.scale is zero; it would flatten the volume");
+    EXPECT_EQ(volumeMistake("transform = { scale = 1e-60 }"),
+              "scene.toml:3:13: volume[0].transform has an axis 1e-60 long; 1e-50 to 1e+50 is "
+              "possible");
     EXPECT_EQ(
         volumeMistake("matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0], [0, 0, 0, 1]]"),
         "scene.toml:3:10: volume[0].matrix is singular: it flattens space (its determinant is "

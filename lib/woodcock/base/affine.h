@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "woodcock/base/vec.h"
 
 namespace woodcock {
@@ -53,5 +55,10 @@ struct Affine3d {
         return m;
     }
 };
+
+/// What is wrong with a map that is to be followed both ways, such as "is not finite"; empty where
+/// nothing is. Axes are 1e-50 to 1e50 long, so that two maps in a row stay within doubles, and
+/// their squares too, and do not lie in one plane.
+std::string flawOf(const Affine3d& map);
 
 }  // namespace woodcock

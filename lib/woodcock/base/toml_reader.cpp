@@ -170,11 +170,7 @@ Affine3d TomlValue::affine() const {
     Affine3d map;
     for (size_t j = 0; j < 3; ++j) map.column[j] = {m[0][j], m[1][j], m[2][j]};
     map.translation = {m[0][3], m[1][3], m[2][3]};
-    const double bound = length(map.column[0]) * length(map.column[1]) * length(map.column[2]);
-    const double det = map.determinant();
-    // Below this, what is left of the smallest axis is rounding.
-    if (!std::isfinite(det) || !(std::abs(det) > 1e-12 * bound))
-        throw error("is singular: it flattens space (its determinant is {:.3g})", det);
+    if (const std::string flaw = flawOf(map); !flaw.empty()) throw error("{}", flaw);
     return map;
 }
 

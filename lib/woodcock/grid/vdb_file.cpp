@@ -40,12 +40,9 @@ void describeTransform(GridListing& listing) {
         return;
     }
     const Affine3d& m = *listing.worldFromIndex;
-    const double determinant = m.determinant();
     listing.voxelSize = {length(m.column[0]), length(m.column[1]), length(m.column[2])};
-    if (!isFinite(m.translation) || !isFinite(listing.voxelSize) || !std::isfinite(determinant))
-        markUnusable(listing, "its transform is not finite");
-    else if (determinant == 0)
-        markUnusable(listing, "its transform is singular: it flattens all voxels into a plane");
+    if (const std::string flaw = flawOf(m); !flaw.empty())
+        markUnusable(listing, "its transform " + flaw);
 }
 
 void describeUse(GridListing& listing) {

@@ -72,9 +72,7 @@ bool isReadable(const GridListing& grid) {
     if (grid.usable()) return true;
     if (grid.gridClass != GridClass::LevelSet || grid.channels == 0 || !grid.worldFromIndex)
         return false;
-    const double determinant = grid.worldFromIndex->determinant();
-    return std::isfinite(determinant) && determinant != 0 && isFinite(grid.voxelSize) &&
-           isFinite(grid.worldFromIndex->translation);
+    return flawOf(*grid.worldFromIndex).empty();
 }
 
 VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqueNames) {

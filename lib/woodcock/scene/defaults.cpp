@@ -236,6 +236,14 @@ std::optional<std::string> chooseCamera(SceneDescription& scene, const std::vect
     CameraDescription& camera = scene.camera;
     const bool fits = camera.height || camera.kind == CameraDescription::Kind::Perspective;
     if (camera.pose && fits) return std::nullopt;
+    Box3d bounds;
+    for (const Vec3d& p : points) bounds.add(p);
+    const Vec3d size = bounds.size();
+    if (!(length(size) > 0 && std::isfinite(length(size))))
+        throw inputError(
+            "no camera can be chosen for what is {:.3g} x {:.3g} x {:.3g} units large; give a "
+            "transform that brings it to another scale",
+            size.x, size.y, size.z);
     const bool upIsOpen = !camera.pose && !camera.given.up;
     if (!camera.pose) camera.pose = chooseView(scene, points, up);
     camera.given = {};

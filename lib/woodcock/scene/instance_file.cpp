@@ -55,12 +55,8 @@ public:
             default:
                 throw error("{} number{}; expected {}", count_, count_ == 1 ? "" : "s", expected);
         }
-        const double bound = length(map.column[0]) * length(map.column[1]) * length(map.column[2]);
-        const double volume = std::abs(map.determinant());
-        // Below this, what is left of the smallest axis is rounding.
-        if (!std::isfinite(volume) || !(volume > 1e-12 * bound))
-            throw error("a transform that flattens the surface (its determinant is {:.3g})",
-                        volume);
+        if (const std::string flaw = flawOf(map); !flaw.empty())
+            throw error("a transform that {}", flaw);
         return map;
     }
 

@@ -75,7 +75,9 @@ Affine3d parseTransform(const TomlValue& value, std::string_view what) {
         for (int i = 0; i < 3; ++i)
             if (scale[i] == 0) throw v->error("is zero; it would flatten the {}", what);
     }
-    return placement(translate, rotate, scale);
+    const Affine3d map = placement(translate, rotate, scale);
+    if (const std::string flaw = flawOf(map); !flaw.empty()) throw value.error("{}", flaw);
+    return map;
 }
 
 Affine3d parsePlacement(const TomlTable& table, std::string_view what) {
