@@ -9,6 +9,7 @@
 
 #include "tests/oracle/quadrature.h"
 #include "tests/proof/measure.h"
+#include "tests/proof/slab_kinds.h"
 #include "tests/proof/subjects.h"
 #include "tests/support/write_vdb.h"
 
@@ -86,41 +87,28 @@ void addTransmittance(Lab& lab, const std::string& name, const std::string& volu
 
 Rays downAt(double mu) { return {{0, 50, 0}, {std::sqrt((1 - mu) * (1 + mu)), -mu, 0}}; }
 
-/// A slab of vertical depth 1 where scale is 1: voxels, or a box.
-constexpr const char* box = "box = { min = [-1e7, 0, -1e7], max = [1e7, 1, 1e7] }\n";
-constexpr const char* even = "file = \"even.vdb\"\n";
-constexpr const char* layered = "file = \"layered.vdb\"\n";
-
-void writeSlabs(const Lab& lab) {
-    writeSlab(lab, "even.vdb", {1, 1, 1, 1});
-    writeSlab(lab, "layered.vdb", {5, 0, 1, 0.125, 0, 0, 8, 3, 0.5, 2, 0, 4});
-}
-
 void beerLambert(Lab& lab) {
-    writeSlabs(lab);
-    for (const char* slab : {box, even, layered})
+    slab::write(lab);
+    for (const char* shape : slab::kinds)
         for (const double depth : {0.1, 1.0, 5.0, 20.0})
             for (const double mu : {1.0, 0.5, 0.1}) {
-                const std::string what = fmt::format("{}, depth {}, mu {}",
-                                                     slab == box    ? "box"
-                                                     : slab == even ? "even voxels"
-                                                                    : "layered voxels",
-                                                     depth, mu);
+                const std::string what =
+                    fmt::format("{}, depth {}, mu {}", slab::nameOf(shape), depth, mu);
                 const double along = depth / mu, grey[]{along, along, along},
                              tinted[]{along, along / 4, along / 20};
                 const auto add = [&](const char* kind, const double(&depths)[3],
                                      const char* albedo) {
                     addTransmittance(
                         lab, fmt::format("{} {}", kind, what),
-                        fmt::format("[[volume]]\n{}scale = [{}, {}, {}]\nalbedo = {}\n", slab,
+                        fmt::format("[[volume]]\n{}scale = [{}, {}, {}]\nalbedo = {}\n", shape,
                                     depths[0] * mu, depths[1] * mu, depths[2] * mu, albedo),
-                        downAt(mu), depths, {}, slab == box && *albedo == '0');
+                        downAt(mu), depths, {}, shape == slab::box && *albedo == '0');
                 };
-                if (lab.full() || slab != layered) add("absorbing", grey, "0");
-                if (lab.full() || slab != even) add("tinted", tinted, "0");
+                if (lab.full() || shape != slab::layered) add("absorbing", grey, "0");
+                if (lab.full() || shape != slab::even) add("tinted", tinted, "0");
                 if (along > lab.pick(2.0, 5.1)) continue;
-                if (lab.full() || slab == even) add("scattering", grey, "0.8");
-                if (lab.full() || slab == layered)
+                if (lab.full() || shape == slab::even) add("scattering", grey, "0.8");
+                if (lab.full() || shape == slab::layered)
                     add("tinted scattering", tinted, "[0.2, 0.9, 1]");
             }
 }

@@ -7,6 +7,7 @@
 
 #include "tests/oracle/chandrasekhar.h"
 #include "tests/proof/measure.h"
+#include "tests/proof/slab_kinds.h"
 #include "tests/proof/subjects.h"
 #include "tests/proof/volume.h"
 
@@ -16,37 +17,24 @@ namespace {
 
 using test::RgbEstimate;
 
-/// Slabs of vertical depth 1 where the scale is 1.
-constexpr const char* box = "box = { min = [-1e7, 0, -1e7], max = [1e7, 1, 1e7] }\n";
-constexpr const char* even = "file = \"even.vdb\"\n";
-constexpr const char* layered = "file = \"layered.vdb\"\n";
-
-void writeSlabs(const Lab& lab) {
-    writeSlab(lab, "even.vdb", {1, 1, 1, 1});
-    writeSlab(lab, "layered.vdb", {5, 0, 1, 0.125, 0, 0, 8, 3, 0.5, 2, 0, 4});
-}
-const char* nameOfSlab(const char* slab) {
-    return slab == box ? "box" : slab == even ? "even voxels" : "layered voxels";
-}
-
 constexpr const char* dark = "[[light]]\ntype = \"environment\"\nradiance = 0\n";
 
 /// Emission and absorption in proportion, whatever their profile:
 /// L = j / sigma_a (1 - exp(-sigma_a l)), and j l where nothing absorbs.
 void alongLines(Lab& lab) {
-    writeSlabs(lab);
+    slab::write(lab);
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
-    for (const char* slab : {box, even, layered})
+    for (const char* kind : slab::kinds)
         for (const double mu : {1.0, 0.2})
             for (const double depth : {0.0, 1.0, 20.0}) {
                 const std::string name =
-                    fmt::format("glow of {} of depth {}, mu {}", nameOfSlab(slab), depth, mu);
+                    fmt::format("glow of {} of depth {}, mu {}", slab::nameOf(kind), depth, mu);
                 const double sigma[]{depth, depth / 4, depth / 20};
                 const RgbEstimate e =
                     evenPicture(lab, name,
                                 sceneIn(lab, fmt::format("[[volume]]\n{}sigma_a = [{}, {}, {}]\n"
                                                          "emission = [1, 2, 4]\n",
-                                                         slab, sigma[0], sigma[1], sigma[2]) +
+                                                         kind, sigma[0], sigma[1], sigma[2]) +
                                                  dark + cameraAbove(mu)),
                                 precision);
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -76,7 +64,7 @@ void addColours(Lab& lab, const std::string& name, const std::array<double, 3>& 
 /// What surfaces hold glows as the same would without them: along chords of a ball, and where a
 /// surface cuts a volume in two, of which what is outside is not there.
 void insideSurfaces(Lab& lab) {
-    writeSlabs(lab);
+    slab::write(lab);
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
     const std::array<double, 3> sigma{0, 0.7, 5}, q{1, 2, 4};
     const auto glow = [&](double length) {
@@ -106,7 +94,7 @@ void insideSurfaces(Lab& lab) {
                                          "[[surface]]\nname = \"half\"\nmaterial = \"interface\"\n"
                                          "box = { min = [-1e6, -9, -1e6], max = [1e6, 1.5, 1e6] }\n"
                                          "[[volume]]\n" +
-                                         even + "inside = \"half\"\nsigma_a = [0, 0.7, 5]\n" +
+                                         slab::even + "inside = \"half\"\nsigma_a = [0, 0.7, 5]\n" +
                                          "emission = [1, 2, 4]\n" + dark + cameraAbove(mu)),
                         precision);
         addColours(lab, name, glow(0.5 / mu), e, precision);
@@ -158,15 +146,15 @@ void insideAndAlone(Lab& lab) {
 
 /// Kirchhoff: a half-space as warm as a black body of radiance 1 sends out sqrt(1 - albedo) H(mu).
 void warmHalfSpace(Lab& lab) {
-    writeSlabs(lab);
+    slab::write(lab);
     const Precision precision = usualPrecision(lab);
     for (const auto& [albedo, mu] : {std::pair{0.2, 1.0}, {0.5, 0.5}, {0.8, 0.2}, {0.95, 1.0}}) {
         const std::string name = fmt::format("warm half-space of albedo {}, mu {}", albedo, mu);
         constexpr double depth = 60;  // as good as infinite: 20 diffusion lengths
         const RgbEstimate e = evenPicture(
             lab, name,
-            sceneIn(lab, fmt::format("[[volume]]\n{}scale = {}\nalbedo = {}\nemission = {}\n", even,
-                                     depth, albedo, depth * (1 - albedo)) +
+            sceneIn(lab, fmt::format("[[volume]]\n{}scale = {}\nalbedo = {}\nemission = {}\n",
+                                     slab::even, depth, albedo, depth * (1 - albedo)) +
                              dark + cameraAbove(mu)),
             precision, {0});
         Case c = caseOf(name, oracle::halfSpaceEmissivity(albedo, mu), e[0], precision);
@@ -178,16 +166,16 @@ void warmHalfSpace(Lab& lab) {
 
 /// j = sigma_a B in an environment of B: every ray sees B, whatever scatters how.
 void equilibrium(Lab& lab) {
-    writeSlabs(lab);
+    slab::write(lab);
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
     const double black[]{0.5, 1, 2};
-    for (const char* slab : {box, even, layered})
+    for (const char* kind : slab::kinds)
         for (const double g : {-0.5, 0.0, 0.9})
             for (const bool coloured : {false, true}) {
                 const double a[]{1.0, coloured ? 0.3 : 1.0, coloured ? 3.0 : 1.0};
                 const double s[]{2.0, coloured ? 4.0 : 2.0, coloured ? 0.5 : 2.0};
                 const std::string name =
-                    fmt::format("thermal equilibrium, {}, g {}{}", nameOfSlab(slab), g,
+                    fmt::format("thermal equilibrium, {}, g {}{}", slab::nameOf(kind), g,
                                 coloured ? ", by colour" : "");
                 const RgbEstimate e = evenPicture(
                     lab, name,
@@ -196,7 +184,7 @@ void equilibrium(Lab& lab) {
                                         "sigma_s = [{}, {}, {}]\nemission = [{}, {}, {}]\ng = {}\n"
                                         "[[light]]\ntype = \"environment\"\n"
                                         "radiance = [{}, {}, {}]\n",
-                                        slab, a[0], a[1], a[2], s[0], s[1], s[2], a[0] * black[0],
+                                        kind, a[0], a[1], a[2], s[0], s[1], s[2], a[0] * black[0],
                                         a[1] * black[1], a[2] * black[2], g, black[0], black[1],
                                         black[2]) +
                                 cameraAbove(0.7)),

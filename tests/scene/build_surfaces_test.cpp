@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
 #include "tests/support/temp_dir.h"
 #include "woodcock/base/error.h"
@@ -13,6 +14,9 @@
 namespace woodcock {
 namespace {
 
+using test::buildLit;
+using test::buildMistake;
+using test::BuiltScene;
 using test::TempDir;
 using test::writeText;
 
@@ -29,32 +33,11 @@ name = "lamp"
 type = "emissive"
 radiance = [3, 2, 1]
 )";
-const std::string rest = R"(
-[[light]]
-type = "environment"
-[camera]
-eye = [0, 0, 10]
-look_at = [0, 0, 0]
-)";
-
-struct Built {
-    Scene scene;
-    LoadedScene loaded;
-};
-
-Built build(const std::string& text, const std::filesystem::path& base = ".") {
-    const auto description = parseSceneText(materials + text + rest, "scene.toml", base, {});
-    const LoadedScene loaded = loadScene(description);
-    return {buildScene(description, loaded), loaded};
+BuiltScene build(const std::string& text, const std::filesystem::path& base = ".") {
+    return buildLit(materials + text, base);
 }
 std::string loadMistake(const std::string& text, const std::filesystem::path& base = ".") {
-    try {
-        build(text, base);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::Input);
-        return e.what();
-    }
-    return "";
+    return buildMistake(materials + text, base);
 }
 const MeshLight* lampOf(const Scene& scene) {
     for (const Light& light : scene.lights.lights())
@@ -80,13 +63,14 @@ std::string tetrahedron(bool outwards, bool closed) {
 }
 
 TEST(BuildSurfaces, ASceneWithoutSurfacesHasNone) {
-    const Built built = build("[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nscale = 1");
+    const BuiltScene built =
+        build("[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nscale = 1");
     EXPECT_EQ(built.scene.surfaces, nullptr);
     EXPECT_TRUE(built.scene.interiors.empty());
 }
 
 TEST(BuildSurfaces, PlacesShapesWhereTheyAreDescribed) {
-    const Built built = build(
+    const BuiltScene built = build(
         "[[surface]]\nname = \"ball\"\nsphere = { centre = [1, 2, 3], radius = 2 }\n"
         "transform = { translate = [10, 0, 0] }\ninstances = [{ scale = 3 }, {}]\n"
         "[[surface]]\nbox = { min = [-1, 0, 5], max = [0, 3, 6] }\n"
@@ -111,7 +95,7 @@ TEST(BuildSurfaces, PlacesShapesWhereTheyAreDescribed) {
 }
 
 TEST(BuildSurfaces, MediaAndPriorities) {
-    const Built built = build(
+    const BuiltScene built = build(
         "[[surface]]\nname = \"a\"\nsphere = {}\nmaterial = \"glass\"\npriority = 3\n"
         "transform = { scale = [1, 5, 1] }\nmedium = { sigma_a = [1, 2, 3], sigma_s = 1, g = 0.5 "
         "}\n"
@@ -147,7 +131,7 @@ TEST(BuildSurfaces, MediaAndPriorities) {
 }
 
 TEST(BuildSurfaces, BelowAnInfinitePlaneTheMediumReachesFar) {
-    const Built built = build(
+    const BuiltScene built = build(
         "[[surface]]\nplane = {}\nmaterial = \"glass\"\nmedium = { sigma_a = 1 }\n"
         "transform = { translate = [0, 500, 0] }");
     const Medium& sea = built.scene.interiors.at(0);
@@ -157,7 +141,7 @@ TEST(BuildSurfaces, BelowAnInfinitePlaneTheMediumReachesFar) {
 }
 
 TEST(BuildSurfaces, EmittersHaveTheAreaOfTheirShapes) {
-    const Built sphere = build("[[surface]]\nsphere = { radius = 2 }\nmaterial = \"lamp\"");
+    const BuiltScene sphere = build("[[surface]]\nsphere = { radius = 2 }\nmaterial = \"lamp\"");
     ASSERT_NE(lampOf(sphere.scene), nullptr);
     EXPECT_NEAR(areaOf(lampOf(sphere.scene)->triangles()), 4 * pi * 4, 1e-4);
     for (const auto& t : lampOf(sphere.scene)->triangles()) {
@@ -166,14 +150,14 @@ TEST(BuildSurfaces, EmittersHaveTheAreaOfTheirShapes) {
         EXPECT_GT(dot(normal, t.corner[0]), 0);
         for (const Vec3d& p : t.corner) EXPECT_NEAR(length(p), 2, 2e-3);
     }
-    const Built disk = build("[[surface]]\ndisk = { radius = 3 }\nmaterial = \"lamp\"");
+    const BuiltScene disk = build("[[surface]]\ndisk = { radius = 3 }\nmaterial = \"lamp\"");
     EXPECT_NEAR(areaOf(lampOf(disk.scene)->triangles()), pi * 9, 1e-4);
     for (const auto& t : lampOf(disk.scene)->triangles())
         EXPECT_GT(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]).y, 0);
 }
 
 TEST(BuildSurfaces, EmittersAreCountedByInstance) {
-    const Built built = build(
+    const BuiltScene built = build(
         "[[surface]]\nsphere = {}\n"
         "[[surface]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nmaterial = \"lamp\"\n"
         "instances = [{}, { scale = [-2, 2, 2] }]\n"
@@ -208,7 +192,7 @@ TEST(BuildSurfaces, OpenMeshesCannotHoldGlass) {
         << mistake;
     EXPECT_EQ(loadMistake("[[surface]]\nfile = \"open.obj\"", dir.path()), "");
 
-    const Built built =
+    const BuiltScene built =
         build("[[surface]]\nfile = \"inwards.obj\"\nmaterial = \"glass\"", dir.path());
     ASSERT_EQ(built.loaded.notes.size(), 1u);
     EXPECT_NE(built.loaded.notes[0].find("inwards.obj faces inwards: turned over"),
@@ -241,7 +225,7 @@ std::string textured(const std::string& material) {
 TEST(BuildSurfaces, TexturesAreReadAndMultiplied) {
     const TempDir dir;
     writeText(dir / "two.ppm", twoTexels);
-    const Built built = build(
+    const BuiltScene built = build(
         textured("type = \"diffuse\"\ncolour = { image = \"two.ppm\", colour_space = \"data\", "
                  "times = [0.5, 1, 1] }"),
         dir.path());
@@ -273,9 +257,9 @@ TEST(BuildSurfaces, TexturesMustNotMakeLight) {
 TEST(BuildSurfaces, EmissionOfATextureIsItsMeanOverEachTriangle) {
     const TempDir dir;
     writeText(dir / "two.ppm", twoTexels);
-    const Built built = build(textured("type = \"emissive\"\n"
-                                       "radiance = { image = \"two.ppm\", times = 8 }"),
-                              dir.path());
+    const BuiltScene built = build(textured("type = \"emissive\"\n"
+                                            "radiance = { image = \"two.ppm\", times = 8 }"),
+                                   dir.path());
     const auto triangles = lampOf(built.scene)->triangles();
     ASSERT_EQ(triangles.size(), 2u);
     // Both together are the whole image, half of which is red.
@@ -284,7 +268,7 @@ TEST(BuildSurfaces, EmissionOfATextureIsItsMeanOverEachTriangle) {
 }
 
 TEST(BuildSurfaces, MixturesEmitTheirShare) {
-    const Built built = build(
+    const BuiltScene built = build(
         "[[surface]]\nsphere = {}\nmaterial = \"m\"\n[[material]]\nname = \"m\"\n"
         "type = \"mix\"\nfirst = \"lamp\"\nsecond = \"air\"\nweight = 0.25");
     EXPECT_EQ(lampOf(built.scene)->triangles()[0].radiance, Rgb(2.25f, 1.5f, 0.75f));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
 #include "tests/support/write_vdb.h"
 #include "woodcock/base/error.h"
@@ -12,7 +13,11 @@
 namespace woodcock {
 namespace {
 
+using test::buildLit;
+using test::buildMistake;
+using test::BuiltScene;
 using test::GridSpec;
+using test::lightAndCamera;
 using test::TempDir;
 using test::writeVdb;
 
@@ -35,34 +40,9 @@ GridSpec evenColour(const std::string& name, Vec3d value) {
     return grid;
 }
 
-const std::string rest = R"(
-[[light]]
-type = "environment"
-[camera]
-eye = [0, 0, 10]
-look_at = [0, 0, 0]
-)";
-
-struct Built {
-    Scene scene;
-    LoadedScene loaded;
-};
-
-/// Builds a scene beside the VDBs of `dir`.
-Built build(const TempDir& dir, const std::string& text) {
-    const SceneDescription description = parseSceneText(text + rest, "scene.toml", dir.path(), {});
-    const LoadedScene loaded = loadScene(description);
-    return {buildScene(description, loaded), loaded};
-}
-
+BuiltScene build(const TempDir& dir, const std::string& text) { return buildLit(text, dir.path()); }
 std::string loadMistake(const TempDir& dir, const std::string& text) {
-    try {
-        loadScene(parseSceneText(text + rest, "scene.toml", dir.path(), {}));
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::Input);
-        return e.what();
-    }
-    return "";
+    return buildMistake(text, dir.path());
 }
 
 void expectNear(Rgb a, Rgb b) {
@@ -84,7 +64,7 @@ const Vec3d inside{1.5, 1.5, 1.5};  // voxel [3, 3, 3]
 TEST(BuildScene, DensityWithScaleAndAlbedo) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 3), even("other", 5)});
-    const Built b = build(
+    const BuiltScene b = build(
         dir, "[[volume]]\nfile = \"a.vdb\"\nscale = [1, 2, 4]\nalbedo = [0.5, 1, 0.25]\ng = 0.5");
     ASSERT_EQ(b.scene.medium.parts.size(), 1u);
     expectNear(sigmaT(b.scene.medium, inside), Rgb(3, 6, 12));
@@ -96,7 +76,7 @@ TEST(BuildScene, DensityWithScaleAndAlbedo) {
 TEST(BuildScene, AlbedoGridsMultiply) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 2), evenColour("Cd", {0.5, 1, 0.25})});
-    const Built b =
+    const BuiltScene b =
         build(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 3\nalbedo = 0.5\nalbedo_grid = \"Cd\"");
     expectNear(sigmaT(b.scene.medium, inside), Rgb(6));
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1.5f, 3, 0.75f));
@@ -105,7 +85,7 @@ TEST(BuildScene, AlbedoGridsMultiply) {
 TEST(BuildScene, SigmasOfOneGridAreOnePart) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 2)});
-    const Built b =
+    const BuiltScene b =
         build(dir, "[[volume]]\nfile = \"a.vdb\"\nsigma_a = [1, 0, 2]\nsigma_s = [3, 4, 0]");
     ASSERT_EQ(b.scene.medium.parts.size(), 1u);
     expectNear(sigmaT(b.scene.medium, inside), Rgb(8, 8, 4));
@@ -115,10 +95,10 @@ TEST(BuildScene, SigmasOfOneGridAreOnePart) {
 TEST(BuildScene, SigmasOfTwoGridsAreTwoPartsThatAdd) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("soot", 2), evenColour("steam", {1, 2, 3})});
-    const Built b = build(dir,
-                          "[[volume]]\nfile = \"a.vdb\"\n"
-                          "sigma_a = { grid = \"soot\", scale = 3 }\n"
-                          "sigma_s = { grid = \"steam\", scale = [1, 10, 100] }");
+    const BuiltScene b = build(dir,
+                               "[[volume]]\nfile = \"a.vdb\"\n"
+                               "sigma_a = { grid = \"soot\", scale = 3 }\n"
+                               "sigma_s = { grid = \"steam\", scale = [1, 10, 100] }");
     ASSERT_EQ(b.scene.medium.parts.size(), 2u);
     expectNear(sigmaT(b.scene.medium, inside), Rgb(7, 26, 306));
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1, 20, 300));
@@ -126,10 +106,10 @@ TEST(BuildScene, SigmasOfTwoGridsAreTwoPartsThatAdd) {
 
 TEST(BuildScene, HomogeneousBoxesFillTheirTransformedBox) {
     const TempDir dir;
-    const Built b = build(dir,
-                          "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n"
-                          "sigma_a = 1\nsigma_s = [2, 3, 4]\n"
-                          "transform = { translate = [10, 0, 0], scale = [2, 1, 1] }");
+    const BuiltScene b = build(dir,
+                               "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\n"
+                               "sigma_a = 1\nsigma_s = [2, 3, 4]\n"
+                               "transform = { translate = [10, 0, 0], scale = [2, 1, 1] }");
     expectNear(sigmaT(b.scene.medium, {11.9, 0.5, 0.5}), Rgb(3, 4, 5));
     expectNear(sigmaS(b.scene.medium, {11.9, 0.5, 0.5}), Rgb(2, 3, 4));
     EXPECT_EQ(sigmaT(b.scene.medium, {12.1, 0.5, 0.5}), Rgb(0));
@@ -141,9 +121,9 @@ TEST(BuildScene, TransformsComeAfterTheGridsOwn) {
     GridSpec grid = even("density", 0);
     grid.value = [](Vec3i v) { return v == Vec3i{4, 2, 1} ? 1.0 : 0.0; };
     writeVdb(dir / "a.vdb", {grid});
-    const Built b = build(dir,
-                          "[[volume]]\nfile = \"a.vdb\"\nscale = 7\n"
-                          "transform = { rotate = [0, 0, 90], translate = [0, 0, 5] }");
+    const BuiltScene b = build(dir,
+                               "[[volume]]\nfile = \"a.vdb\"\nscale = 7\n"
+                               "transform = { rotate = [0, 0, 90], translate = [0, 0, 5] }");
     // Voxel [4, 2, 1] stands at (2, 1, 0.5) in the file; a quarter turn about z: (-1, 2, 0.5).
     expectNear(sigmaT(b.scene.medium, {-1, 2, 5.5}), Rgb(7));
     EXPECT_EQ(sigmaT(b.scene.medium, {2, 1, 5.5}), Rgb(0));
@@ -153,7 +133,7 @@ TEST(BuildScene, VolumesShareGrids) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 1)});
     const std::string volume = "[[volume]]\nfile = \"a.vdb\"\nscale = 1\n";
-    const Built b = build(dir, volume + volume + volume + "repair = true\n");
+    const BuiltScene b = build(dir, volume + volume + volume + "repair = true\n");
     ASSERT_EQ(b.scene.medium.parts.size(), 3u);
     EXPECT_EQ(b.scene.medium.parts[0].field(), b.scene.medium.parts[1].field());
     EXPECT_NE(b.scene.medium.parts[0].field(), b.scene.medium.parts[2].field());
@@ -163,9 +143,9 @@ TEST(BuildScene, VolumesShareGrids) {
 TEST(BuildScene, VolumesOfNothingLeaveNoPart) {
     const TempDir dir;
     writeVdb(dir / "a.vdb", {even("density", 1)});
-    const Built b = build(dir,
-                          "[[volume]]\nfile = \"a.vdb\"\nscale = 0\n"
-                          "[[volume]]\nfile = \"a.vdb\"\nsigma_a = 0\nsigma_s = 1\n");
+    const BuiltScene b = build(dir,
+                               "[[volume]]\nfile = \"a.vdb\"\nscale = 0\n"
+                               "[[volume]]\nfile = \"a.vdb\"\nsigma_a = 0\nsigma_s = 1\n");
     ASSERT_EQ(b.scene.medium.parts.size(), 1u);
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1));
 }
@@ -234,7 +214,8 @@ TEST(BuildScene, EnvironmentImagesTurnAboutTheUpAxis) {
 
 TEST(BuildScene, CamerasLookWhereTheyAreTold) {
     SceneDescription description = parseSceneText(
-        "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nscale = 1\n" + rest, "s", ".");
+        "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nscale = 1\n" + lightAndCamera, "s",
+        ".");
     const auto middle = [&] {
         return buildScene(description, loadScene(description)).camera.ray(50, 50, 100, 100);
     };
@@ -308,7 +289,7 @@ TEST(LoadScene, AlbedosAboveOneAreRefusedOrRepaired) {
         "scene.toml:4:15: " + found +
             "; an albedo lies between 0 and 1: --repair (in a scene file: repair = true) sets "
             "them to 1");
-    const Built b = build(dir, text + "repair = true\n");
+    const BuiltScene b = build(dir, text + "repair = true\n");
     ASSERT_EQ(b.loaded.notes.size(), 1u);
     EXPECT_EQ(b.loaded.notes[0], found + ": set to 1");
     EXPECT_EQ(sigmaS(b.scene.medium, inside), Rgb(1, 0.5f, 1));
