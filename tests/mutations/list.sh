@@ -2,6 +2,7 @@
 # Deliberate defects, read by run.sh; see there for the arguments of `defect`. Most are biased by so
 # little that a picture would not show them.
 tracer=lib/woodcock/render/batch_tracer.h
+media=lib/woodcock/render/batch_tracer_media.h
 light=lib/woodcock/render/batch_tracer_light.h
 surfaces=lib/woodcock/render/batch_tracer_surfaces.h
 tracking=lib/woodcock/medium/tracking.cpp
@@ -68,7 +69,7 @@ defect "control of cut cells dropped" 'Transmittance.*:RefinedWalk.*' "" \
     'if (cut) control += controlled;' 'if (cut) control += 0 * controlled;'
 
 defect "roulette without division" 'Distance.*:Transmittance.*' "deep slabs" \
-    $tracking \
+    lib/woodcock/medium/roulette.h \
     'weight *= threshold_ / lowest_' 'weight *= 1.0f'
 
 defect "every scattering is the first volume's" 'Distance.*' "" \
@@ -114,7 +115,7 @@ defect "all octaves come through the first one's medium" 'Octaves.*' "" \
     'return {1, octave::total(octaves), octave::phase(i)};'
 
 defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
-    $tracer \
+    $media \
     'p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;' \
     'p.origin = position, p.direction = s.direction, p.phasePdf = 1 / (4 * pi);'
 
@@ -131,11 +132,11 @@ defect "shadow rays go on behind the lamp" 'PointLight.*:SphereLight.*' "" \
     'ray.tMax = s.distance;' 'ray.tMax = infinity;'
 
 defect "numbers used twice" 'Slab.*:Furnace.*' "table of slabs" \
-    $tracer \
+    $media \
     'p.sequence.draw(set + 1)' 'p.sequence.draw(set)'
 
 defect "roulette of high orders without factor" 'Furnace*' "furnace at any depth" \
-    $tracer \
+    $media \
     'p.throughput *= 1.41421356f;' ''
 
 defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
@@ -146,7 +147,7 @@ defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
 
 defect "shadow rays see the outside's medium alone" 'SurfaceLayers*' "media inside surfaces" \
     $surfaces \
-    'hits ? hit.t : left, interiors_->medium(place.inside)' 'hits ? hit.t : left, 0'
+    'mediumIndex(shadow.standIn, place.inside)' 'shadow.standIn'
 
 defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
     lib/woodcock/render/interiors.cpp \
@@ -216,3 +217,39 @@ defect "metals in glass as in air" 'Bsdf*' "" \
 defect "texels at their corners" 'TextureImage*' "" \
     lib/woodcock/surface/texture.cpp \
     'place * size - 0.5' 'place * size'
+
+# ---- approximations, adaptive sampling, emission, comparison
+
+defect "the jackknife's correction halved" 'Marching.*' "" \
+    lib/woodcock/medium/marching.cpp \
+    'minusLogCosine(half * (double{a[c]} - b[c]) * width) / width' \
+    '0.5 * minusLogCosine(half * (double{a[c]} - b[c]) * width) / width'
+
+defect "coarse voxels are one of eight" 'Coarsen.*' "" \
+    lib/woodcock/grid/coarsen.cpp \
+    'share.fill(1.0 / 8);' 'share.fill(0), share[0] = 1;'
+
+defect "a pixel's number knows its own samples" 'SamplePlan.*:Adaptive.*' "" \
+    lib/woodcock/render/sample_plan.cpp \
+    'if ((dx + dy) % 2 == 0) continue;' 'if (dx != 0 || dy != 0) continue;'
+
+defect "dear pixels get as many samples as cheap ones" 'SamplePlan.*' "" \
+    lib/woodcock/render/sample_plan.cpp \
+    '1 + costOfAnEvent * events / weight' '1 + 0 * costOfAnEvent * events / weight'
+
+defect "light of a temperature falls with its cube" 'Blackbody*' "" \
+    lib/woodcock/medium/blackbody.cpp \
+    '1e-6 * stefanBoltzmann / pi * square * square' \
+    '1e-6 * stefanBoltzmann / pi * square * std::sqrt(square)'
+
+defect "what glows is drawn by twice its density" 'VolumeEmission.*' "glow along a line" \
+    lib/woodcock/medium/emission.cpp \
+    '0.5 / even + 0.5 * std::exp(-extinction * (t - first)) / dimmed' '1 / even'
+
+defect "standard errors of tiles without their root" 'FalseAlarms.*:Comparison.*' "" \
+    lib/woodcock/compare/tile_test.cpp \
+    'all.error = std::sqrt(variance) / n;' 'all.error = std::sqrt(variance / n) / n;'
+
+defect "Cycles' bounces are scatterings" 'Cycles*' "" \
+    lib/woodcock/scene/cycles_mapping.cpp \
+    'events.value_or(cyclesMostBounces + 1) - 1' 'events.value_or(cyclesMostBounces + 1)'

@@ -4,8 +4,11 @@
 # what catches each, a unit test and a case of `woodcock verify --quick`. Exit 1 if one survives.
 #   tests/mutations/run.sh            all of list.sh
 #   tests/mutations/run.sh TEXT...    those whose name contains one of the texts
+#   tests/mutations/run.sh --check    none: looks only whether their lines are still there
 set -uo pipefail
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+checkOnly=
+[[ ${1-} == --check ]] && checkOnly=1 && shift
 wanted=("$@")
 fail() { echo "mutations: $*" >&2; exit 2; }
 
@@ -34,6 +37,7 @@ defect() {
     [[ -z $3 || " ${allChecks[*]} " == *" $3 "* ]] || allChecks+=("$3")
 }
 source "$repo/tests/mutations/list.sh"
+[[ -z $checkOnly ]] || { echo "$chosenCount defects"; exit 0; }
 [[ $chosenCount -gt 0 ]] || fail "no defect's name contains ${wanted[*]}"
 
 copy=$(mktemp -d)

@@ -58,22 +58,34 @@ TEST(SamplePlan, GivesAwayAllSamplesAndTakesNoneBack) {
     EXPECT_EQ(sum(plan.counts(1 << 24)), (std::uint64_t{1} << 24) * width * height);
 }
 
+/// Samples of a pixel at the left edge over those of one at the right edge, far from where the
+/// picture's halves meet.
+double leftOverRight(const std::function<FilmSample(bool left, RandomStream&)>& draw) {
+    constexpr int wide = 40, samples = 4000;
+    RandomStream random(2);
+    Film pilot(wide, height, {0, 0, wide, height});
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < wide; ++x)
+            for (int i = 0; i < samples; ++i) pilot.add(x, y, draw(x < wide / 2, random));
+    const auto counts = SamplePlan(pilot, samples).counts(10 * samples);
+    return static_cast<double>(counts[3 * wide]) / counts[4 * wide - 1];
+}
+
 TEST(SamplePlan, GoesInProportionToTheRelativeError) {
     // Deviation / mean is 1 / 4 in the left half and 1 in the right, which is the darker one.
-    const Draw draw = [](int x, int, RandomStream& random) {
-        const bool left = x < crop.x0 + width / 2;
+    const auto draw = [](bool left, RandomStream& random) {
         const float sign = random.uniform() < 0.5 ? -1.0f : 1.0f;
-        return left ? 8 + 2 * sign : 3 + 3 * sign;
+        return FilmSample{Rgb(left ? 8 + 2 * sign : 3 + 3 * sign), 1};
     };
-    RandomStream random(2);
-    Film pilot(20, 10, crop);
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x)
-            for (int i = 0; i < 4000; ++i) addSample(pilot, x, y, draw, random);
-    const auto counts = SamplePlan(pilot, 4000).counts(40000);
-    // Away from the border between them.
-    const double left = counts[indexOf(crop.x0, 4)], right = counts[indexOf(crop.x1 - 1, 4)];
-    EXPECT_NEAR(right / left, 4, 0.2);
+    EXPECT_NEAR(1 / leftOverRight(draw), 4, 0.2);
+}
+
+TEST(SamplePlan, WhatIsDearGetsFewerByTheRootOfItsCost) {
+    // A sample of the left half costs 1, one of the right half, with two events, 1 + 2 x 1.5 = 4.
+    const auto draw = [](bool left, RandomStream& random) {
+        return FilmSample{Rgb(random.uniform() < 0.5 ? 1.0f : 3.0f), 1, left ? 0.0f : 2.0f};
+    };
+    EXPECT_NEAR(leftOverRight(draw), 2, 0.05);
 }
 
 TEST(SamplePlan, EvenPicturesGetEvenSamples) {

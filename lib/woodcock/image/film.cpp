@@ -82,6 +82,7 @@ void Film::add(int x, int y, const FilmSample& sample) {
         p.radianceSquared[i] += v * v;
     }
     p.alpha += sample.alpha;
+    p.events += sample.events;
     ++p.samples;
 }
 
@@ -129,6 +130,7 @@ void Film::merge(const Film& other) {
             p.transmittance[c] += q.transmittance[c];
         }
         p.alpha += q.alpha;
+        p.events += q.events;
         p.weightedDepth += q.weightedDepth;
         p.depthWeight += q.depthWeight;
         p.samples += q.samples;

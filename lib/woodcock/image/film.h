@@ -13,7 +13,8 @@ namespace woodcock {
 /// One camera path's answer.
 struct FilmSample {
     Rgb radiance;
-    float alpha = 0;  ///< 1 - transmittance along the camera ray
+    float alpha = 0;   ///< 1 - transmittance along the camera ray
+    float events = 0;  ///< scatterings and bounces of the path
 };
 
 /// Depth and transmittance of one camera ray, only where layers ask for them.
@@ -37,10 +38,10 @@ class Film {
 public:
     struct Pixel {
         double radiance[3] = {}, radianceSquared[3] = {};
-        double alpha = 0;
+        double alpha = 0, events = 0;
         double transmittance[3] = {};
         double weightedDepth = 0, depthWeight = 0;
-        std::uint64_t samples = 0;       ///< of radiance and alpha
+        std::uint64_t samples = 0;       ///< of radiance, alpha and events
         std::uint64_t depthSamples = 0;  ///< of transmittance and depth
         std::uint64_t nonFinite = 0;     ///< samples dropped because they were NaN or infinite
     };

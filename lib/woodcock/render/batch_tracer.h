@@ -212,6 +212,8 @@ private:
                 paths_[left++] = p;
                 continue;
             }
+            p.result->film.events = static_cast<float>(p.scatterings);
+            if constexpr (Surfaces) p.result->film.events += static_cast<float>(p.surfaces.bounces);
             if (p.result->catcher.weight > 0)
                 p.result->catcher.lit = p.radiance.mean();
             else
@@ -238,70 +240,12 @@ private:
             trackTransmittance<N>(medium, queries, c);
     }
 
-    // ---- events in media ----------------------------------------------------------------------
+    // ---- events in media: batch_tracer_media.h
 
     /// Radiance from infinity; next-event estimation has a share in images and discs.
-    void escape(Path& p) {
-        p.alive = false;
-        for (std::size_t i = 0; i < scene_.lights.lights().size(); ++i) {
-            const int light = static_cast<int>(i);
-            const Rgb radiance = scene_.lights.distantRadiance(light, p.direction, seen(p));
-            if (!(radiance.maximum() > 0)) continue;
-            p.radiance += toRgb(p.throughput) * radiance * tint(p) *
-                          static_cast<float>(hitWeight(
-                              p, [&] { return choice_.pdf(light, p.from, p.direction); }));
-        }
-    }
-
-    void scatter(std::size_t i, double t, double g) {
-        Path& p = paths_[i];
-        ++counters_.scatterings;
-        const Vec3d position = p.origin + p.direction * t;
-        const EventNumbers u = numbers(p);
-        // What equiangular sampling of this flight leaves to this event; see addEquiangular.
-        const FlightShare share{!needs_.localLights, flightOf(p), t};
-        if (standsIn_) g *= enterStandIn(p);
-        p.from = {position, p.direction, g};
-        if constexpr (Surfaces) {
-            AmongSurfaces& s = p.surfaces;
-            s.place.left.reset();
-            s.seen = false;
-            s.sought = AmongSurfaces::Sought::ByChance;
-        }
-        if (needs_.lightSampling) addNextEvent(i, u, share);
-
-        const PhaseSample s = sampleHenyeyGreenstein(p.direction, g, u.phase[0], u.phase[1]);
-        p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;
-        p.flight = u.flight;
-        ++p.scatterings;
-        addSphereHits(i, &share);
-        if (p.scatterings >= firstOrderRoulette &&
-            std::has_single_bit(static_cast<std::uint64_t>(p.scatterings))) {
-            if (p.random.uniform() >= 0.70710678118654752) {
-                p.alive = false;
-                return;
-            }
-            p.throughput *= 1.41421356f;
-        }
-        p.equiangular = u.equiangular, p.lamp = u.pick;
-        if (octavesEnd_) p.alive = false;
-    }
-
-    EventNumbers numbers(Path& p) {
-        std::int64_t order = p.scatterings;
-        if constexpr (Surfaces) order += p.surfaces.bounces;
-        if (order >= quasiRandomOrders) {
-            auto& r = p.random;
-            return {{r.uniform(), r.uniform()},
-                    {r.uniform(), r.uniform()},
-                    r.uniformOpenLow(),
-                    r.uniform(),
-                    r.uniform()};
-        }
-        const auto set = static_cast<std::uint32_t>(2 * order + 1);
-        const auto a = p.sequence.draw(set), b = p.sequence.draw(set + 1);
-        return {{a[0], a[1]}, {a[2], a[3]}, 1 - b[0], b[1], b[2]};
-    }
+    void escape(Path& p);
+    void scatter(std::size_t i, double t, double g);
+    EventNumbers numbers(Path& p);
 
     // ---- media in place of others: batch_tracer_stand_ins.h
 
@@ -445,5 +389,6 @@ private:
 }  // namespace woodcock
 
 #include "woodcock/render/batch_tracer_light.h"
+#include "woodcock/render/batch_tracer_media.h"
 #include "woodcock/render/batch_tracer_stand_ins.h"
 #include "woodcock/render/batch_tracer_surfaces.h"

@@ -8,8 +8,9 @@
 
 namespace woodcock {
 
-/// How many samples each pixel gets: in proportion to its relative standard error, as the least
-/// relMSE for a number of samples demands (Neyman 1934), never fewer than a pilot of equally many.
+/// How many samples each pixel gets: in proportion to its relative standard error over the root of
+/// what a sample of it costs, as the least relMSE for the cost demands (Neyman 1934 with costs:
+/// Cochran 1977, "Sampling Techniques", 5.5), never fewer than a pilot of equally many.
 ///
 /// Unbiased. A pixel whose number of samples depends on the samples themselves tends to stop where
 /// they were dark, and its mean is too low (Kirk and Arvo 1991, "Unbiased Sampling Techniques for
