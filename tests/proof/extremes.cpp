@@ -24,20 +24,27 @@ RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const P
     // Of few pixels the pilot's variance is a rough guess.
     const double margin = how.side < 32 ? 4 : 2;
     constexpr double mostSamples = 1 << 20;
-    const int pilotSamples = std::max(4, 512 / (how.side * how.side));
-    Picture picture{how.side, how.side, pilotSamples, hashOf(lab.seed(name), 0),
+    constexpr int mostRounds = 4;
+    Picture picture{how.side, how.side, std::max(4, 512 / (how.side * how.side)), 0,
                     how.maxScatterings};
-    const RgbEstimate pilot = evenRadiance(renderScene(scene, picture).film);
-    double samples = 4;
-    for (const int c : how.channels) {
-        const Estimate& e = pilot[static_cast<std::size_t>(c)];
-        const double ratio = e.error / precision.of(e.mean);
-        samples = std::max(samples, margin * picture.samples * ratio * ratio);
+    std::optional<RenderResult> result;
+    // Films that are too noisy tell how many samples it takes, and are thrown away, as the pilot
+    // is.
+    for (int round = 0; round <= mostRounds; ++round) {
+        picture.seed = hashOf(lab.seed(name), round);
+        result.emplace(renderScene(scene, picture));
+        const RgbEstimate found = evenRadiance(result->film);
+        double ratio = 0;
+        for (const int c : how.channels) {
+            const Estimate& e = found[static_cast<std::size_t>(c)];
+            ratio = std::max(ratio, e.error / precision.of(e.mean));
+        }
+        if (round > 0 && ratio <= 0.95) break;
+        picture.samples =
+            static_cast<int>(std::clamp(margin * picture.samples * ratio * ratio,
+                                        round > 0 ? 1.0 * picture.samples : 4.0, mostSamples));
     }
-    picture.samples = static_cast<int>(std::min(samples, mostSamples));
-    picture.seed = hashOf(lab.seed(name), 1);
-    const RenderResult result = renderScene(scene, picture);
-    const RenderCounters& n = result.counters;
+    const RenderCounters& n = result->counters;
     const auto steps = static_cast<double>(n.distanceSegments + n.distanceCollisions +
                                            n.shadowSegments + n.shadowCollisions);
     lab.add({.name = "steps per flight, " + name,
@@ -45,7 +52,7 @@ RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const P
              .measured = steps / static_cast<double>(n.paths + n.scatterings + n.shadowRays),
              .allowance = how.mostSteps,
              .note = fmt::format("at most {}", how.mostSteps)});
-    return evenRadiance(result.film);
+    return evenRadiance(result->film);
 }
 
 double KnownGrid::opticalDepth(Vec3d origin, Vec3d direction) const {
