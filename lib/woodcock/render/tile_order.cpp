@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/tile_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace woodcock {
+
+namespace {
+
+/// A rank-1 lattice with the powers of the inverse plastic number, of which the plane's points
+/// between any two bounds are spread evenly: Roberts 2018, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", R2.
+double keyOf(int column, int row) {
+    constexpr double a = 0.7548776662466927, b = 0.5698402909980532;
+    const double sum = a * column + b * row;
+    return sum - std::floor(sum);
+}
+
+}  // namespace
+
+std::vector<Film::Window> scatteredTiles(Film::Window crop, int size) {
+    struct Keyed {
+        double key;
+        Film::Window tile;
+    };
+    std::vector<Keyed> keyed;
+    for (int y = crop.y0 / size * size; y < crop.y1; y += size)
+        for (int x = crop.x0 / size * size; x < crop.x1; x += size)
+            keyed.push_back({keyOf(x / size, y / size),
+                             {std::max(x, crop.x0), std::max(y, crop.y0),
+                              std::min(x + size, crop.x1), std::min(y + size, crop.y1)}});
+    std::stable_sort(keyed.begin(), keyed.end(),
+                     [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
+    std::vector<Film::Window> tiles;
+    tiles.reserve(keyed.size());
+    for (const Keyed& k : keyed) tiles.push_back(k.tile);
+    return tiles;
+}
+
+}  // namespace woodcock
