@@ -141,14 +141,85 @@ TEST(Film, MergedHalvesEqualTheWholeToAFloatsLastPlace) {
         }
 }
 
-TEST(Film, NoiseIsTheMeanRelativeErrorOfLitPixels) {
-    Film film = smallFilm();
-    // Samples 1 and 3: mean 2, standard error 1. Samples 5 and 5: no error.
+TEST(Film, NoiseIsTheErrorRelativeToTheMeanAround) {
+    Film film(1, 1, {0, 0, 1, 1});
+    // Mean 2, standard error 1; a tenth of the mean is added in squares.
     for (float v : {1.0f, 3.0f}) film.add(0, 0, FilmSample{Rgb(v), 1});
-    for (float v : {5.0f, 5.0f}) film.add(1, 0, FilmSample{Rgb(v), 1});
-    for (float v : {0.0f, 0.0f}) film.add(2, 0, FilmSample{Rgb(v), 1});  // dark
-    film.add(3, 0, FilmSample{Rgb(9.0f), 1});                            // too few
+    EXPECT_DOUBLE_EQ(film.noise(), 1 / std::hypot(2.0, 0.2));
+    // Two pixels' mean is 2, and the second has no error: root mean square.
+    Film two(2, 1, {0, 0, 2, 1});
+    for (float v : {1.0f, 3.0f}) two.add(0, 0, FilmSample{Rgb(v), 1});
+    for (float v : {2.0f, 2.0f}) two.add(1, 0, FilmSample{Rgb(v), 1});
+    EXPECT_NEAR(two.noise(), film.noise() / std::sqrt(2.0), 1e-7);
+}
+
+TEST(Film, NoiseOfThinThingsIsRelativeToWhatMayStandBehind) {
+    // Half of the rays meet a medium of radiance 2: a mean of 1, before as much of the background.
+    Film film(1, 1, {0, 0, 1, 1});
+    film.add(0, 0, FilmSample{Rgb(2.0f), 1}), film.add(0, 0, FilmSample{Rgb(0.0f), 0});
+    EXPECT_DOUBLE_EQ(film.noise(), 1 / std::hypot(2.0, 0.2));
+}
+
+/// Smoke of 6 x 6 pixels, noisy, in the middle of `size` x `size` ones of sky.
+double noiseOfSmoke(int size, bool visibleSky, float sky = 4) {
+    std::mt19937 random(11);
+    Film film(size, size, {0, 0, size, size}, {false, false, visibleSky});
+    const int first = size / 2 - 3;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x)
+            for (int i = 0; i < 16; ++i) {
+                const bool smoke = x >= first && x < first + 6 && y >= first && y < first + 6;
+                if (smoke && random() % 4 != 0)
+                    film.add(x, y, FilmSample{Rgb(static_cast<float>(random() % 8)), 1, 1});
+                else if (visibleSky)
+                    film.add(x, y, FilmSample{Rgb(sky), 0, 0, Rgb(sky)});
+                else
+                    film.add(x, y, FilmSample{});
+            }
+    return film.noise();
+}
+
+TEST(Film, NoiseHasNothingToDoWithTheBackground) {
+    const double noise = noiseOfSmoke(10, true);
+    EXPECT_GT(noise, 0.1);
+    EXPECT_LT(noise, 0.3);
+    EXPECT_DOUBLE_EQ(noiseOfSmoke(10, false), noise);
+    EXPECT_DOUBLE_EQ(noiseOfSmoke(10, true, 4000), noise);
+    EXPECT_DOUBLE_EQ(noiseOfSmoke(40, true), noise);
+    EXPECT_DOUBLE_EQ(noiseOfSmoke(40, false), noise);
+}
+
+TEST(Film, NoiseOfFireThatCoversNothing) {
+    Film film(12, 12, {0, 0, 12, 12});
+    for (float v : {1.0f, 3.0f})
+        for (int x = 0; x < 3; ++x)
+            for (int y = 0; y < 3; ++y) film.add(x, y, FilmSample{Rgb(v), 0, 0, {}, 1});
+    for (int i = 0; i < 2; ++i)
+        for (int x = 4; x < 12; ++x)
+            for (int y = 4; y < 12; ++y) film.add(x, y, FilmSample{});
+    // In the middle and at the edges towards nothing, where less is around.
+    EXPECT_GT(film.noise(), 0.49);
+    EXPECT_LT(film.noise(), 0.6);
+}
+
+TEST(Film, NoiseOfWhatOnlyAbsorbsIsThatOfAlpha) {
+    Film film(2, 1, {0, 0, 2, 1}, {false, false, true});
+    for (float alpha : {0.25f, 0.75f}) {
+        film.add(0, 0, FilmSample{Rgb(1 - alpha), alpha, 0, Rgb(1 - alpha)});
+        film.add(1, 0, FilmSample{Rgb(1.0f), 0, 0, Rgb(1.0f)});
+    }
     EXPECT_DOUBLE_EQ(film.noise(), 0.25);
+}
+
+TEST(Film, NoiseOfNothingIsNoneAndOfDarknessUnknown) {
+    Film film = smallFilm();
+    for (int i = 0; i < 2; ++i) film.add(0, 0, FilmSample{});
+    EXPECT_EQ(film.noise(), 0);
+    // Paths scattered there and found no light yet.
+    for (int i = 0; i < 2; ++i) film.add(1, 0, FilmSample{Rgb(0.0f), 1, 3});
+    EXPECT_EQ(film.noise(), double{inf});
+    film.add(1, 0, FilmSample{Rgb(9.0f), 1, 3});
+    EXPECT_LT(film.noise(), 2);
 }
 
 TEST(Film, NoiseFallsWithTheRootOfTheSamples) {

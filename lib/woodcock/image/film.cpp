@@ -21,16 +21,18 @@ Rgb mean(const double (&sum)[3], std::uint64_t n) {
 using Variance = std::array<double, 3>;  // of one sample
 constexpr Variance unknownVariance{-1, -1, -1};
 
-Variance sampleVariance(const Film::Pixel& p) {
-    if (p.samples < 2) return unknownVariance;
-    const auto n = static_cast<double>(p.samples);
+Variance sampleVariance(const double (&sums)[3], const double (&squares)[3],
+                        std::uint64_t samples) {
+    if (samples < 2) return unknownVariance;
+    const auto n = static_cast<double>(samples);
     Variance variance;
-    for (std::size_t c = 0; c < 3; ++c) {
-        const double sum = p.radiance[c];
+    for (std::size_t c = 0; c < 3; ++c)
         // Equal samples may leave a difference below zero by rounding.
-        variance[c] = std::max(0.0, (p.radianceSquared[c] - sum * (sum / n)) / (n - 1));
-    }
+        variance[c] = std::max(0.0, (squares[c] - sums[c] * (sums[c] / n)) / (n - 1));
     return variance;
+}
+Variance sampleVariance(const Film::Pixel& p) {
+    return sampleVariance(p.radiance, p.radianceSquared, p.samples);
 }
 
 Rgb errorOfMean(const Variance& variance, std::uint64_t samples) {
@@ -58,6 +60,7 @@ Film::Film(int width, int height, Window crop, Kept kept)
                    static_cast<std::size_t>(crop.height()));
     if (kept.surfaces) surfacePixels_.resize(pixels_.size());
     if (kept.features) featurePixels_.resize(pixels_.size());
+    if (kept.background) foregroundPixels_.resize(pixels_.size());
 }
 
 std::size_t Film::index(int x, int y) const {
@@ -81,7 +84,18 @@ void Film::add(int x, int y, const FilmSample& sample) {
         p.radiance[i] += v;
         p.radianceSquared[i] += v * v;
     }
-    p.alpha += sample.alpha;
+    if (!foregroundPixels_.empty()) {
+        ForegroundPixel& f = foregroundPixels_[index(x, y)];
+        for (int i = 0; i < 3; ++i) {
+            const double v = double{sample.radiance[i]} - double{sample.background[i]};
+            f.radiance[i] += v;
+            f.radianceSquared[i] += v * v;
+        }
+    }
+    const double alpha = sample.alpha;
+    p.alpha += alpha;
+    p.alphaSquared += alpha * alpha;
+    p.coverage += std::max(alpha, double{sample.glow});
     p.events += sample.events;
     ++p.samples;
 }
@@ -121,6 +135,8 @@ void Film::merge(const Film& other) {
     if (width_ != other.width_ || height_ != other.height_ || crop_ != other.crop_)
         throw usageError("films of {} x {} and {} x {} pixels, or with different crops, do not add",
                          width_, height_, other.width_, other.height_);
+    if (foregroundPixels_.size() != other.foregroundPixels_.size())
+        throw usageError("films of a scene with and one without a visible background do not add");
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
         Pixel& p = pixels_[i];
         const Pixel& q = other.pixels_[i];
@@ -130,6 +146,8 @@ void Film::merge(const Film& other) {
             p.transmittance[c] += q.transmittance[c];
         }
         p.alpha += q.alpha;
+        p.alphaSquared += q.alphaSquared;
+        p.coverage += q.coverage;
         p.events += q.events;
         p.weightedDepth += q.weightedDepth;
         p.depthWeight += q.depthWeight;
@@ -150,6 +168,12 @@ void Film::merge(const Film& other) {
         for (int c = 0; c < 3; ++c) {
             featurePixels_[i].albedo[c] += other.featurePixels_[i].albedo[c];
             featurePixels_[i].normal[c] += other.featurePixels_[i].normal[c];
+        }
+    for (std::size_t i = 0; i < foregroundPixels_.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            foregroundPixels_[i].radiance[c] += other.foregroundPixels_[i].radiance[c];
+            foregroundPixels_[i].radianceSquared[c] +=
+                other.foregroundPixels_[i].radianceSquared[c];
         }
 }
 
@@ -226,20 +250,33 @@ std::uint64_t Film::mostSamples() const {
     return most;
 }
 
-double Film::noise() const {
+double Film::meanSamples() const {
     double sum = 0;
-    std::uint64_t pixels = 0;
-    for (int y = crop_.y0; y < crop_.y1; ++y) {
-        for (int x = crop_.x0; x < crop_.x1; ++x) {
-            const double light = radiance(x, y).mean();
-            const Pixel& p = at(x, y);
-            if (p.samples < 2 || !(light > 0)) continue;
-            sum += errorOfMean(sampleVariance(p), p.samples).mean() / light;
-            ++pixels;
-        }
+    for (const Pixel& p : pixels_) sum += static_cast<double>(p.samples);
+    return sum / static_cast<double>(pixels_.size());
+}
+
+std::uint64_t Film::fewestSamples() const {
+    std::uint64_t fewest = pixels_.front().samples;
+    for (const Pixel& p : pixels_) fewest = std::min(fewest, p.samples);
+    return fewest;
+}
+
+Film::Foreground Film::foreground(int x, int y) const {
+    const Pixel& p = at(x, y);
+    if (p.samples == 0) return {};
+    const auto n = static_cast<double>(p.samples);
+    const ForegroundPixel* const own =
+        foregroundPixels_.empty() ? nullptr : &foregroundPixels_[index(x, y)];
+    const auto& radiance = own ? own->radiance : p.radiance;
+    const Variance variance =
+        sampleVariance(radiance, own ? own->radianceSquared : p.radianceSquared, p.samples);
+    Foreground f{.coverage = p.coverage / n, .alpha = p.alpha / n};
+    for (std::size_t c = 0; c < 3; ++c) {
+        f.radiance += radiance[c] / n / 3;
+        f.variance += std::max(0.0, variance[c]) / 3;
     }
-    return pixels == 0 ? std::numeric_limits<double>::infinity()
-                       : sum / static_cast<double>(pixels);
+    return f;
 }
 
 }  // namespace woodcock

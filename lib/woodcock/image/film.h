@@ -13,8 +13,10 @@ namespace woodcock {
 /// One camera path's answer.
 struct FilmSample {
     Rgb radiance;
-    float alpha = 0;   ///< 1 - transmittance along the camera ray
-    float events = 0;  ///< scatterings and bounces of the path
+    float alpha = 0;      ///< 1 - transmittance along the camera ray
+    float events = 0;     ///< scatterings and bounces of the path
+    Rgb background = {};  ///< what of the radiance comes straight from infinitely far lights
+    float glow = 0;       ///< 1: the camera ray meets what glows, which need not cover anything
 };
 
 /// Depth and transmittance of one camera ray, only where layers ask for them.
@@ -38,7 +40,8 @@ class Film {
 public:
     struct Pixel {
         double radiance[3] = {}, radianceSquared[3] = {};
-        double alpha = 0, events = 0;
+        double alpha = 0, alphaSquared = 0, events = 0;
+        double coverage = 0;  ///< of the larger of alpha and glow
         double transmittance[3] = {};
         double weightedDepth = 0, depthWeight = 0;
         std::uint64_t samples = 0;       ///< of radiance, alpha and events
@@ -55,9 +58,13 @@ public:
     struct FeaturePixel {
         double albedo[3] = {}, normal[3] = {};
     };
+    /// Where infinitely far lights are seen: radiance without them.
+    struct ForegroundPixel {
+        double radiance[3] = {}, radianceSquared[3] = {};
+    };
     /// What is kept beside Pixel.
     struct Kept {
-        bool surfaces, features;
+        bool surfaces, features, background = false;
     };
 
     /// `width` x `height` is the whole image; samples may only fall into the crop
@@ -70,7 +77,7 @@ public:
     };
 
     /// Throws Error{Usage} on an empty image, and on a crop that is empty or leaves it.
-    Film(int width, int height, Window crop, Kept kept = {false, false});
+    Film(int width, int height, Window crop, Kept kept = {false, false, false});
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -112,9 +119,27 @@ public:
     std::uint64_t nonFiniteCount() const;
     /// Of all pixels; above the fewest after a render was interrupted inside a pass.
     std::uint64_t mostSamples() const;
-    /// By each pixel's own variance, as the error around a dark one says nothing relative to it:
-    /// mean over pixels of standard error / mean radiance (channels averaged first); pixels without
-    /// light or with fewer than two samples are left out; infinite, as unknown, when none is left.
+    double meanSamples() const;  ///< per pixel
+    std::uint64_t fewestSamples() const;
+
+    /// What a pixel shows of the scene, without the background.
+    struct Foreground {
+        double radiance = 0;  ///< mean over samples and channels
+        double variance = 0;  ///< of one sample, mean over channels; 0 of a single one
+        double coverage = 0;  ///< share of the camera rays that meet something, 0 to 1
+        double alpha = 0;     ///< of media and surfaces: shadow catchers add nothing
+    };
+    Foreground foreground(int x, int y) const;
+
+    /// The relative standard error of what the scene shows, background left out, in one number:
+    /// root mean square over pixels, which count as much as they cover of the background (what
+    /// glows without covering anything: as bright as it is, up to the mean). An error is relative
+    /// to the mean brightness of the nine pixels around, where what is seen is taken to stand
+    /// before a background as bright as itself, plus a tenth of the mean in squares. So neither
+    /// the background's brightness nor how much of it is in the picture matters, and a number below
+    /// 1 % is a picture in which one sees no grain.
+    /// Where media only absorb, it is the error of alpha. 0 where nothing but background was seen;
+    /// infinite, as unknown, where no pixel has two samples or nothing that is seen has any light.
     double noise() const;
 
 private:
@@ -123,8 +148,9 @@ private:
     int width_, height_;
     Window crop_;
     std::vector<Pixel> pixels_;
-    std::vector<SurfacePixel> surfacePixels_;  // empty without surfaces
-    std::vector<FeaturePixel> featurePixels_;  // empty where nobody asks
+    std::vector<SurfacePixel> surfacePixels_;        // empty without surfaces
+    std::vector<FeaturePixel> featurePixels_;        // empty where nobody asks
+    std::vector<ForegroundPixel> foregroundPixels_;  // empty where no background is seen
 };
 
 }  // namespace woodcock

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/light/light_set.h"
 
+#include <algorithm>
+
 #include "woodcock/medium/phase.h"
 
 namespace woodcock {
@@ -104,6 +106,14 @@ Rgb LightSet::distantRadiance(int light, Vec3d direction, bool cameraRay) const 
     if (const auto* s = std::get_if<Sun>(&l); s && (s->visible() || !cameraRay))
         return s->radiance(direction);
     return {};
+}
+
+bool LightSet::showsBackground() const {
+    return std::any_of(lights_.begin(), lights_.end(), [](const Light& l) {
+        const auto* environment = std::get_if<Environment>(&l);
+        const auto* sun = std::get_if<Sun>(&l);
+        return (environment && environment->visible()) || (sun && sun->visible() && !sun->delta());
+    });
 }
 
 float LightSet::typicalRadiance(const Box3d& bounds) const {

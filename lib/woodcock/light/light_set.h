@@ -43,6 +43,8 @@ public:
     /// Radiance that an infinitely far light (environment, a sun's disc) sends from a direction; 0
     /// for others, and for camera rays also of what is invisible to them.
     Rgb distantRadiance(int light, Vec3d direction, bool cameraRay) const;
+    /// Whether camera rays may see any such light.
+    bool showsBackground() const;
 
     /// Rough radiance that these lights make in a scattering medium of such bounds: the yardstick
     /// of Russian roulette. It steers cost only.

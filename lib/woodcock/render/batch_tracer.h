@@ -218,7 +218,7 @@ private:
                 p.result->catcher.lit = p.radiance.mean();
             else
                 p.result->film.radiance += p.radiance;
-            clampRadiance(p.result->film.radiance);
+            clampRadiance(p.result->film);
         }
         paths_.resize(left, paths_.front());
     }
@@ -269,7 +269,7 @@ private:
     Onward onwardFrom(Path& p) const;
     /// Goes on so, and returns Onward::phase.
     double enterStandIn(Path& p) const;
-    void clampRadiance(Rgb& radiance);
+    void clampRadiance(FilmSample& sample);
 
     // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
     void meetSurface(std::size_t i);

@@ -33,6 +33,7 @@ void BatchTracer<N, Surfaces>::addSphereHits(std::size_t i, const FlightShare* s
         const Path& p = paths_[i];
         const double t = sphere->hit(p.origin, p.direction);
         if (!std::isfinite(t)) continue;
+        if (!share) p.result->film.glow = 1;
         double weight = 1;
         if (share)
             weight = hitWeight(p, [&] { return choice_.pdf(light, p.from, p.direction); }) *
@@ -88,6 +89,7 @@ void BatchTracer<N, Surfaces>::addMediumEmission(std::size_t i, double u) {
                                         flight.tMax, flight.medium->meanExtinction, u);
     if (!point || !addShadowRay(i, p.origin, p.direction, point->t, point->light, false)) return;
     shadows_.back().withinFlight = true;
+    if (seen(p)) p.result->film.glow = 1;
     // Beyond a depth of 9 hardly anything is left of what was drawn deep within dense media.
     TransmittanceQuery<N>& query = shadowQueries_.back();
     query.roulette = std::max(query.roulette, 1e-4f * query.contribution.maximum());

@@ -14,9 +14,11 @@ void BatchTracer<N, Surfaces>::escape(Path& p) {
         const int light = static_cast<int>(i);
         const Rgb radiance = scene_.lights.distantRadiance(light, p.direction, seen(p));
         if (!(radiance.maximum() > 0)) continue;
-        p.radiance += toRgb(p.throughput) * radiance * tint(p) *
-                      static_cast<float>(
-                          hitWeight(p, [&] { return choice_.pdf(light, p.from, p.direction); }));
+        const Rgb arrived = toRgb(p.throughput) * radiance * tint(p) *
+                            static_cast<float>(hitWeight(
+                                p, [&] { return choice_.pdf(light, p.from, p.direction); }));
+        p.radiance += arrived;
+        if (seen(p)) p.result->film.background += arrived;
     }
 }
 

@@ -79,12 +79,14 @@ double BatchTracer<N, Surfaces>::enterStandIn(Path& p) const {
 }
 
 template <int N, bool Surfaces>
-void BatchTracer<N, Surfaces>::clampRadiance(Rgb& radiance) {
+void BatchTracer<N, Surfaces>::clampRadiance(FilmSample& sample) {
     const auto most = static_cast<float>(options_.approximations.clamp);
-    const float brightest = radiance.maximum();
+    const float brightest = sample.radiance.maximum();
     if (!(most > 0 && brightest > most)) return;
     ++counters_.clamped;
-    if (std::isfinite(brightest)) radiance *= most / brightest;  // the film counts others
+    if (!std::isfinite(brightest)) return;  // the film counts it
+    sample.radiance *= most / brightest;
+    sample.background *= most / brightest;
 }
 
 }  // namespace woodcock
