@@ -90,14 +90,16 @@ bool chooseQuality(SceneDescription& scene, const RenderOptions& options,
 
     Candidate chosen{"final", "final", {}};
     double allowed = render.noise;
-    Goal goal{std::nullopt, render.noise * render.noise};
+    // --noise leaves plain background out, and relMSE is a mean over all of the picture.
+    const double share = result->reference.noiseShare;
+    Goal goal{std::nullopt, render.noise * render.noise / share};
     if (limit > 0) goal.seconds = std::max(0.5 * limit, limit - watch.seconds());
     std::vector<TradeModel> models;
     for (const CandidateResult& c : result->candidates) models.push_back(c.model.careful());
     if (const auto winner = goal.best(models)) {
         const TradeModel& model = models[winner->best];
         chosen = result->candidates[winner->best].candidate;
-        if (limit <= 0) allowed = std::sqrt(goal.error - model.biasError());
+        if (limit <= 0) allowed = std::sqrt(share * (goal.error - model.biasError()));
         spdlog::info(
             "'{}' promises {}, '{}' {} (bias counted with two standard errors; measured in {})",
             chosen.name, goal.promise(model), result->candidates.front().candidate.name,

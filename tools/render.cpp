@@ -41,7 +41,7 @@ SceneDescription describeScene(const RenderOptions& options) {
     render.seed = options.seed.value_or(render.seed);
     render.timeLimit = options.timeLimit.value_or(render.timeLimit);
     render.noise = options.noise.value_or(render.noise);
-    render.adaptive |= options.adaptive;
+    if (options.adaptive) render.adaptive = options.adaptive;
 
     OutputDescription& output = scene.output;
     if (!options.outputs.empty()) {
@@ -144,7 +144,8 @@ void checkMemory(const RenderSettings& settings, const SceneDescription& scene) 
     const auto crop = settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
     constexpr double encoded = 32;  // bytes of a pixel in an image file with all layers, about
     const double kept = double(sizeof(Film::Pixel)) +
-                        (settings.featureLayers ? double(sizeof(Film::FeaturePixel)) : 0);
+                        (settings.featureLayers ? double(sizeof(Film::FeaturePixel)) : 0) +
+                        (environmentIsHidden(scene) ? 0 : double(sizeof(Film::ForegroundPixel)));
     const double needed = double(crop.width()) * crop.height() * (kept + encoded);
     const auto possible = static_cast<double>(memoryLimit());
     if (needed <= possible) return;
@@ -169,6 +170,8 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
                              p.y0, p.x1, p.y1, render.width, render.height);
         settings.crop = Film::Window{p.x0, p.y0, p.x1, p.y1};
     }
+    // Parts are to fit the rest of their picture, which shares its samples out as a whole.
+    if (options.samples || options.crop) settings.adaptive = render.adaptive.value_or(false);
     if (settings.adaptive && options.samples)
         throw usageError(
             "{} and --samples contradict each other: how many samples a pixel gets follows from "
@@ -202,6 +205,15 @@ bool haveSameFields(const SceneDescription& a, const SceneDescription& b) {
            ra.levelOfDetail == rb.levelOfDetail;
 }
 
+std::string samplesText(const RenderResult& result, const RenderSettings& settings) {
+    if (!settings.adaptive)
+        return fmt::format("samples {}:{} of each pixel", settings.firstSample, result.endSample);
+    const Film& film = result.film;
+    return fmt::format("the work of {} samples per pixel, {} to {} of them, {:.3g} in the mean",
+                       result.endSample, film.fewestSamples(), film.mostSamples(),
+                       film.meanSamples());
+}
+
 RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
                                 ProgressStyle style) {
     spdlog::info("{}", findNeeds(scene).describe());
@@ -212,9 +224,8 @@ RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settin
         return !interrupted();
     });
     progress.finish(result);
-    spdlog::info("{} in {}: samples {}:{} of {} pixel, {}", stopReasonName(result.reason),
-                 formatDuration(result.seconds), settings.firstSample, result.endSample,
-                 settings.adaptive ? "a mean" : "each", noiseText(result.film.noise()));
+    spdlog::info("{} in {}: {}, {}", stopReasonName(result.reason), formatDuration(result.seconds),
+                 samplesText(result, settings), noiseText(result.film.noise()));
     if (const std::uint64_t count = result.counters.clamped)
         spdlog::info("{} of {} paths were clamped to a radiance of {:g}", count,
                      result.counters.paths, settings.approximations.clamp);

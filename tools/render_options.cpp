@@ -51,7 +51,8 @@ void addRendering(CLI::App& command, RenderOptions& o) {
         addParsed(command, "--crop", o.crop, parsePixelRectangle,
                   "Render only pixels [X0, X1) x [Y0, Y1), y down")
             ->type_name("X0,Y0,X1,Y1"),
-        addCount(command, "--spp", o.spp, 1, INT_MAX, "Samples per pixel"),
+        addCount(command, "--spp", o.spp, 1, INT_MAX,
+                 "Samples per pixel; adaptive renders do as much work with other numbers"),
         addParsed(command, "--samples", o.samples, parseSampleRange,
                   "Samples FIRST to END - 1 of each pixel, for farms that merge")
             ->type_name("FIRST:END"),
@@ -60,10 +61,13 @@ void addRendering(CLI::App& command, RenderOptions& o) {
                   "Stop after this long, such as 90s, 5m, 2h")
             ->type_name("TIME"),
         addParsed(command, "--noise", o.noise, parseFraction,
-                  "Stop when the mean relative standard error is below this, such as 1%")
+                  "Stop when the noise is below this, such as 1%: the relative standard error of "
+                  "what the scene shows; plain background does not count")
             ->type_name("FRACTION"),
-        command.add_flag("--adaptive", o.adaptive,
-                         "More of the samples where the relative error is larger"),
+        command.add_flag_function(
+            "--adaptive,!--no-adaptive", [&o](std::int64_t times) { o.adaptive = times > 0; },
+            "More samples where the error is larger, fewer elsewhere, in the same time; on unless "
+            "you say otherwise, or ask for a part by --samples or --crop"),
         addCount(command, "--threads", o.threads, 0, 4096, "0: one for each core")};
     for (CLI::Option* option : options) option->group("Rendering");
 }

@@ -25,7 +25,7 @@ struct RenderOptions {
     std::optional<SampleRange> samples;
     std::optional<std::uint64_t> seed;
     std::optional<double> timeLimit, noise;
-    bool adaptive = false;
+    std::optional<bool> adaptive;
     std::optional<std::string> quality;  ///< one of qualityNames, or "auto"
     std::optional<int> threads;
     std::vector<std::string> overrides;

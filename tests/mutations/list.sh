@@ -231,7 +231,15 @@ defect "coarse voxels are one of eight" 'Coarsen.*' "" \
 
 defect "a pixel's number knows its own samples" 'SamplePlan.*:Adaptive.*' "" \
     lib/woodcock/render/sample_plan.cpp \
-    'if ((dx + dy) % 2 == 0) continue;' 'if (dx != 0 || dy != 0) continue;'
+    'if ((u + v + x + y) % 2 != 0 && p.weight > 0)' 'if (u == x && v == y && p.weight > 0)'
+
+defect "the sky counts as what is seen" 'Film.Noise*:Noise.*' "" \
+    lib/woodcock/image/film.cpp \
+    'double{sample.radiance[i]} - double{sample.background[i]}' 'double{sample.radiance[i]}'
+
+defect "tiles from the top" 'TileOrder.*' "" \
+    lib/woodcock/render/tile_order.cpp \
+    'return sum - std::floor(sum);' 'return row + 0 * sum;'
 
 defect "dear pixels get as many samples as cheap ones" 'SamplePlan.*' "" \
     lib/woodcock/render/sample_plan.cpp \

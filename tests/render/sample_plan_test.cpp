@@ -46,6 +46,7 @@ TEST(SamplePlan, GivesAwayAllSamplesAndTakesNoneBack) {
     std::vector<std::uint32_t> before(width * height, 0);
     for (int mean = 1; mean < 300; ++mean) {
         const auto counts = plan.counts(mean);
+        // All cost alike, so the work is the number.
         ASSERT_EQ(sum(counts), static_cast<std::uint64_t>(mean * width * height));
         for (std::size_t i = 0; i < counts.size(); ++i) {
             ASSERT_GE(counts[i], before[i]) << mean;
@@ -81,11 +82,65 @@ TEST(SamplePlan, GoesInProportionToTheRelativeError) {
 }
 
 TEST(SamplePlan, WhatIsDearGetsFewerByTheRootOfItsCost) {
-    // A sample of the left half costs 1, one of the right half, with two events, 1 + 2 x 1.5 = 4.
+    // A sample of the left half costs 1, one of the right half, with eight events, 1 + 8 x 10 = 81.
     const auto draw = [](bool left, RandomStream& random) {
-        return FilmSample{Rgb(random.uniform() < 0.5 ? 1.0f : 3.0f), 1, left ? 0.0f : 2.0f};
+        return FilmSample{Rgb(random.uniform() < 0.5 ? 1.0f : 3.0f), 1, left ? 0.0f : 8.0f};
     };
-    EXPECT_NEAR(leftOverRight(draw), 2, 0.05);
+    EXPECT_NEAR(leftOverRight(draw), 9, 0.2);
+}
+
+/// The middle of a picture holds noisy smoke whose paths have one event; around it is nothing.
+FilmSample smokeInTheMiddle(int x, int y, RandomStream& random) {
+    if (std::abs(x - 20) > 6 || std::abs(y - 20) > 6) return FilmSample{};
+    return FilmSample{Rgb(random.uniform() < 0.3 ? 3.0f : 0.1f), 1, 1};
+}
+
+TEST(SamplePlan, AllTogetherAreTheWorkOfEvenSamples) {
+    constexpr int size = 41, samples = 64, even = 256;
+    RandomStream random(6);
+    Film pilot(size, size, {0, 0, size, size});
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x)
+            for (int i = 0; i < samples; ++i) pilot.add(x, y, smokeInTheMiddle(x, y, random));
+    const auto counts = SamplePlan(pilot, samples).counts(even);
+    double work = 0, evenWork = 0, smoke = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            const bool middle = pilot.alpha(x, y) > 0;
+            const double cost = middle ? 1 + 10.0 : 1,
+                         n = counts[static_cast<std::size_t>(y * size + x)];
+            work += n * cost, evenWork += even * cost;
+            if (middle) smoke += n / (13 * 13);
+        }
+    // The plan smooths costs over the smoke's edge.
+    EXPECT_NEAR(work / evenWork, 1, 0.05);
+    // By costs: 1512 pixels of 1 and 169 of 11, of which the former keep the pilot's quarter.
+    const double most = even + (even - samples) * 1512 / (169.0 * 11);
+    EXPECT_GT(smoke, 0.93 * most);
+    EXPECT_LT(smoke, 1.02 * most);
+}
+
+/// Samples of a pixel in fog that one ray in a hundred meets, over those of one in thick fog.
+TEST(SamplePlan, FaintEdgesAreAsPlainWithAHiddenBackground) {
+    constexpr int wide = 40, samples = 4000;
+    const auto ratio = [](bool visible) {
+        RandomStream random(7);
+        Film pilot(wide, height, {0, 0, wide, height}, {false, false, visible});
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < wide; ++x)
+                for (int i = 0; i < samples; ++i) {
+                    const bool met = random.uniform() < (x < wide / 2 ? 0.01 : 1.0);
+                    const float light = random.uniform() < 0.5 ? 0.5f : 1.5f;
+                    const Rgb sky(visible ? 1.0f : 0.0f);
+                    pilot.add(x, y, met ? FilmSample{Rgb(light), 1} : FilmSample{sky, 0, 0, sky});
+                }
+        const auto counts = SamplePlan(pilot, samples).counts(20 * samples);
+        return static_cast<double>(counts[3 * wide]) / counts[4 * wide - 1];
+    };
+    // Variances of 0.01 x 0.25 before a sky as bright as the fog, of 0.01 x 1.25 before a hidden
+    // one, and of 0.25 in thick fog, all relative to the fog's brightness.
+    EXPECT_NEAR(ratio(true), std::sqrt(0.01), 0.01);
+    EXPECT_NEAR(ratio(false), std::sqrt(0.01 * 1.25 / 0.25), 0.02);
 }
 
 TEST(SamplePlan, EvenPicturesGetEvenSamples) {

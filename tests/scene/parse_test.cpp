@@ -228,7 +228,7 @@ TEST(Parse, BiasedChoices) {
     EXPECT_EQ(render.storage, Storage::Half);
     EXPECT_EQ(render.lookup, Lookup::Nearest);
     EXPECT_EQ(render.levelOfDetail, 1.5);
-    EXPECT_TRUE(render.adaptive);
+    EXPECT_EQ(render.adaptive, true);
     EXPECT_EQ(section("[render]\noctaves = 4").render.approximations.octaves, 4);
 }
 

@@ -39,7 +39,7 @@ TEST(Quality, FinalAndReferenceAreUnbiased) {
     EXPECT_TRUE(biasedChoices(parse("quality = \"final\"")).empty());
     EXPECT_TRUE(biasedChoices(parse("quality = \"reference\"")).empty());
     EXPECT_EQ(parse("quality = \"reference\"").render.storage, Storage::Float);
-    EXPECT_FALSE(parse("quality = \"reference\"").render.adaptive);
+    EXPECT_EQ(parse("quality = \"reference\"").render.adaptive, false);
 }
 
 TEST(Quality, KeysBesideItWin) {

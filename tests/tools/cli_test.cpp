@@ -76,6 +76,23 @@ TEST_F(Cli, RendersAVolumeToSeveralFiles) {
     EXPECT_GE(stats.at("counters").at("paths"), 16 * 8 * 2);
 }
 
+TEST_F(Cli, WholePicturesAreAdaptiveAndPartsAreNot) {
+    const auto isAdaptive = [&](std::vector<std::string> options) {
+        options.insert(options.end(), {"--quiet", "--stats", file("stats.json")});
+        const ProgramResult result = runProgram(render("smoke.vdb", options));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return nlohmann::json::parse(readText(file("stats.json"))).at("adaptive").get<bool>();
+    };
+    EXPECT_TRUE(isAdaptive({"--spp", "16"}));
+    EXPECT_TRUE(isAdaptive({"--spp", "16", "--quality", "draft"}));
+    EXPECT_TRUE(isAdaptive({"--spp", "16", "--crop", "0,0,8,8", "--adaptive"}));
+    EXPECT_FALSE(isAdaptive({"--spp", "16", "--no-adaptive"}));
+    EXPECT_FALSE(isAdaptive({"--spp", "16", "--quality", "reference"}));
+    EXPECT_FALSE(isAdaptive({"--spp", "16", "--set", "render.adaptive=false"}));
+    EXPECT_FALSE(isAdaptive({"--samples", "4:8"}));
+    EXPECT_FALSE(isAdaptive({"--spp", "16", "--crop", "0,0,8,8"}));
+}
+
 TEST_F(Cli, SaysWhatItChoseAsTheSceneThatWouldFixIt) {
     const ProgramResult result = runProgram(quick({"--write-scene", file("scene.toml")}));
     EXPECT_EQ(result.exitCode, 0) << result.err;
@@ -229,7 +246,7 @@ TEST_F(Cli, WrongUsage) {
     wrong({"--seed", "9223372036854775808"}, {"--seed", "to 9223372036854775807"});
     wrong({"--samples", "0:2147483648"}, {"--samples", "END <= 2147483647"});
     wrong({"--exposure", "1e9"}, {"--exposure: '1e9'", "from -100 to 100"});
-    wrong({"--res", "65536x65536"}, {"--res: 65536 x 65536 pixels need 640 GiB", "--crop"});
+    wrong({"--res", "65536x65536"}, {"--res: 65536 x 65536 pixels need 896 GiB", "--crop"});
     wrong({"--res", "0x8"}, {"--res", "'0x8'", "WIDTHxHEIGHT"});
     wrong({"--samples", "4:4"}, {"--samples", "'4:4'", "FIRST:END"});
     wrong({"--crop", "4,4,4,8"}, {"--crop", "'4,4,4,8'", "X0,Y0,X1,Y1"});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -109,6 +110,9 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
         most > metadata.endSample - metadata.firstSample)
         set("woodcock/samplesAtMost", most);
     if (metadata.adaptive) set("woodcock/adaptive", 1);
+    set("woodcock/samplesMean", static_cast<float>(film.meanSamples()));
+    if (const double noise = film.noise(); std::isfinite(noise))
+        set("woodcock/noise", static_cast<float>(noise));
     // EXR has no integer of 64 bits.
     set("woodcock/seed", fmt::format("{}", metadata.seed));
     set("woodcock/nonFinite", fmt::format("{}", film.nonFiniteCount()));

@@ -19,7 +19,7 @@ struct RenderMetadata {
     double renderSeconds = 0;
     std::string sceneDigest;
     std::string commandLine;  ///< empty: not written
-    bool adaptive = false;    ///< the sample range is that of a mean pixel
+    bool adaptive = false;    ///< the sample range is the work of as many in every pixel
 };
 
 /// Channels beyond R, G, B and A, always in float.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/sample_plan.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,63 +14,89 @@ namespace {
 /// Bounds of a pixel's share, in means: the pilot may have missed what is rare, and one bright
 /// sample may not draw everything to its neighbours.
 constexpr double leastShare = 0.125, mostShare = 16;
-/// Below this part of the picture's mean, errors count absolutely: relMSE's epsilon is its square.
+/// Below this part of the mean brightness, errors count absolutely.
 constexpr double darkness = 0.1;
+/// Of the mean brightness: no pixel counts for more in it, or a lamp in sight would set it.
+constexpr double brightest = 4;
 
-/// What a scattering costs, its shadow ray and the flight after it, in paths without any: 0.46 and
-/// 0.30 microseconds in a cumulus.
-constexpr double costOfAnEvent = 1.5;
+/// What a scattering costs, its shadow ray and the flight after it, in paths without any. Measured
+/// 3.5 in a baked cumulus, 4.5 in thin smoke, 6.5 to 9.6 in dense smoke in a picture that is mostly
+/// sky (tests/bench/adaptive_bench): rather too much, as then a picture takes less time than even
+/// samples would and not more.
+constexpr double costOfAnEvent = 10;
+constexpr double costUnits = 8;  // of a path without events
 
-/// What the pilot found in pixels of one colour, in weighted sums.
-struct Light {
-    std::array<double, 3> variance{}, square{};  ///< of a sample; of the mean radiance
-    double radiance = 0, events = 0, weight = 0;
+/// What the pilot found in a pixel, or the weighted sums of several.
+struct Found {
+    double variance = 0;    ///< of a sample, mean over channels
+    double radiance = 0;    ///< mean over channels
+    double foreground = 0;  ///< the same without the background
+    double coverage = 0, events = 0, weight = 0;
 
-    void add(const Film::Pixel& p, double w) {
+    static Found of(const Film& film, int x, int y) {
+        const Film::Pixel& p = film.at(x, y);
         const auto n = static_cast<double>(p.samples);
-        if (n < 2) return;
+        if (n < 2) return {};
+        Found f{.events = p.events / n, .weight = 1};
         for (std::size_t c = 0; c < 3; ++c) {
             const double m = p.radiance[c] / n;
-            const double v = std::max(0.0, (p.radianceSquared[c] - n * m * m) / (n - 1));
-            radiance += w * m / 3;
-            variance[c] += w * v;
-            square[c] += w * (m * m - v / n);
+            f.radiance += m / 3;
+            f.variance += std::max(0.0, (p.radianceSquared[c] - n * m * m) / (n - 1)) / 3;
         }
-        events += w * p.events / n;
-        weight += w;
-    }
-    double brightness() const { return weight > 0 ? radiance / weight : 0; }
-    /// Of a sample, in paths without events.
-    double cost() const { return 1 + costOfAnEvent * events / weight; }
-    /// Variance of a sample relative to radiance, summed over channels. Of squares, not of means:
-    /// beside something bright, the little of it that reaches here counts as much on both sides.
-    double relativeVariance(double epsilon) const {
-        double sum = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double all = std::max(0.0, square[c]) + epsilon * epsilon * weight;
-            if (all > 0) sum += variance[c] / all;
-        }
-        return sum;
+        const Film::Foreground shown = film.foreground(x, y);
+        f.foreground = shown.radiance, f.coverage = std::min(1.0, shown.coverage);
+        return f;
     }
 };
 
-/// Of the pixels of the other colour around (x, y), by binomial weights: enough of them that rare
-/// bright samples do not rule.
-Light around(const Film& film, int x, int y) {
-    constexpr int reach = 6;
-    constexpr std::array<double, reach + 1> binomial{924, 792, 495, 220, 66, 12, 1};
-    const Film::Window crop = film.crop();
-    Light light;
-    for (int dy = -reach; dy <= reach; ++dy)
-        for (int dx = -reach; dx <= reach; ++dx) {
-            if ((dx + dy) % 2 == 0) continue;
-            const int u = x + dx, v = y + dy;
-            if (u < crop.x0 || u >= crop.x1 || v < crop.y0 || v >= crop.y1) continue;
-            light.add(film.at(u, v), binomial[static_cast<std::size_t>(std::abs(dx))] *
-                                         binomial[static_cast<std::size_t>(std::abs(dy))]);
+/// Of the pixels of one colour.
+struct Brightness {
+    double foreground = 0;  ///< of what covers a pixel: the mean by coverage
+    double picture = 0;
+};
+
+Brightness brightnessOf(const std::vector<Found>& pixels, int width, std::size_t colour) {
+    double covered = 0, light = 0, all = 0, number = 0;
+    const auto each = [&](auto&& f) {
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            const auto w = static_cast<std::size_t>(width);
+            if (((i % w + i / w) & 1) == colour) f(pixels[i]);
         }
-    return light;
+    };
+    each([&](const Found& p) {
+        covered += p.coverage, light += p.foreground;
+        all += p.radiance, number += p.weight;
+    });
+    Brightness b;
+    if (number > 0) b.picture = all / number;
+    if (!(covered > 0)) return b;
+    const double most = brightest * light / covered;
+    each([&](const Found& p) {
+        b.foreground += std::min(p.foreground, most * p.coverage) / covered;
+    });
+    return b;
 }
+
+/// Sums over pixels of one colour around a pixel of the other.
+struct Neighbourhood {
+    double variance = 0, square = 0, events = 0, weight = 0;
+
+    /// `b` is of the neighbours' colour. Squares, not means, of what is seen: beside something
+    /// bright, the little of it that reaches here counts as much on both sides.
+    void add(const Found& p, double w, const Brightness& b, double samples) {
+        const double before = p.foreground + (1 - p.coverage) * b.foreground;
+        const double seen = std::max(p.radiance, before);
+        variance += w * p.variance;
+        square += w * (seen * seen - p.variance / samples);
+        events += w * p.events, weight += w;
+    }
+    /// Of a sample, in paths without events.
+    double cost() const { return weight > 0 ? 1 + costOfAnEvent * events / weight : 1; }
+    double relativeVariance(double epsilon) const {
+        const double all = std::max(0.0, square) + epsilon * epsilon * weight;
+        return all > 0 ? variance / all : 0;
+    }
+};
 
 }  // namespace
 
@@ -77,67 +105,96 @@ SamplePlan::SamplePlan(const Film& pilot, int samples)
               static_cast<std::size_t>(pilot.crop().height())),
       pilot_(static_cast<std::uint32_t>(samples)) {
     const Film::Window crop = pilot.crop();
-    const auto colour = [](int x, int y) { return static_cast<std::size_t>((x + y) & 1); };
-    std::array<Light, 2> all;
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x) all[colour(x, y)].add(pilot.at(x, y), 1);
-    std::size_t pixel = 0;
-    for (int y = crop.y0; y < crop.y1; ++y)
-        for (int x = crop.x0; x < crop.x1; ++x, ++pixel) {
-            const std::size_t own = colour(x, y);
-            const Light light = around(pilot, x, y);
-            const double share =
-                light.weight > 0
-                    ? std::sqrt(light.relativeVariance(darkness * all[1 - own].brightness()) /
-                                light.cost())
-                    : 0;
-            colours_[own].push_back({pixel, share});
+    const int width = crop.width(), height = crop.height();
+    const auto indexOf = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x);
+    };
+    std::vector<Found> found(pixels_);
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; ++x)
+            found[indexOf(x, y)] = Found::of(pilot, crop.x0 + x, crop.y0 + y);
+    });
+    const Brightness brightness[2]{brightnessOf(found, width, 0), brightnessOf(found, width, 1)};
+
+    std::vector<Place> places(pixels_);
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; ++x) {
+            // Of the pixels of the other colour alone, by binomial weights: enough of them that
+            // rare bright samples do not rule.
+            constexpr int reach = 6;
+            constexpr std::array<double, reach + 1> binomial{924, 792, 495, 220, 66, 12, 1};
+            const Brightness& b = brightness[(x + y + 1) & 1];
+            Neighbourhood around;
+            for (int v = std::max(y - reach, 0); v < std::min(y + reach + 1, height); ++v)
+                for (int u = std::max(x - reach, 0); u < std::min(x + reach + 1, width); ++u) {
+                    const Found& p = found[indexOf(u, v)];
+                    if ((u + v + x + y) % 2 != 0 && p.weight > 0)
+                        around.add(p,
+                                   binomial[static_cast<std::size_t>(std::abs(u - x))] *
+                                       binomial[static_cast<std::size_t>(std::abs(v - y))],
+                                   b, samples);
+                }
+            const double epsilon = darkness * std::max(b.foreground, b.picture);
+            const double cost = around.cost();
+            places[indexOf(x, y)] = {indexOf(x, y),
+                                     std::sqrt(around.relativeVariance(epsilon) / cost),
+                                     static_cast<std::uint32_t>(std::lround(costUnits * cost))};
         }
-    for (std::vector<Place>& places : colours_) {
+    });
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) colours_[(x + y) & 1].push_back(places[indexOf(x, y)]);
+    for (std::vector<Place>& ofColour : colours_) {
         double sum = 0;
-        for (const Place& p : places) sum += p.share;
-        for (Place& p : places) {
+        for (const Place& p : ofColour) sum += p.share;
+        for (Place& p : ofColour) {
             const double relative =
-                sum > 0 ? p.share * static_cast<double>(places.size()) / sum : 1;
+                sum > 0 ? p.share * static_cast<double>(ofColour.size()) / sum : 1;
             p.share = std::clamp(relative, leastShare, mostShare);
         }
     }
 }
 
-int SamplePlan::pilotOf(int samples) { return std::clamp(samples / 4, 2, 32); }
+int SamplePlan::pilotOf(int samples) { return std::clamp(samples / 4, 4, 32); }
 
-std::vector<std::uint32_t> SamplePlan::counts(int mean) const {
+std::vector<std::uint32_t> SamplePlan::counts(int even) const {
     std::vector<std::uint32_t> counts(pixels_, pilot_);
-    if (static_cast<std::uint32_t>(mean) <= pilot_)
-        return std::vector<std::uint32_t>(pixels_, static_cast<std::uint32_t>(mean));
-    for (const std::vector<Place>& places : colours_)
-        apportion(places, places.size() * static_cast<std::uint64_t>(mean), counts);
+    if (static_cast<std::uint32_t>(even) <= pilot_)
+        return std::vector<std::uint32_t>(pixels_, static_cast<std::uint32_t>(even));
+    for (const std::vector<Place>& places : colours_) apportion(places, even, counts);
     return counts;
 }
 
 /// Webster's apportionment: a pixel gets its share x factor, rounded, and the pilot at least. The
-/// factor rises until all are given away, so nobody ever has less of more.
-void SamplePlan::apportion(const std::vector<Place>& places, std::uint64_t total,
+/// factor rises until the work is given away, so nobody ever has less of more.
+void SamplePlan::apportion(const std::vector<Place>& places, int even,
                            std::vector<std::uint32_t>& counts) const {
+    if (places.empty()) return;
     const auto count = [&](const Place& p, double factor) {
         return std::max(pilot_, static_cast<std::uint32_t>(p.share * factor + 0.5));
     };
-    const auto sum = [&](double factor) {
+    const auto work = [&](double factor) {
         std::uint64_t s = 0;
-        for (const Place& p : places) s += count(p, factor);
+        for (const Place& p : places) s += std::uint64_t{count(p, factor)} * p.cost;
         return s;
     };
-    const double mean = static_cast<double>(total) / static_cast<double>(places.size());
-    double low = 0, high = (mean + 1) / leastShare;
-    while (true) {  // the least factor that gives away too many, and the one before it
+    std::uint64_t all = 0;
+    for (const Place& p : places) all += p.cost;
+    all *= static_cast<std::uint64_t>(even);
+    double low = 0, high = 1;
+    while (work(high) <= all) low = high, high *= 2;
+    while (true) {  // the least factor that gives away too much, and the one before it
         const double middle = low + (high - low) / 2;
         if (!(low < middle && middle < high)) break;
-        (sum(middle) <= total ? low : high) = middle;
+        (work(middle) <= all ? low : high) = middle;
     }
-    std::uint64_t left = total - sum(low);
+    std::uint64_t left = all - work(low);
+    bool fits = true;  // in the pixels' order up to the first that does not: so more is never less
     for (const Place& p : places) {
         counts[p.pixel] = count(p, low);
-        if (left > 0 && count(p, high) > counts[p.pixel]) ++counts[p.pixel], --left;
+        if (count(p, high) == counts[p.pixel] || !fits) continue;
+        fits = left >= p.cost;
+        if (fits) ++counts[p.pixel], left -= p.cost;
     }
 }
 

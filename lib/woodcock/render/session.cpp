@@ -15,6 +15,8 @@
 #include "woodcock/base/error.h"
 #include "woodcock/render/path_tracer.h"
 #include "woodcock/render/sample_plan.h"
+#include "woodcock/render/tile_order.h"
+#include "woodcock/render/work_estimate.h"
 
 namespace woodcock {
 
@@ -62,7 +64,7 @@ void prepare(const Scene& scene, const Approximations& approximations) {
         for (const Medium& medium : set) prepareMarch(medium, marchSettings(approximations));
 }
 
-/// Samples [first, end) of each pixel in the mean.
+/// Samples [first, end) of each pixel, or as much work.
 struct Pass {
     int first, end;
     /// The same by pixel, row by row; empty: alike in all.
@@ -79,15 +81,10 @@ public:
           crop_(crop),
           needs_(findNeeds(scene)),
           standIns_(scene, settings.approximations),
-          film_(settings.width, settings.height, crop, {needs_.surfaces, settings.featureLayers}) {
-        for (int y = crop.y0 / tileSize * tileSize; y < crop.y1; y += tileSize)
-            for (int x = crop.x0 / tileSize * tileSize; x < crop.x1; x += tileSize)
-                tiles_.push_back({std::max(x, crop.x0), std::max(y, crop.y0),
-                                  std::min(x + tileSize, crop.x1),
-                                  std::min(y + tileSize, crop.y1)});
-        pathsPerSample_ =
-            static_cast<std::uint64_t>(crop.width()) * static_cast<std::uint64_t>(crop.height());
-    }
+          film_(settings.width, settings.height, crop,
+                {needs_.surfaces, settings.featureLayers, scene.lights.showsBackground()}),
+          tiles_(scatteredTiles(crop, tileSize)),
+          work_(tiles_.size(), settings.endSample - settings.firstSample) {}
 
     RenderResult run(const std::function<bool(const RenderProgress&)>& onProgress) {
         {
@@ -134,21 +131,25 @@ private:
         std::thread thread_;
     };
 
-    RenderProgress progress() const {
+    RenderProgress progress() {
         RenderProgress p;
         p.seconds = secondsSince(start_);
-        const auto total =
-            static_cast<double>(pathsPerSample_) * (settings_.endSample - settings_.firstSample);
-        p.fraction = std::min(1.0, static_cast<double>(pathsDone_.load()) / total);
+        const std::lock_guard lock(countersMutex_);
+        const double done = work_.samplesDone();
+        p.fraction = work_.fraction();
         p.samples = completeSamples_.load() - settings_.firstSample;
         p.noise = noise_.load();
         if (settings_.timeLimit > 0)
             p.fraction = std::max(p.fraction, std::min(1.0, p.seconds / settings_.timeLimit));
-        if (settings_.noise > 0 && p.noise > 0 &&
-            std::isfinite(p.noise)) {  // the error falls with the root of the time
-            const double ratio = settings_.noise / p.noise;
-            p.fraction = std::max(p.fraction, std::min(1.0, ratio * ratio));
+        if (settings_.noise > 0 && std::isfinite(p.noise)) {
+            // The error falls with the root of the samples.
+            const double ratio = p.noise / settings_.noise;
+            const double needed =
+                std::max<double>(fewestSamplesForNoise, p.samples * ratio * ratio);
+            p.fraction = std::max(p.fraction, std::min(1.0, done / needed));
         }
+        // A look at the noise that finds more of it than thought takes nothing back.
+        p.fraction = fractionTold_ = std::max(fractionTold_, p.fraction);
         if (p.fraction > 0) p.secondsLeft = p.seconds * (1 - p.fraction) / p.fraction;
         return p;
     }
@@ -172,8 +173,8 @@ private:
             }
             completeSamples_ = end;
             counts_ = pass.endOf;
-            noise_ = film_.noise();
-            if (settings_.noise > 0 && noise_ > 0 && noise_ < settings_.noise &&
+            lookAtNoise(secondsSince(passStart), end == settings_.endSample);
+            if (settings_.noise > 0 && noise_ < settings_.noise &&
                 end - settings_.firstSample >= fewestSamplesForNoise) {
                 if (end < settings_.endSample) reason_ = StopReason::NoiseReached;
                 return;
@@ -190,6 +191,15 @@ private:
                 }
             }
         }
+    }
+
+    /// Of a pass that took so long. Where the noise is only to be shown, looks are to cost little.
+    void lookAtNoise(double passSeconds, bool last) {
+        sinceLook_ += passSeconds;
+        if (settings_.noise == 0 && !last && sinceLook_ < 50 * lookSeconds_) return;
+        const auto start = Clock::now();
+        noise_ = film_.noise();
+        lookSeconds_ = secondsSince(start), sinceLook_ = 0;
     }
 
     /// The pass of at most `length` samples for each pixel that comes next.
@@ -212,15 +222,50 @@ private:
             return stop_ || (pass.first > settings_.firstSample && settings_.timeLimit > 0 &&
                              secondsSince(start_) > settings_.timeLimit);
         };
+        {
+            const std::vector<std::size_t> paths = pathsOf(pass);
+            const std::lock_guard lock(countersMutex_);
+            work_.begin(pass.end - pass.first, paths);
+        }
         std::atomic<std::size_t> tilesDone{0};
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, tiles_.size(), 1),
             [&](const tbb::blocked_range<std::size_t>& range) {
                 for (std::size_t i = range.begin(); i < range.end() && !stopping(); ++i)
-                    tilesDone += renderTile(tiles_[i], pass, stopping);
+                    tilesDone += renderTile(i, pass, stopping);
             },
             tbb::simple_partitioner{});
-        return tilesDone == tiles_.size();
+        if (tilesDone < tiles_.size()) return false;
+        const std::lock_guard lock(countersMutex_);
+        work_.end();
+        return true;
+    }
+
+    /// How many each tile traces.
+    std::vector<std::size_t> pathsOf(const Pass& pass) const {
+        std::vector<std::size_t> paths;
+        paths.reserve(tiles_.size());
+        for (const Film::Window& tile : tiles_) {
+            const auto width = static_cast<std::size_t>(tile.width());
+            if (pass.endOf.empty()) {
+                paths.push_back(width * static_cast<std::size_t>(tile.height()) *
+                                static_cast<std::size_t>(pass.end - pass.first));
+                continue;
+            }
+            std::size_t count = 0;
+            for (int y = tile.y0; y < tile.y1; ++y) {
+                const std::size_t pixel = pixelOf(tile.x0, y);
+                for (std::size_t i = pixel; i < pixel + width; ++i)
+                    count += pass.endOf[i] - pass.firstOf[i];
+            }
+            paths.push_back(count);
+        }
+        return paths;
+    }
+
+    std::size_t pixelOf(int x, int y) const {
+        return static_cast<std::size_t>(y - crop_.y0) * static_cast<std::size_t>(crop_.width()) +
+               static_cast<std::size_t>(x - crop_.x0);
     }
 
     std::vector<PathJob> jobsOf(const Film::Window& tile, const Pass& pass) const {
@@ -230,9 +275,7 @@ private:
                 auto first = static_cast<std::uint32_t>(pass.first);
                 auto end = static_cast<std::uint32_t>(pass.end);
                 if (!pass.endOf.empty()) {
-                    const auto pixel = static_cast<std::size_t>(y - crop_.y0) *
-                                           static_cast<std::size_t>(crop_.width()) +
-                                       static_cast<std::size_t>(x - crop_.x0);
+                    const std::size_t pixel = pixelOf(x, y);
                     first = pass.firstOf[pixel], end = pass.endOf[pixel];
                 }
                 for (std::uint32_t s = first; s < end; ++s) jobs.push_back({x, y, s});
@@ -240,9 +283,9 @@ private:
         return jobs;
     }
 
-    bool renderTile(const Film::Window& tile, const Pass& pass,
-                    const std::function<bool()>& stopping) {
-        const std::vector<PathJob> jobs = jobsOf(tile, pass);
+    bool renderTile(std::size_t tile, const Pass& pass, const std::function<bool()>& stopping) {
+        const auto tileStart = Clock::now();
+        const std::vector<PathJob> jobs = jobsOf(tiles_[tile], pass);
         std::vector<PathResult> results(jobs.size());
         const auto tracer = PathTracer::make(
             scene_, needs_,
@@ -256,9 +299,9 @@ private:
                 film_.add(jobs[i].x, jobs[i].y, results[i].depth);
             if (results[i].catcher.weight > 0) film_.add(jobs[i].x, jobs[i].y, results[i].catcher);
         }
-        pathsDone_ += jobs.size();
         const std::lock_guard lock(countersMutex_);
         add(counters_, tracer->counters());
+        work_.finish(tile, secondsSince(tileStart));
         return true;
     }
 
@@ -273,16 +316,17 @@ private:
     Film film_;
     std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
     std::vector<std::uint32_t> counts_;  // and what the pixels have by it
-    std::vector<Film::Window> tiles_;
-    std::uint64_t pathsPerSample_ = 0;
+    const std::vector<Film::Window> tiles_;
     const Clock::time_point start_ = Clock::now();
+    double lookSeconds_ = 0, sinceLook_ = 0;
     StopReason reason_ = StopReason::Complete;
     std::atomic<bool> stop_{false};
-    std::atomic<std::uint64_t> pathsDone_{0};
     std::atomic<int> completeSamples_{0};
     std::atomic<double> noise_{std::numeric_limits<double>::infinity()};
-    std::mutex countersMutex_;
+    std::mutex countersMutex_;  // of what follows
     RenderCounters counters_;
+    WorkEstimate work_;
+    double fractionTold_ = 0;
 };
 
 }  // namespace

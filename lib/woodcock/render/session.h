@@ -22,7 +22,9 @@ struct RenderSettings {
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
     Approximations approximations;
-    bool adaptive = false;       ///< samples go where the error is largest: see SamplePlan
+    /// Samples go where the error is largest, for the work of [firstSample, endSample) in every
+    /// pixel: see SamplePlan.
+    bool adaptive = false;
     int threads = 0;             ///< 0: all cores
     double timeLimit = 0;        ///< seconds; 0: none. The first sample is always whole.
     double noise = 0;            ///< stop once Film::noise() is below it; 0: never
@@ -34,8 +36,8 @@ struct RenderProgress {
     double fraction = 0;     ///< of the planned work, 0 to 1
     double seconds = 0;      ///< since the render began
     double secondsLeft = 0;  ///< estimate
-    int samples = 0;         ///< per pixel, complete so far
-    ///< Film::noise() after the last complete pass; infinite before
+    int samples = 0;         ///< per pixel (or as much work), complete so far
+    ///< Film::noise() after a complete pass, mostly the last; infinite before
     double noise = std::numeric_limits<double>::infinity();
 };
 
@@ -45,8 +47,8 @@ struct RenderResult {
     Film film;
     Needs needs;
     StopReason reason = StopReason::Complete;
-    /// Samples [firstSample, endSample) are complete in every pixel; of an adaptive render, the
-    /// mean over pixels.
+    /// Samples [firstSample, endSample) are complete in every pixel; of an adaptive render, as much
+    /// work is.
     int endSample = 0;
     double seconds = 0;
     RenderCounters counters;

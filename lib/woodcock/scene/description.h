@@ -268,9 +268,11 @@ struct RenderDescription {
     /// Biased: grids are coarsened by powers of two as long as their voxels, where they are next to
     /// the camera, stay below so many pixels; 0: never.
     double levelOfDetail = 0;
-    bool adaptive = false;     ///< samples go where the error is largest
+    /// Samples go where the error is largest; absent: in whole pictures, not in parts that have to
+    /// fit others.
+    std::optional<bool> adaptive;
     double timeLimit = 0;      ///< seconds; 0: none
-    double noise = 0;          ///< mean relative standard error to stop at; 0: none
+    double noise = 0;          ///< Film::noise() to stop at; 0: none
     double majorantScale = 1;  ///< 1 to 1000; loosens the majorants: for experiments
     bool operator==(const RenderDescription&) const = default;
 };

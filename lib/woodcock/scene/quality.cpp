@@ -30,13 +30,16 @@ bool isReducedPrecision(Storage storage) {
 
 const std::vector<RenderChoice>& qualityChoices(Quality quality) {
     static const std::array<std::vector<RenderChoice>, 4> choices{
-        {{{"similarity_after", "0"}, {"storage", "\"half\""}, {"transparent_shadows", "true"}},
+        {{{"similarity_after", "0"},
+          {"storage", "\"half\""},
+          {"transparent_shadows", "true"},
+          {"adaptive", "true"}},
          {{"similarity_after", "4"},
           {"storage", "\"half\""},
           {"transparent_shadows", "true"},
           {"adaptive", "true"}},
          {{"adaptive", "true"}},
-         {{"storage", "\"float\""}}}};
+         {{"storage", "\"float\""}, {"adaptive", "false"}}}};
     return choices[static_cast<std::size_t>(quality)];
 }
 

@@ -168,7 +168,7 @@ void write(SceneWriter& out, const RenderDescription& render) {
     if (render.lookup == Lookup::Nearest) out.line("lookup", "\"nearest\"");
     if (render.levelOfDetail != 0)
         out.line("level_of_detail", tomlNumber(render.levelOfDetail), "pixels");
-    if (render.adaptive) out.line("adaptive", "true");
+    if (render.adaptive) out.line("adaptive", *render.adaptive ? "true" : "false");
     if (render.timeLimit != 0) out.line("time_limit", tomlNumber(render.timeLimit), "seconds");
     if (render.noise != 0) out.line("noise", tomlNumber(render.noise));
     if (render.majorantScale != 1) out.line("majorant_scale", tomlNumber(render.majorantScale));

@@ -59,6 +59,7 @@ public:
         r.seeds = static_cast<int>(m_.reference.size());
         for (const Stage& seed : m_.reference) r.samples += seed.samples, r.seconds += seed.seconds;
         r.error = errorOfMean(reference_, weights_);
+        r.noiseShare = noiseShare(r.error.value);
         for (int c = 0; c < 3; ++c)
             r.mean[static_cast<std::size_t>(c)] = channelMean(reference_, c);
 
@@ -71,6 +72,15 @@ public:
     }
 
 private:
+    /// `error`: of the mean of the reference's seeds.
+    double noiseShare(double error) const {
+        double square = 0;
+        for (const Stage& seed : m_.reference) square += seed.noise * seed.noise;
+        const auto seeds = static_cast<double>(m_.reference.size());
+        const double share = square / seeds / (error * seeds);
+        return std::isfinite(share) && share > 0 ? share : 1;
+    }
+
     CandidateResult evaluate(const OfCandidate& m) const {
         CandidateResult r;
         r.candidate = m.candidate;

@@ -54,13 +54,6 @@ Pixels pixelsOf(const Film& film) {
     return pixels;
 }
 
-int meanSamples(const Film& film) {
-    double sum = 0;
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) sum += static_cast<double>(film.at(x, y).samples);
-    return std::max(1, static_cast<int>(std::lround(sum / film.width() / film.height())));
-}
-
 }  // namespace
 
 bool SceneStore::has(const SceneDescription& scene) const {
@@ -110,7 +103,7 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
         else
             film = std::move(result.film);
         done = count;
-        stages.push_back({meanSamples(*film), pixelsOf(*film), seconds, cpuSeconds});
+        stages.push_back({count, pixelsOf(*film), seconds, cpuSeconds, film->noise()});
     }
     return stages;
 }

@@ -64,9 +64,10 @@ using GoOn = std::function<bool()>;
 
 /// A picture after some number of samples, and what all up to then took.
 struct Stage {
-    int samples = 0;  ///< per pixel, in the mean
+    int samples = 0;  ///< per pixel, or as much work
     Pixels pixels;
     double seconds = 0, cpuSeconds = 0;
+    double noise = 0;  ///< Film::noise()
 };
 /// Renders `samples` samples per pixel; the stages are at these counts, which rise. Absent where
 /// `goOn` said no.

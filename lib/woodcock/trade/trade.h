@@ -60,6 +60,7 @@ struct TradeReference {
     double seconds = 0;
     Measured error;
     std::array<Measured, 3> mean;
+    double noiseShare = 1;  ///< Film::noise()'s square over relMSE, of a picture of this scene
 };
 
 struct TradeCrop {
