@@ -31,9 +31,7 @@ double renderOurs(const Scene& scene, const SceneDescription& description,
     outputSettings.files = {file};
     outputSettings.layers = layersFromNames({"error"});
     const Outputs outputs(std::move(outputSettings));
-    RenderSettings settings = renderSettings(description.render);
-    settings.adaptive =
-        description.render.adaptive.value_or(false);  // as Cycles' pixels: all alike
+    const RenderSettings settings = renderSettings(description.render);
     Progress progress(style);
     progress.start(settings);
     const RenderResult result = woodcock::render(scene, settings, [&](const RenderProgress& now) {

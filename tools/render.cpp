@@ -170,8 +170,6 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
                              p.y0, p.x1, p.y1, render.width, render.height);
         settings.crop = Film::Window{p.x0, p.y0, p.x1, p.y1};
     }
-    // Parts are to fit the rest of their picture, which shares its samples out as a whole.
-    if (options.samples || options.crop) settings.adaptive = render.adaptive.value_or(false);
     if (settings.adaptive && options.samples)
         throw usageError(
             "{} and --samples contradict each other: how many samples a pixel gets follows from "

@@ -66,8 +66,7 @@ void addRendering(CLI::App& command, RenderOptions& o) {
             ->type_name("FRACTION"),
         command.add_flag_function(
             "--adaptive,!--no-adaptive", [&o](std::int64_t times) { o.adaptive = times > 0; },
-            "More samples where the error is larger, fewer elsewhere, in the same time; on unless "
-            "you say otherwise, or ask for a part by --samples or --crop"),
+            "More samples where the error is larger, fewer elsewhere, in the same time"),
         addCount(command, "--threads", o.threads, 0, 4096, "0: one for each core")};
     for (CLI::Option* option : options) option->group("Rendering");
 }

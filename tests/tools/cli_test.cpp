@@ -76,21 +76,20 @@ TEST_F(Cli, RendersAVolumeToSeveralFiles) {
     EXPECT_GE(stats.at("counters").at("paths"), 16 * 8 * 2);
 }
 
-TEST_F(Cli, WholePicturesAreAdaptiveAndPartsAreNot) {
+TEST_F(Cli, AdaptiveSamplesAreAskedFor) {
     const auto isAdaptive = [&](std::vector<std::string> options) {
         options.insert(options.end(), {"--quiet", "--stats", file("stats.json")});
         const ProgramResult result = runProgram(render("smoke.vdb", options));
         EXPECT_EQ(result.exitCode, 0) << result.err;
         return nlohmann::json::parse(readText(file("stats.json"))).at("adaptive").get<bool>();
     };
-    EXPECT_TRUE(isAdaptive({"--spp", "16"}));
-    EXPECT_TRUE(isAdaptive({"--spp", "16", "--quality", "draft"}));
-    EXPECT_TRUE(isAdaptive({"--spp", "16", "--crop", "0,0,8,8", "--adaptive"}));
-    EXPECT_FALSE(isAdaptive({"--spp", "16", "--no-adaptive"}));
+    EXPECT_FALSE(isAdaptive({"--spp", "16"}));
+    EXPECT_TRUE(isAdaptive({"--spp", "16", "--adaptive"}));
+    EXPECT_TRUE(isAdaptive({"--spp", "16", "--quality", "final"}));
+    EXPECT_FALSE(isAdaptive({"--spp", "16", "--quality", "final", "--no-adaptive"}));
     EXPECT_FALSE(isAdaptive({"--spp", "16", "--quality", "reference"}));
-    EXPECT_FALSE(isAdaptive({"--spp", "16", "--set", "render.adaptive=false"}));
-    EXPECT_FALSE(isAdaptive({"--samples", "4:8"}));
-    EXPECT_FALSE(isAdaptive({"--spp", "16", "--crop", "0,0,8,8"}));
+    EXPECT_FALSE(
+        isAdaptive({"--samples", "4:8", "--set", "render.adaptive=true", "--no-adaptive"}));
 }
 
 TEST_F(Cli, SaysWhatItChoseAsTheSceneThatWouldFixIt) {

@@ -62,7 +62,7 @@ RenderSettings renderSettings(const RenderDescription& render) {
     settings.maxScatterings = render.maxScatterings;
     settings.maxBounces = render.maxBounces;
     settings.approximations = render.approximations;
-    settings.adaptive = render.adaptive.value_or(true);
+    settings.adaptive = render.adaptive.value_or(false);
     settings.timeLimit = render.timeLimit;
     settings.noise = render.noise;
     return settings;

@@ -268,8 +268,8 @@ struct RenderDescription {
     /// Biased: grids are coarsened by powers of two as long as their voxels, where they are next to
     /// the camera, stay below so many pixels; 0: never.
     double levelOfDetail = 0;
-    /// Samples go where the error is largest; absent: in whole pictures, not in parts that have to
-    /// fit others.
+    /// Samples go where the error is largest; absent: as false. Told apart, as what a scene says is
+    /// written again.
     std::optional<bool> adaptive;
     double timeLimit = 0;      ///< seconds; 0: none
     double noise = 0;          ///< Film::noise() to stop at; 0: none

@@ -97,7 +97,7 @@ SceneFacts sceneFacts(const SceneDescription& description, const Scene& scene) {
 std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent) {
     std::vector<Candidate> list{{"as the scene says", "", {}}};
     for (const std::string& quality : qualityNames) list.push_back({quality, quality, {}});
-    add(list, "even samples", "render.adaptive=false");
+    add(list, "adaptive", "render.adaptive=true");
     if (facts.grids) addMarching(list, extent);
     if (facts.scattering) addScatteringChoices(list, facts, extent);
     if (facts.grids) addFieldChoices(list, facts, extent);
