@@ -6,8 +6,12 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <mutex>
 #include <nlohmann/json.hpp>
+
+#include "print.h"
+#include "woodcock/base/printable.h"
 
 namespace woodcock::tool {
 
@@ -20,10 +24,31 @@ class JsonSink : public spdlog::sinks::base_sink<std::mutex> {
             {"level",
              fmt::to_string(fmt::string_view(spdlog::level::to_string_view(message.level)))},
             {"message", fmt::to_string(fmt::string_view(message.payload))}};
-        fmt::print(stderr, "{}\n",
-                   line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+        printProgress("{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
-    void flush_() override { std::fflush(stderr); }
+    void flush_() override {}
+};
+
+/// Names and texts of files are in messages: what could drive the terminal is spelled out, and
+/// nobody reads what fills more than a screen or two.
+class TextSink : public spdlog::sinks::base_sink<std::mutex> {
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        constexpr std::size_t longest = 16000, end = 2000;
+        const std::string_view said(message.payload.data(), message.payload.size());
+        std::string text = printableLines(said.substr(0, longest));
+        if (said.size() > longest)
+            text += "..." + printableLines(said.substr(std::max(longest, said.size() - end)));
+        spdlog::details::log_msg shownMessage = message;
+        shownMessage.payload = text;
+        terminal_.log(shownMessage);
+    }
+    void flush_() override { terminal_.flush(); }
+    void set_pattern_(const std::string& pattern) override { terminal_.set_pattern(pattern); }
+    void set_formatter_(std::unique_ptr<spdlog::formatter> formatter) override {
+        terminal_.set_formatter(std::move(formatter));
+    }
+
+    spdlog::sinks::stderr_color_sink_st terminal_;
 };
 
 }  // namespace
@@ -33,7 +58,7 @@ void setUpLog(LogStyle style, const std::string& level) {
     if (style == LogStyle::Json)
         sink = std::make_shared<JsonSink>();
     else
-        sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+        sink = std::make_shared<TextSink>();
     auto logger = std::make_shared<spdlog::logger>("woodcock", sink);
     logger->set_level(spdlog::level::from_str(level));
     if (style == LogStyle::Text) logger->set_pattern("%^%l%$: %v");

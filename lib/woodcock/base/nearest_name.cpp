@@ -8,6 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "woodcock/base/printable.h"
+
 namespace woodcock {
 namespace {
 
@@ -38,6 +40,8 @@ size_t editDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearestName(std::string_view word, std::span<const std::string> known) {
+    constexpr size_t longestWord = 100;  // what is longer is no slip of the pen
+    if (word.size() > longestWord) return {};
     std::string nearest;
     size_t fewest = std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& name : known) {
@@ -48,7 +52,13 @@ std::string nearestName(std::string_view word, std::span<const std::string> know
 }
 
 std::string joinNames(std::span<const std::string> names) {
-    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+    constexpr size_t longestText = 2000;
+    std::string text;
+    for (size_t i = 0; i < names.size(); ++i) {
+        if (text.size() > longestText) return fmt::format("{} and {} more", text, names.size() - i);
+        text += (i ? ", " : "") + shown(names[i]);
+    }
+    return text.empty() ? "none" : text;
 }
 
 std::string suggestName(std::string_view word, std::string_view label,

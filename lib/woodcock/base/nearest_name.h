@@ -12,7 +12,7 @@ namespace woodcock {
 /// equals. Empty when none is near, that is within a third of the letters.
 std::string nearestName(std::string_view word, std::span<const std::string> known);
 
-/// "a, b, c", or "none" where there is nothing to list.
+/// "a, b, c", or "none" where there is nothing to list; "a, b and 98 more" where there is too much.
 std::string joinNames(std::span<const std::string> names);
 
 /// The end of a message about an unknown name: "; did you mean 'albedo'? known keys: albedo, file".
