@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/annotate_exr.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/image/openimageio_input.h"
 
 namespace woodcock {
 
 void annotateExr(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<std::pair<std::string, ImageAttribute>>& attributes) {
-    const auto input = OIIO::ImageInput::open(from.string());
-    if (!input) throw inputError("cannot read image '{}': {}", from.string(), OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.deep || spec.depth > 1)
-        throw inputError("cannot read image '{}': it has no flat pixels", from.string());
+    OpenImage input(from);
+    const OIIO::ImageSpec& spec = input.spec();
     std::vector<float> pixels(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
-        throw inputError("cannot read image '{}': {}", from.string(), input->geterror());
+    input.read(pixels.data());
 
     ImageHeader header{"openexr",
                        {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height},

@@ -1,31 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/read_image.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 
 #include "woodcock/base/error.h"
-#include "woodcock/base/memory.h"
+#include "woodcock/image/openimageio_input.h"
 
 namespace woodcock {
 
 namespace {
-
-using Input = std::unique_ptr<OIIO::ImageInput>;
-
-Input open(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
-        throw inputError("cannot read image '{}': there is no such file", file.string());
-    if (std::filesystem::is_directory(file, ignored))
-        throw inputError("cannot read image '{}': it is a directory", file.string());
-    OIIO::ImageSpec asItIs;  // else colours come multiplied by alpha, in the file's own space
-    asItIs.attribute("oiio:UnassociatedAlpha", 1);
-    Input input = OIIO::ImageInput::open(file.string(), &asItIs);
-    if (!input) throw inputError("cannot read image '{}': {}", file.string(), OIIO::geterror());
-    return input;
-}
 
 /// Where R, G and B are among the channels; all the same for a grey image.
 std::array<int, 3> colourChannels(const OIIO::ImageSpec& spec) {
@@ -54,22 +37,12 @@ void refuseWhatIsNoLight(const Image& image, const std::filesystem::path& file) 
 }  // namespace
 
 Image readImage(const std::filesystem::path& file) {
-    const Input input = open(file);
-    const OIIO::ImageSpec& spec = input->spec();
+    OpenImage input(file);
+    const OIIO::ImageSpec& spec = input.spec();
     const auto channels = static_cast<std::size_t>(spec.nchannels);
     const auto pixels = static_cast<std::size_t>(spec.image_pixels());
-    if (pixels * channels == 0 || spec.deep || spec.depth > 1)
-        throw inputError("cannot read image '{}': it has no flat pixels", file.string());
-    const double bytes =
-        static_cast<double>(pixels) * static_cast<double>(channels + 3) * sizeof(float);
-    if (const auto limit = static_cast<double>(memoryLimit()); bytes > limit)
-        throw inputError(
-            "cannot read image '{}': {} x {} with {} channels need {} of memory, and "
-            "there is {}",
-            file.string(), spec.width, spec.height, channels, formatGiB(bytes), formatGiB(limit));
     std::vector<float> all(pixels * channels);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data()))
-        throw inputError("cannot read image '{}': {}", file.string(), input->geterror());
+    input.read(all.data());
 
     Image image{spec.width, spec.height, std::vector<float>(pixels * 3)};
     const std::array<int, 3> from = colourChannels(spec);

@@ -22,9 +22,9 @@ struct Image {
     }
 };
 
-/// Reads an image as light: any format of OpenImageIO, one channel meaning grey, alpha and further
-/// channels ignored, numbers taken as they are. Throws Error{Input} on a file that cannot be read,
-/// and on negative, NaN or infinite values, with their count and the first one's place.
+/// Reads an image as light: any format that OpenImage takes, one channel meaning grey, alpha and
+/// further channels ignored, numbers taken as they are. Throws Error{Input} on a file that cannot
+/// be read, and on negative, NaN or infinite values, with their count and the first one's place.
 Image readImage(const std::filesystem::path& file);
 
 }  // namespace woodcock

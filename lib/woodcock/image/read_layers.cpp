@@ -1,37 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/read_layers.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "woodcock/base/error.h"
-#include "woodcock/base/memory.h"
 #include "woodcock/base/printable.h"
+#include "woodcock/image/openimageio_input.h"
 
 namespace woodcock {
 
 namespace {
-
-using Input = std::unique_ptr<OIIO::ImageInput>;
-
-Error unreadable(const std::filesystem::path& file, const std::string& reason) {
-    return inputError("cannot read image '{}': {}", file.string(), reason);
-}
-
-Input open(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) throw unreadable(file, "there is no such file");
-    if (std::filesystem::is_directory(file, ignored)) throw unreadable(file, "it is a directory");
-    OIIO::ImageSpec wish;
-    wish.attribute("oiio:UnassociatedAlpha", 1);  // multiplying encoded colour would be wrong
-    Input input = OIIO::ImageInput::open(file.string(), &wish);
-    if (!input) throw unreadable(file, OIIO::geterror());
-    return input;
-}
 
 Film::Window windowOf(const OIIO::ImageSpec& spec) {
     const int x = spec.x - spec.full_x, y = spec.y - spec.full_y;
@@ -69,21 +50,12 @@ std::string prefixOf(const OIIO::ImageSpec& spec, int part) {
     return (name.empty() ? fmt::format("part{}", part) : name) + ".";
 }
 
-void readPart(OIIO::ImageInput& input, int part, LayeredImage& image) {
-    const OIIO::ImageSpec spec = input.spec();
-    if (spec.deep || spec.depth > 1 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
-        throw unreadable(image.file, "it has no flat pixels");
-    const double bytes =
-        8.0 * static_cast<double>(spec.width) * static_cast<double>(spec.height) * spec.nchannels;
-    if (bytes > 0.5 * static_cast<double>(memoryLimit()))
-        throw unreadable(image.file,
-                         fmt::format("its {} x {} pixels of {} channels need {} of memory",
-                                     spec.width, spec.height, spec.nchannels, formatGiB(bytes)));
+void readPart(OpenImage& input, int part, LayeredImage& image) {
+    const OIIO::ImageSpec& spec = input.spec();
     const std::size_t channels = static_cast<std::size_t>(spec.nchannels),
                       pixels = static_cast<std::size_t>(spec.image_pixels());
     std::vector<float> all(pixels * channels);
-    if (!input.read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data()))
-        throw unreadable(image.file, input.geterror());
+    input.read(all.data());
     const std::string prefix = prefixOf(spec, part);
     for (std::size_t c = 0; c < channels; ++c) {
         ImagePlane plane = planeOf(printable(prefix + spec.channelnames[c]));
@@ -127,8 +99,8 @@ std::optional<double> LayeredImage::number(const std::string& fact) const {
 }
 
 LayeredImage readLayers(const std::filesystem::path& file) {
-    const Input input = open(file);
-    const OIIO::ImageSpec first = input->spec();
+    OpenImage input(file);
+    const OIIO::ImageSpec first = input.spec();
     LayeredImage image;
     image.file = file;
     image.width = first.full_width, image.height = first.full_height;
@@ -137,15 +109,13 @@ LayeredImage readLayers(const std::filesystem::path& file) {
     image.straightAlpha = first.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     image.facts = factsOf(first);
     // Only EXR's parts belong together; other formats keep thumbnails and pages there.
-    const bool parts = std::string_view(input->format_name()) == "openexr";
-    for (int part = 0; part == 0 || (parts && input->seek_subimage(part, 0)); ++part) {
-        const OIIO::ImageSpec spec = input->spec();
+    for (int part = 0; part == 0 || (input.isExr() && input.goTo(part)); ++part) {
+        const OIIO::ImageSpec& spec = input.spec();
         if (spec.full_width != image.width || spec.full_height != image.height ||
             windowOf(spec) != image.window)
-            throw unreadable(file, fmt::format("its part {} has another window than the first, "
-                                               "which is not supported",
-                                               part));
-        readPart(*input, part, image);
+            throw input.unreadable(fmt::format(
+                "its part {} has another window than the first, which is not supported", part));
+        readPart(input, part, image);
     }
     return image;
 }

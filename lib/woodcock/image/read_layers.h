@@ -41,8 +41,8 @@ struct LayeredImage {
     std::optional<double> number(const std::string& fact) const;
 };
 
-/// Reads every channel of every part, by any format of OpenImageIO. Integers come as 0..1; NaN and
-/// infinite values stay. A part beyond the first has its name before its channels'. Throws
+/// Reads every channel of every part, of any format that OpenImage takes. Integers come as 0..1;
+/// NaN and infinite values stay. A part beyond the first has its name before its channels'. Throws
 /// Error{Input} where the file cannot be read, holds deep or volumetric pixels or parts of
 /// different windows, or does not fit into memory.
 LayeredImage readLayers(const std::filesystem::path& file);

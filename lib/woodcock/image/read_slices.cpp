@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/read_slices.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/image/openimageio_input.h"
 
 namespace woodcock {
 
@@ -88,18 +87,6 @@ void requireNoGaps(const std::map<std::uint64_t, fs::path>& slices, const fs::pa
                          gaps > 10 ? " and more" : "");
 }
 
-std::unique_ptr<OIIO::ImageInput> open(const fs::path& file) {
-    // Numbers as they are: colours are not multiplied by an alpha.
-    OIIO::ImageSpec asIs;
-    asIs["oiio:UnassociatedAlpha"] = 1;
-    auto input = OIIO::ImageInput::open(file.string(), &asIs);
-    if (!input) throw inputError("cannot read slice '{}': {}", file.string(), OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.deep || spec.depth > 1 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
-        throw inputError("cannot read slice '{}': it is no flat picture", file.string());
-    return input;
-}
-
 void prepare(Slices& slices, const OIIO::ImageSpec& spec, const fs::path& pattern) {
     slices.width = spec.width;
     slices.height = spec.height;
@@ -131,8 +118,8 @@ Slices readSlices(const fs::path& pattern, const std::function<void(double)>& re
     float* to = nullptr;
     std::uint64_t done = 0;
     for (const auto& [number, file] : files) {
-        const auto input = open(file);
-        const OIIO::ImageSpec& spec = input->spec();
+        OpenImage input(file, "slice");
+        const OIIO::ImageSpec& spec = input.spec();
         if (done == 0) {
             prepare(slices, spec, pattern);
             to = slices.values.data();
@@ -143,8 +130,7 @@ Slices readSlices(const fs::path& pattern, const std::function<void(double)>& re
                              file.string(), spec.width, spec.height, spec.nchannels,
                              files.begin()->second.string(), slices.width, slices.height,
                              slices.channels);
-        if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, to))
-            throw inputError("cannot read slice '{}': {}", file.string(), input->geterror());
+        input.read(to);
         to += slices.values.size() / slices.count;
         if (report)
             report(static_cast<double>(++done) / static_cast<double>(slices.count));

@@ -22,10 +22,11 @@ struct Slices {
 /// True for a file name with ## or %04d where a number goes.
 bool hasSliceNumber(const std::filesystem::path& pattern);
 
-/// Reads all files of the pattern, by OpenImageIO: `slice.####.png`, one # for each digit at least,
-/// or `slice.%04d.png`. `report` is called with the share that is done; what it throws ends the
-/// reading. Errors: Input where there are no such files, numbers are missing in between (naming
-/// them), sizes or channels differ, a file cannot be read, or memory does not suffice.
+/// Reads all files of the pattern, of the formats that OpenImage takes: `slice.####.png`, one # for
+/// each digit at least, or `slice.%04d.png`. `report` is called with the share that is done; what
+/// it throws ends the reading. Errors: Input where there are no such files, numbers are missing in
+/// between (naming them), sizes or channels differ, a file cannot be read, or memory does not
+/// suffice.
 Slices readSlices(const std::filesystem::path& pattern,
                   const std::function<void(double)>& report = {});
 

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/read_texture.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "woodcock/base/error.h"
+#include "woodcock/image/openimageio_input.h"
 
 namespace woodcock {
 
 namespace {
 
 bool holdsFloats(const std::filesystem::path& file) {
-    const auto input = OIIO::ImageInput::open(file.string());
-    return input && input->spec().format.is_floating_point();
+    return OpenImage(file).spec().format.is_floating_point();
 }
 
 bool isPlain(const std::string& space) {
