@@ -49,7 +49,9 @@ const std::map<std::string, std::set<std::string>> roomsOfLibrary{
     {"OpenImageIO", {"image"}},
     {"OpenColorIO", {"image"}}};
 bool bearsName(const fs::path& header) {
-    return header.filename().string().starts_with("openvdb_");
+    const std::string name = header.filename().string();
+    return name.starts_with("openvdb_") || name.starts_with("openimageio_") ||
+           name.starts_with("opencolorio_");
 }
 
 std::vector<std::string> violations(const fs::path& lib) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cmath>
@@ -212,14 +213,17 @@ TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
         return test::messageOf(ErrorKind::Input, [&] { ColorConfig config(file); });
     };
     EXPECT_EQ(message("/nowhere/config.ocio"),
-              "cannot read the OpenColorIO config '/nowhere/config.ocio'");
+              "cannot read the OpenColorIO config '/nowhere/config.ocio': there is no such file");
     EXPECT_NE(message(write("3.0")).find("is of version 3.0; this build's OpenColorIO"),
               std::string::npos);
     test::writeText(dir_ / "no.ocio", "ocio_profile_version: 2\nroles: [\n");
     EXPECT_NE(message(dir_ / "no.ocio").find("no.ocio' cannot be used: "), std::string::npos);
 
     const test::EnvironmentVariable variable("OCIO", "/nowhere/config.ocio");
-    EXPECT_EQ(message({}), "cannot read the OpenColorIO config '/nowhere/config.ocio' (of $OCIO)");
+    EXPECT_EQ(
+        message({}),
+        "cannot read the OpenColorIO config of $OCIO '/nowhere/config.ocio': there is no such "
+        "file");
 }
 
 TEST_F(ConfigWithTables, AMissingTableIsNamed) {
@@ -233,4 +237,127 @@ TEST_F(ConfigWithTables, AMissingTableIsNamed) {
 }
 
 }  // namespace
+/// A config with these looks, colour spaces and views beside the plain ones.
+class HostileConfig : public testing::Test {
+protected:
+    std::string refusal(const std::string& spaces, const std::string& looks = "",
+                        const std::string& views = "") const {
+        test::writeText(dir_ / "c.ocio",
+                        "ocio_profile_version: 2\nenvironment: {}\n"
+                        "search_path: .\nroles: {default: lin, scene_linear: lin}\n"
+                        "file_rules:\n  - !<Rule> {name: Default, colorspace: lin}\n"
+                        "displays:\n  sRGB:\n    - !<View> {name: A, colorspace: "
+                        "lin}\n" +
+                            views + "looks:\n" + looks +
+                            "  - !<Look> {name: plain, process_space: lin}\n"
+                            "colorspaces:\n  - !<ColorSpace> {name: lin}\n"
+                            "  - !<ColorSpace> {name: log}\n" +
+                            spaces);
+        return test::messageOf(ErrorKind::Input, [&] {
+            const ColorConfig config(dir_ / "c.ocio");
+            config.displayTransform({});
+        });
+    }
+    static std::string space(const std::string& name, const std::string& transform) {
+        return fmt::format("  - !<ColorSpace>\n    name: {}\n    from_scene_reference: {}\n", name,
+                           transform);
+    }
+    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const test::TempDir dir_;
+};
+
+TEST_F(HostileConfig, CirclesAreRefused) {
+    const auto expectCircle = [](const std::string& message, const std::string& circle) {
+        EXPECT_NE(message.find("leads in a circle: " + circle), std::string::npos) << message;
+    };
+    EXPECT_EQ(refusal(""), "no error");
+    expectCircle(refusal("",
+                         "  - !<Look> {name: warm, process_space: lin, transform: "
+                         "!<LookTransform> {src: lin, dst: lin, looks: warm}}\n"),
+                 "look 'warm' -> look 'warm'");
+    expectCircle(refusal("",
+                         "  - !<Look> {name: a, process_space: lin, transform: "
+                         "!<LookTransform> {src: lin, dst: lin, looks: \"plain, -b\"}}\n"
+                         "  - !<Look> {name: b, process_space: lin, transform: "
+                         "!<LookTransform> {src: lin, dst: lin, looks: +a}}\n"),
+                 "look 'a' -> look 'b' -> look 'a'");
+    expectCircle(refusal(space("self", "!<ColorSpaceTransform> {src: lin, dst: self}")),
+                 "colour space 'self' -> colour space 'self'");
+    expectCircle(refusal(space("one",
+                               "!<GroupTransform> {children: [!<ColorSpaceTransform> {src: "
+                               "lin, dst: two}]}") +
+                         space("two", "!<ColorSpaceTransform> {src: one, dst: lin}")),
+                 "colour space 'one' -> colour space 'two' -> colour space 'one'");
+    expectCircle(refusal(space("shown",
+                               "!<DisplayViewTransform> {src: lin, display: sRGB, view: "
+                               "Round}"),
+                         "", "    - !<View> {name: Round, colorspace: shown}\n"),
+                 "colour space 'shown' -> view 'sRGB/Round' -> colour space 'shown'");
+    expectCircle(refusal(space("graded", "!<LookTransform> {src: lin, dst: lin, looks: own}"),
+                         "  - !<Look> {name: own, process_space: graded}\n"),
+                 "colour space 'graded' -> look 'own' -> colour space 'graded'");
+}
+
+TEST_F(HostileConfig, ReferencesThatLeadSomewhereAreFollowed) {
+    std::string spaces = space("c0", "!<MatrixTransform> {offset: [0.1, 0.1, 0.1, 0]}");
+    for (int i = 1; i < 20; ++i)
+        spaces += space(fmt::format("c{}", i),
+                        fmt::format("!<ColorSpaceTransform> {{src: lin, dst: c{}}}", i - 1));
+    EXPECT_EQ(refusal(spaces), "no error");
+}
+
+TEST_F(HostileConfig, WhatTakesTooManyStepsIsRefused) {
+    const auto group = [](const std::string& a) {
+        return fmt::format("!<GroupTransform> {{children: [{0}, {0}]}}", a);
+    };
+    std::string doubling = space("c0", "!<MatrixTransform> {offset: [0.1, 0.1, 0.1, 0]}"),
+                chain = doubling;
+    std::string aliases =
+        space("c0", "&a0 " + group("!<MatrixTransform> {offset: [0.1, 0.1, 0.1, 0]}"));
+    for (int i = 1; i < 40; ++i) {
+        const std::string to = fmt::format("!<ColorSpaceTransform> {{src: lin, dst: c{}}}", i - 1);
+        doubling += space(fmt::format("c{}", i), group(to));
+        aliases += space(fmt::format("c{}", i),
+                         fmt::format("&a{} {}", i, group(fmt::format("*a{}", i - 1))));
+    }
+    for (int i = 1; i < 3000; ++i)
+        chain += space(fmt::format("c{}", i),
+                       fmt::format("!<ColorSpaceTransform> {{src: lin, dst: c{}}}", i - 1));
+    EXPECT_NE(refusal(doubling).find("takes more than 100000 steps"), std::string::npos);
+    EXPECT_NE(refusal(aliases).find("aliases stand for more than 100000"), std::string::npos);
+    std::string reversed;  // the last one first, as one that is met first is followed first
+    for (int i = 2999; i > 0; --i)
+        reversed += space(fmt::format("c{}", i),
+                          fmt::format("!<ColorSpaceTransform> {{src: lin, dst: c{}}}", i - 1));
+    EXPECT_NE(refusal(reversed + space("c0", "!<MatrixTransform> {offset: [0.1, 0.1, 0.1, 0]}"))
+                  .find("through more than 100 others"),
+              std::string::npos);
+}
+
+TEST_F(HostileConfig, TablesAreRegularFiles) {
+    ASSERT_EQ(mkfifo((dir_ / "pipe.cube").c_str(), 0600), 0);
+    std::filesystem::create_symlink("/dev/zero", dir_ / "zero.cube");
+    EXPECT_NE(refusal(space("t", "!<FileTransform> {src: pipe.cube}")).find("it is a pipe"),
+              std::string::npos);
+    EXPECT_NE(refusal(space("t", "!<FileTransform> {src: zero.cube}")).find("it is a device"),
+              std::string::npos);
+    test::writeText(dir_ / "a.ctf",
+                    "<ProcessList version=\"2\" id=\"a\"><Reference path=\"pipe.cube\" "
+                    "inBitDepth=\"32f\" outBitDepth=\"32f\"/></ProcessList>");
+    EXPECT_NE(refusal(space("t", "!<FileTransform> {src: a.ctf}")).find("it is a pipe"),
+              std::string::npos);
+}
+
+TEST_F(HostileConfig, NumbersBeyondAllBoundsAreRefusedInWords) {
+    for (const std::string version : {"9223372036854775807", "99999999999999999999.5"}) {
+        test::writeText(dir_ / "v.ocio", "ocio_profile_version: " + version + "\n");
+        test::expectError(ErrorKind::Input, "v.ocio' is of version ",
+                          [&] { ColorConfig config(dir_ / "v.ocio"); });
+    }
+    // A million digits took all of the stack.
+    test::writeText(dir_ / "v.ocio", "ocio_profile_version: " + std::string(1000000, '1') + "\n");
+    test::expectError(ErrorKind::Input, "v.ocio' is of version ",
+                      [&] { ColorConfig config(dir_ / "v.ocio"); });
+}
+
 }  // namespace woodcock

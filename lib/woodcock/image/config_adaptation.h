@@ -28,4 +28,8 @@ struct AdaptedConfig {
 AdaptedConfig adaptConfig(std::string_view text, ConfigVersion library,
                           const std::vector<std::string>& known);
 
+/// How many nodes a YAML text stands for at most once its aliases (*name) are what their anchors
+/// (&name) hold: aliases of aliases multiply.
+double yamlExpansion(std::string_view text);
+
 }  // namespace woodcock

@@ -7,8 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -16,7 +14,9 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
+#include "woodcock/base/regular_file.h"
 #include "woodcock/image/config_adaptation.h"
+#include "woodcock/image/opencolorio_graph.h"
 
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -33,6 +33,7 @@ struct ColorConfig::Impl {
     OCIO::ConstConfigRcPtr config;
     std::string origin;  ///< for messages
     std::string note;
+    std::vector<std::filesystem::path> files;
     std::string version;               ///< that the config claims
     std::vector<std::string> missing;  ///< built-in transforms that it uses and the library lacks
 
@@ -57,13 +58,7 @@ std::vector<std::string> builtinStyles() {
     return styles;
 }
 
-std::string readText(const std::filesystem::path& file, const std::string& origin) {
-    std::error_code ignored;
-    std::ifstream in(file, std::ios::binary);
-    if (!in || std::filesystem::is_directory(file, ignored))
-        throw inputError("cannot read the OpenColorIO config {}", origin);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
+constexpr std::uint64_t largestConfig = 64 << 20;
 
 /// Keys that only later versions know are no news while such a config is read.
 class SilentOcio {
@@ -76,6 +71,12 @@ public:
 private:
     OCIO::LoggingLevel before_ = OCIO::GetLoggingLevel();
 };
+
+/// An archive, or what "ocio://" names.
+OCIO::ConstConfigRcPtr archived(const std::string& name) {
+    if (!name.starts_with("ocio://")) RegularFile(name, "the OpenColorIO config");
+    return OCIO::Config::CreateFromFile(name.c_str());
+}
 
 /// Archives and "ocio://" names are OpenColorIO's own business (2.2 and later).
 bool isPlainFile(const std::string& name) {
@@ -160,6 +161,11 @@ void ColorConfig::Impl::parse(const std::string& text, const std::filesystem::pa
             "the OpenColorIO config {} is of version {}; this build's OpenColorIO {} reads "
             "versions up to {}.{}",
             origin, version, OCIO::GetVersion(), library.major, library.minor);
+    if (constexpr double mostNodes = 100000; yamlExpansion(text) > mostNodes)
+        throw inputError(
+            "the OpenColorIO config {} cannot be used: its YAML aliases stand for more than {:.0f} "
+            "nodes",
+            origin, mostNodes);
     std::istringstream stream(text);
     std::optional<SilentOcio> silence;
     if (wanted > library) {
@@ -234,18 +240,25 @@ std::shared_ptr<const ColorConfig::Impl> ColorConfig::load(const std::filesystem
         if (name.empty())
             impl->parse(std::string(shippedOcioConfig), {});
         else if (isPlainFile(name))
-            impl->parse(readText(name, impl->origin),
+            impl->parse(readRegularFile(name,
+                                        fromVariable ? "the OpenColorIO config of $OCIO"
+                                                     : "the OpenColorIO config",
+                                        largestConfig),
                         std::filesystem::absolute(name).parent_path());
         else if (libraryVersion() >= ConfigVersion{2, 2})
-            impl->config = OCIO::Config::CreateFromFile(name.c_str());
+            impl->config = archived(name);
         else
             throw inputError(
                 "the OpenColorIO config {} needs OpenColorIO 2.2; this build has {}: name a "
                 "config.ocio file instead",
                 impl->origin, OCIO::GetVersion());
-    } catch (const OCIO::Exception& e) {
+        impl->files = checkConfigGraph(*impl->config, impl->origin);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& e) {  // OpenColorIO's, of its YAML, and of its numbers
         throw inputError("the OpenColorIO config {} cannot be used: {}", impl->origin, e.what());
     }
+    if (!name.empty()) impl->files.emplace_back(name);
     if (!impl->config->hasRole(OCIO::ROLE_SCENE_LINEAR) ||
         !impl->config->getColorSpace(OCIO::ROLE_SCENE_LINEAR))
         throw inputError(
@@ -253,6 +266,8 @@ std::shared_ptr<const ColorConfig::Impl> ColorConfig::load(const std::filesystem
             impl->origin);
     return impl;
 }
+
+const std::vector<std::filesystem::path>& ColorConfig::files() const { return impl_->files; }
 
 const std::string& ColorConfig::note() const { return impl_->note; }
 
@@ -270,7 +285,7 @@ DisplayTransform ColorConfig::displayTransform(const DisplaySettings& settings) 
         const auto cpu = pipeline(chosen)->getProcessor(impl_->config)->getDefaultCPUProcessor();
         return DisplayTransform(
             std::make_shared<DisplayTransform::Processor>(DisplayTransform::Processor{cpu}));
-    } catch (const OCIO::Exception& e) {
+    } catch (const std::exception& e) {
         throw impl_->cannotShow(chosen, e.what());
     }
 }
@@ -285,7 +300,7 @@ void ColorConfig::toSceneLinear(std::span<float> rgb, const std::string& space) 
             config.getProcessor(space.c_str(), OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor();
         OCIO::PackedImageDesc pixels(rgb.data(), static_cast<long>(rgb.size() / 3), 1, 3);
         if (!rgb.empty()) cpu->apply(pixels);
-    } catch (const OCIO::Exception& e) {
+    } catch (const std::exception& e) {
         throw inputError("the OpenColorIO config {} cannot convert from colour space '{}': {}",
                          impl_->origin, space, e.what());
     }

@@ -40,6 +40,9 @@ public:
     /// Error{Input} on one that cannot be used.
     explicit ColorConfig(const std::filesystem::path& file = {});
 
+    /// The files that it is read from: itself, where it is one, and its look-up tables.
+    const std::vector<std::filesystem::path>& files() const;
+
     /// What the user should know of it, say that some of its views need a newer OpenColorIO; empty:
     /// nothing.
     const std::string& note() const;
