@@ -249,5 +249,32 @@ TEST(MeshRead, DamagedFilesDoNoHarm) {
     EXPECT_GT(meshes, 100);
 }
 
+TEST(MeshRead, GltfThatNestsWithoutEndIsRefused) {
+    NEEDS_ASSIMP();
+    const TempDir dir;
+    const auto refused = [&](const std::string& scene, const char* why) {
+        const std::string text = "{\"asset\": {\"version\": \"2.0\"}, " + scene + "}";
+        writeText(dir / "a.gltf", text);
+        std::string binary = "glTF";
+        append(binary, std::uint32_t{2});
+        append(binary, static_cast<std::uint32_t>(20 + text.size()));
+        append(binary, static_cast<std::uint32_t>(text.size()));
+        writeText(dir / "a.glb", binary + "JSON" + text);
+        for (const char* name : {"a.gltf", "a.glb"})
+            expectError(ErrorKind::Input, why, [&] { readMesh(dir / name); });
+    };
+    std::string open, close, chain;
+    for (int i = 0; i < 100000; ++i) {
+        open += '[', close += ']';
+        chain += fmt::format("{{\"children\": [{}]}}, ", i + 1);
+    }
+    refused("\"extras\": " + open + close, "its JSON nests more than 200 levels deep");
+    refused("\"scene\": 0, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [" + chain + "{}]",
+            "its nodes follow each other more than 200 levels deep");
+    refused("\"scene\": 0, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [" + chain +
+                "{\"children\": [0]}]",
+            "its nodes lead in a circle");
+}
+
 }  // namespace
 }  // namespace woodcock::test

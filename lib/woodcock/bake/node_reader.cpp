@@ -88,7 +88,10 @@ std::size_t NodeReader::choice(std::string_view key, std::span<const std::string
     return value ? value->choice(key, known) : otherwise;
 }
 
-std::filesystem::path NodeReader::file(std::string_view key) { return need(key).path(base_); }
+std::filesystem::path NodeReader::file(std::string_view key) {
+    files_.push_back(need(key).path(base_));
+    return files_.back();
+}
 
 std::vector<TomlValue> NodeReader::list(std::string_view key, std::string_view expected) {
     return need(key).elements(expected);

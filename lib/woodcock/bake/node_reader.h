@@ -62,6 +62,7 @@ public:
 
     std::string placeOf(std::string_view key) { return need(key).place(); }
     std::vector<int> takeInputs() { return std::move(inputs_); }
+    const std::vector<std::filesystem::path>& files() const { return files_; }  ///< asked for
     void finish() const;
 
 private:
@@ -76,6 +77,7 @@ private:
     AddInput add_;
     std::vector<std::string> known_{"type"};
     std::vector<int> inputs_;
+    std::vector<std::filesystem::path> files_;
 };
 
 /// Makes the node that the table's `type` names. Errors: Input, with the place in the recipe.

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "woodcock/base/nearest_name.h"
+#include "woodcock/base/printable.h"
 
 namespace woodcock {
 
@@ -83,10 +84,13 @@ void ParameterSet::set(const std::string& name, double value, std::string_view o
 
 void ParameterSet::derive(const TomlTable& definitions) {
     std::set<std::string> open, done;
+    std::size_t depth = 0;
     std::function<void(const std::string&)> visit = [&](const std::string& name) {
         const TomlValue value = *definitions.find(name);
         if (done.contains(name)) return;
         if (!open.insert(name).second) throw value.error("needs itself");
+        constexpr std::size_t deepest = 100;  // each takes some of the stack
+        if (++depth > deepest) throw value.error("needs a chain of more than {} others", deepest);
         if (values_.contains(name)) throw value.error("is already a parameter");
         if (value.isText()) {
             mu::Parser parser = parser_->parser;
@@ -105,6 +109,7 @@ void ParameterSet::derive(const TomlTable& definitions) {
             throw value.error("cannot be a name: it is no plain word");
         }
         done.insert(name);
+        --depth;
     };
     for (const std::string& name : definitions.keys()) visit(name);
 }
@@ -124,11 +129,11 @@ double ParameterSet::evaluate(const std::string& expression, const TomlValue& wh
         std::vector<std::string> known;
         for (const auto& entry : values_) known.push_back(entry.first);
         if (e.GetCode() == mu::ecUNASSIGNABLE_TOKEN)
-            throw where.error("= \"{}\": unknown name '{}'{}", expression, e.GetToken(),
-                              suggestName(e.GetToken(), "known", known));
-        throw where.error("= \"{}\": {}", expression, e.GetMsg());
+            throw where.error("= \"{}\": unknown name '{}'{}", shown(expression),
+                              shown(e.GetToken()), suggestName(e.GetToken(), "known", known));
+        throw where.error("= \"{}\": {}", shown(expression), shown(e.GetMsg()));
     }
-    if (!std::isfinite(result)) throw where.error("= \"{}\" is {}", expression, result);
+    if (!std::isfinite(result)) throw where.error("= \"{}\" is {}", shown(expression), result);
     return result;
 }
 

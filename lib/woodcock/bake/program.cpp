@@ -26,6 +26,13 @@ int Program::add(const Graph& graph, int entry, int domain) {
     const auto d = static_cast<std::size_t>(domain), e = static_cast<std::size_t>(entry);
     if (stepOf_[d][e] >= 0) return stepOf_[d][e];
     const Graph::Entry& node = graph.entries[e];
+    // Nodes at moved points are steps anew for each move, and moves of moves multiply.
+    constexpr std::size_t mostSteps = 20000, mostNumbers = std::size_t{1} << 26;
+    if (steps_.size() >= mostSteps || stepOf_.size() * graph.entries.size() > mostNumbers)
+        throw inputError(
+            "{}: the recipe has too many steps for each point: a node counts once for each set of "
+            "moved points that it is asked at, and {} steps are the most",
+            node.place, mostSteps);
     if (node.stage) throw inputError("{}: needs grids, which only a bake makes", node.place);
     Step step{.entry = &node, .domain = domain};
     for (const int input : node.inputs) step.inputs.push_back(add(graph, input, domain));

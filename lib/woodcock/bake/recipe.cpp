@@ -7,6 +7,7 @@
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/bake/pointwise.h"
 #include "woodcock/base/nearest_name.h"
+#include "woodcock/base/printable.h"
 
 namespace woodcock {
 
@@ -127,7 +128,7 @@ private:
             if (recipe_->outputs[i].name == wanted && i != index)
                 recipe_->outputs[index].mask = static_cast<int>(i);
         if (!recipe_->outputs[index].mask)
-            throw mask.error("is no other output: '{}'{}", wanted,
+            throw mask.error("is no other output: '{}'{}", shown(wanted),
                              suggestName(wanted, "outputs", known));
         const auto target = static_cast<std::size_t>(*recipe_->outputs[index].mask);
         if (recipe_->outputs[target].mask)
@@ -148,14 +149,14 @@ private:
         const std::string name = value.text();
         const auto node = nodes_ ? nodes_->find(name) : std::nullopt;
         if (!node)
-            throw value.error("names no node: '{}'{}", name,
+            throw value.error("names no node: '{}'{}", shown(name),
                               suggestName(name, "nodes", nodeNames()));
         if (const auto known = entryOf_.find(name); known != entryOf_.end()) return known->second;
         for (std::size_t i = 0; i < open_.size(); ++i)
             if (open_[i] == name) {
                 std::string circle;
-                for (; i < open_.size(); ++i) circle += open_[i] + " -> ";
-                throw value.error("closes a circle: {}{}", circle, name);
+                for (; i < open_.size(); ++i) circle += shown(open_[i]) + " -> ";
+                throw value.error("closes a circle: {}{}", circle, shown(name));
             }
         open_.push_back(name);
         const int entry = addNode(*node);
@@ -167,7 +168,10 @@ private:
         if (!value.isTable()) throw value.error("is no node; expected a table with a type");
         NodeReader reader(value.table(), recipe_->parameters, source_.directory, recipe_->graph,
                           [this](const TomlValue& input) { return addValue(input); });
+        if (++depth_ > deepest) throw value.error("is nested more than {} nodes deep", deepest);
         Graph::Entry entry = makeNode(reader);
+        --depth_;
+        recipe_->files.insert(recipe_->files.end(), reader.files().begin(), reader.files().end());
         if (entry.mapping)
             entry.channels =
                 recipe_->graph.entries[static_cast<std::size_t>(entry.mapped)].channels;
@@ -179,6 +183,8 @@ private:
         return static_cast<int>(recipe_->graph.entries.size()) - 1;
     }
 
+    static constexpr int deepest = 500;  ///< nodes within nodes: each takes some of the stack
+
     const RecipeText& source_;
     toml::table toml_;
     TomlTable table_;
@@ -186,6 +192,7 @@ private:
     std::optional<TomlTable> nodes_;
     Recipe* recipe_ = nullptr;
     std::map<std::string, int> entryOf_;
+    int depth_ = 0;                  ///< of the node that is being made
     std::vector<std::string> open_;  ///< names of the nodes that are being made
 };
 

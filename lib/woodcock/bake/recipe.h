@@ -32,6 +32,7 @@ struct Recipe {
     Box3d bounds;  ///< world space; nothing is made outside
     std::vector<RecipeOutput> outputs;
     std::string boundsPlace;
+    std::vector<std::filesystem::path> files;  ///< that its nodes read
 };
 
 /// A recipe's text, and where it comes from.

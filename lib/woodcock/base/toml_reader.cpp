@@ -3,10 +3,11 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/path_variables.h"
+#include "woodcock/base/printable.h"
+#include "woodcock/base/toml_nesting.h"
 
 namespace woodcock {
 namespace {
@@ -37,10 +38,9 @@ std::string_view typeName(const toml::node& node) {
 std::string NumberRange::demand(double v) const {
     const NumberRange all;
     if (lower != all.lower && upper < std::numeric_limits<float>::max())
-        return fmt::format("must lie {} {} and {}", strict ? "strictly between" : "between",
-                           lower, upper);
-    if (v > lower)
-        return fmt::format("must be {} {}", strict ? "less than" : "at most", upper);
+        return fmt::format("must lie {} {} and {}", strict ? "strictly between" : "between", lower,
+                           upper);
+    if (v > lower) return fmt::format("must be {} {}", strict ? "less than" : "at most", upper);
     if (lower == 0) return strict ? "must be positive" : "must not be negative";
     return fmt::format("must be {} {}", strict ? "more than" : "at least", lower);
 }
@@ -52,6 +52,7 @@ std::string placeOf(const toml::source_region& source) {
 }
 
 toml::table parseToml(std::string_view text, const std::string& name) {
+    refuseDeepKeys(text, name);
     try {
         return toml::parse(text, name);
     } catch (const toml::parse_error& e) {
@@ -66,15 +67,22 @@ std::string readTomlFile(const std::filesystem::path& file, std::string_view wha
         throw inputError("{} '{}' does not exist", what, file.string());
     if (std::filesystem::is_directory(status))
         throw inputError("{} '{}' is a directory", what, file.string());
+    const auto tooLarge = [&] {
+        return inputError("{} '{}' is larger than {} MB: is it a {}?", what, file.string(),
+                          largestFile >> 20, what);
+    };
     if (std::filesystem::is_regular_file(status) &&
         std::filesystem::file_size(file, error) > largestFile)
-        throw inputError("{} '{}' is larger than {} MB: is it a {}?", what, file.string(),
-                         largestFile >> 20, what);
+        throw tooLarge();
+    // Pipes are read too, as of a script that makes the text; some would never end.
     std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream) throw inputError("{} '{}' cannot be read", what, file.string());
-    return text.str();
+    std::string text(largestFile + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream.is_open() || stream.bad())
+        throw inputError("{} '{}' cannot be read", what, file.string());
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > largestFile) throw tooLarge();
+    return text;
 }
 
 Error TomlValue::wrongType(std::string_view expected) const {
@@ -180,7 +188,7 @@ std::filesystem::path TomlValue::path(const std::filesystem::path& base) const {
     try {
         expanded = expandPath(written);
     } catch (const Error& e) {
-        throw error("is '{}': {}", written, e.what());
+        throw error("is '{}': {}", shown(written), e.what());
     }
     const bool overridden = place().starts_with(overrideMark);
     return (overridden ? expanded : base / expanded).lexically_normal();
@@ -190,7 +198,8 @@ size_t TomlValue::choice(std::string_view what, std::span<const std::string> kno
     const std::string word = text();
     for (size_t i = 0; i < known.size(); ++i)
         if (known[i] == word) return i;
-    throw inputError("{}: unknown {} '{}'; known: {}", place(), what, word, joinNames(known));
+    throw inputError("{}: unknown {} '{}'; known: {}", place(), what, shown(word),
+                     joinNames(known));
 }
 
 TomlTable TomlValue::table() const {
@@ -208,7 +217,8 @@ std::vector<std::string> TomlTable::keys() const {
 std::optional<TomlValue> TomlTable::find(std::string_view key) const {
     const toml::node* node = table_->get(key);
     if (!node) return std::nullopt;
-    return TomlValue(*node, fmt::format("{}{}{}", name_, name_.empty() ? "" : ".", key));
+    return TomlValue(*node,
+                     fmt::format("{}{}{}", name_, name_.empty() ? "" : ".", shown(key, 100)));
 }
 
 TomlValue TomlTable::need(std::string_view key, std::string_view example) const {
@@ -227,8 +237,9 @@ void TomlTable::allowOnly(const std::vector<std::string>& known, std::string_vie
         if (!isKnown && (!first || position(key) < position(*first))) first = &key;
     }
     if (first)
-        throw inputError("{}: unknown key '{}' in {}{}", placeOf(first->source()), first->str(),
-                         where, suggestName(first->str(), "known keys", known));
+        throw inputError("{}: unknown key '{}' in {}{}", placeOf(first->source()),
+                         shown(first->str()), where,
+                         suggestName(first->str(), "known keys", known));
 }
 
 void TomlTable::exclude(std::string_view key, std::string_view other, std::string_view why) const {

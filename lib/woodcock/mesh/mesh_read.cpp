@@ -10,6 +10,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/mesh/gltf_check.h"
 #include "woodcock/mesh/ply_mesh.h"
 #include "woodcock/mesh/polygon.h"
 #include "woodcock/mesh/surface_mesh.h"
@@ -239,6 +240,7 @@ constexpr bool hasAssimp = false;
 /// As it stands in the file: points not welded, normals of any length.
 SurfaceMesh readAny(const fs::path& file) {
     const std::string extension = requireReadable(file);
+    if (extension == ".gltf" || extension == ".glb") refuseDeepGltf(file);
     // Assimp's reader of PLY does not end where some files are damaged.
     SurfaceMesh surface = extension == ".ply" ? readPlyMesh(file) : readByAssimp(file);
     if (extension == ".stl") surface.normals.clear();  // one of each triangle, or none at all

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/printable.h"
+#include "woodcock/base/toml_nesting.h"
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/base/toml_text.h"
 
@@ -64,12 +66,16 @@ toml::table parseAssignment(const std::string& key, const std::string& value,
 /// One override on its way down the scene.
 class Override {
 public:
-    explicit Override(const std::string& text) : place_(std::string(overrideMark) + text) {
+    explicit Override(const std::string& text) : place_(std::string(overrideMark) + shown(text)) {
         const size_t equals = text.find('=');
         steps_ = parseSteps(overriddenKey(text));
         if (equals == std::string::npos || steps_.empty())
             throw usageError("{}: expected KEY=VALUE, such as volume[0].scale=2", place_);
+        if (steps_.size() > mostKeyParts)
+            throw inputError("{}: the key has more than {} parts; no key that is known has so many",
+                             place_, mostKeyParts);
         value_ = text.substr(equals + 1);
+        refuseDeepKeys(value_, place_);
     }
 
     void apply(toml::table& scene) const {
