@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "log.h"
 #include "option_kinds.h"
 #include "preview.h"
+#include "print.h"
 #include "progress.h"
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/bake/baker.h"
@@ -82,18 +84,36 @@ std::vector<ParameterSetting> settingsOf(const BakeOptions& options) {
 
 void printPresets() {
     for (const auto& [name, text] : presets())
-        fmt::print("{:<20} {}\n", name, recipeAbout({std::string(text), name, ""}));
-    fmt::print("woodcock bake NAME --describe lists a recipe's parameters.\n");
+        print("{:<20} {}\n", name, recipeAbout({std::string(text), name, ""}));
+    print("woodcock bake NAME --describe lists a recipe's parameters.\n");
 }
 
 void printParameters(const RecipeText& recipe, const std::vector<ParameterSetting>& settings) {
-    fmt::print("{}: {}\n", recipe.name, recipeAbout(recipe));
+    print("{}: {}\n", recipe.name, recipeAbout(recipe));
     const ParameterSet set = recipeParameters(recipe, settings);
     for (const Parameter& p : set.all()) {
         const std::string range =
             p.lower ? fmt::format(" [{:g} to {:g}]", *p.lower, *p.upper) : std::string();
-        fmt::print("  {:<16} {:<10g} {}{}\n", p.name, p.value, p.about, range);
+        print("  {:<16} {:<10g} {}{}\n", p.name, p.value, p.about, range);
     }
+}
+
+/// - is stdout.
+void writeRecipe(const fs::path& file, const RecipeText& text) {
+    if (file == "-") return printData(text.text);
+    refuseOverwriting(std::array{file}, std::array{fs::path(text.name)});
+    checkWritable(file);
+    writeWholeFile(file, text.text);
+    spdlog::info("wrote {}", file.string());
+}
+
+/// Nothing that is read may be written over.
+void checkFiles(const Recipe& recipe, const BakeOptions& options) {
+    std::vector<fs::path> read = recipe.files;
+    read.insert(read.end(), {options.input, options.like});
+    std::vector<fs::path> written = bakedFiles(options.output, options.levels.value_or(0));
+    written.push_back(options.preview);
+    refuseOverwriting(written, read);
 }
 
 BakeSettings settingsFor(const Recipe& recipe, const BakeOptions& options) {
@@ -163,11 +183,7 @@ void run(const BakeOptions& options) {
     const std::vector<ParameterSetting> settings = settingsOf(options);
     if (options.describe) return printParameters(text, settings);
     if (!options.writeRecipe.empty()) {
-        checkWritable(options.writeRecipe);
-        writeWholeFile(
-            options.writeRecipe,
-            {reinterpret_cast<const unsigned char*>(text.text.data()), text.text.size()});
-        spdlog::info("wrote {}", options.writeRecipe.string());
+        writeRecipe(options.writeRecipe, text);
         if (options.output.empty()) return;
     }
     if (options.output.empty())
@@ -177,9 +193,6 @@ void run(const BakeOptions& options) {
         throw usageError(
             "--output {}: bake writes .vdb files; woodcock convert makes others of them",
             options.output.string());
-    if (fs::path(options.input).lexically_normal() == options.output.lexically_normal() ||
-        options.like.lexically_normal() == options.output.lexically_normal())
-        throw usageError("'{}' is an input and an output", options.output.string());
     checkWritable(options.output);
     if (!options.preview.empty()) {
         checkWritable(options.preview);
@@ -188,6 +201,7 @@ void run(const BakeOptions& options) {
     catchInterrupts();
 
     Recipe recipe = makeRecipe(text, settings);
+    checkFiles(recipe, options);
     if (options.tolerance)
         for (RecipeOutput& output : recipe.outputs) output.tolerance = *options.tolerance;
     const BakeSettings how = settingsFor(recipe, options);
@@ -220,7 +234,7 @@ void run(const BakeOptions& options) {
     for (const fs::path& file :
          writeBake(options.output, *bake, writing, options.levels.value_or(0)))
         spdlog::info("wrote {} ({:.1f} MB)", file.string(),
-                     static_cast<double>(fs::file_size(file)) / 1e6);
+                     static_cast<double>(bytesOfFile(file)) / 1e6);
     if (!options.preview.empty() && !renderPreview(options.output, options.preview, style))
         throw CLI::RuntimeError(interruptedCode);
 }
@@ -247,7 +261,7 @@ CLI::App& addBakeCommand(CLI::App& app) {
     command.add_flag("--describe", o->describe, "List the recipe's parameters");
     command
         .add_option("--write-recipe", o->writeRecipe,
-                    "Save the recipe's text, to be edited; bakes only with -o")
+                    "Save the recipe's text, to be edited; bakes only with -o; - is stdout")
         ->type_name("FILE.toml");
     command.add_option("--set", o->settings, "A parameter of the recipe; may be repeated")
         ->allow_extra_args(false)

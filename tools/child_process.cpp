@@ -49,6 +49,7 @@ private:
 /// In the child: becomes the program, or tells why not.
 [[noreturn]] void execute(char* const* argv, const Pipe& output, const Pipe& problem) {
     setpgid(0, 0);  // what it starts ends with it
+    for (const int ignored : {SIGPIPE, SIGXFSZ}) signal(ignored, SIG_DFL);
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     dup2(output.writing(), STDOUT_FILENO);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
-#include <stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,6 +14,8 @@
 #include "compare_cycles.h"
 #include "compare_report.h"
 #include "option_kinds.h"
+#include "print.h"
+#include "scratch_directory.h"
 #include "woodcock/base/whole_file.h"
 
 namespace woodcock::tool {
@@ -143,8 +145,9 @@ struct CompareWords {
         if (both && !(files.empty() && more.empty() && colourSpaces.empty()))
             throw usageError(
                 "--cycles renders both images itself; give images or --cycles, not both");
-        if (!both && (cycles.spp || cycles.seeds || cycles.mode || cycles.interpolation ||
-                      cycles.stepRate || !cycles.blender.empty() || !cycles.input.overrides.empty()))
+        if (!both &&
+            (cycles.spp || cycles.seeds || cycles.mode || cycles.interpolation || cycles.stepRate ||
+             !cycles.blender.empty() || !cycles.input.overrides.empty()))
             throw usageError(
                 "--spp, --seeds, --mode, --step-rate, --interpolation, --blender and --set belong "
                 "to --cycles");
@@ -166,7 +169,7 @@ struct CompareWords {
 };
 
 void write(const std::filesystem::path& file, const std::string& text) {
-    writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    writeWholeFile(file, text);
 }
 
 void makeDirectory(const std::filesystem::path& directory) {
@@ -184,27 +187,6 @@ void prepareReport(const CompareOptions& o) {
     checkWritable(jsonFile(o));
     checkWritable(htmlFile(o));
 }
-
-/// A directory that is gone with everything in it at the end.
-class ScratchDirectory {
-public:
-    ScratchDirectory() {
-        std::string name =
-            (std::filesystem::temp_directory_path() / "woodcock-compare-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw failure("cannot make the directory '{}'", name);
-        path_ = name;
-    }
-    ~ScratchDirectory() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    ScratchDirectory(const ScratchDirectory&) = delete;
-    ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 int run(const CompareWords& words, const std::string& commandLine) {
     words.check();
@@ -229,6 +211,12 @@ int runCompare(const CompareOptions& o) {
     for (const std::string& limit : o.failAbove) parseLimit(limit);
     const ColorConfig config(o.ocio);
     LoadedPictures loaded = loadPictures(o.sources, o.settings.resample, config);
+    std::vector<std::filesystem::path> read{o.ocio};
+    for (const PictureSource& source : o.sources) {
+        read.push_back(source.file);
+        read.insert(read.end(), source.more.begin(), source.more.end());
+    }
+    if (!o.report.empty()) refuseOverwriting(std::array{jsonFile(o), htmlFile(o)}, read);
     prepareReport(o);  // images that cannot be compared leave no directory
     const Comparison comparison = compare(std::move(loaded), o.settings);
     if (!o.report.empty() && !config.note().empty()) spdlog::warn("{}", config.note());
@@ -238,9 +226,12 @@ int runCompare(const CompareOptions& o) {
         write(jsonFile(o), compareJson(comparison));
         write(htmlFile(o), html);
     }
-    fmt::print("{}", o.json ? compareJson(comparison) : compareText(comparison));
+    if (o.json)
+        printData(compareJson(comparison));
+    else
+        printText(compareText(comparison));
     if (!o.report.empty() && !o.json)
-        fmt::print("wrote {} and {}\n", jsonFile(o).string(), htmlFile(o).string());
+        print("wrote {} and {}\n", jsonFile(o).string(), htmlFile(o).string());
     std::fflush(stdout);
     return exceeds(comparison, o.failAbove) ? 1 : 0;
 }
@@ -252,9 +243,10 @@ CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
     auto words = std::make_shared<CompareWords>();
     CompareOptions& o = words->options;
     command
-        ->add_option("FILE", words->files,
-                     "images, any that OpenImageIO reads: the first is the reference A, the others "
-                     "are B, C, ...")
+        ->add_option(
+            "FILE", words->files,
+            "images (EXR, PNG, JPEG, TIFF, HDR ...): the first is the reference A, the others "
+            "are B, C, ...")
         ->type_name("FILE");
     command
         ->add_option(
@@ -269,8 +261,8 @@ CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
     addChoice(*command, "--mode", words->cycles.mode, {"null", "biased"},
               "of --cycles: null-collision tracking or ray marching:")
         ->type_name("MODE");
-    addChoice(*command, "--interpolation", words->cycles.interpolation,
-              {"stochastic", "trilinear"}, "of --cycles: how it reads grids:")
+    addChoice(*command, "--interpolation", words->cycles.interpolation, {"stochastic", "trilinear"},
+              "of --cycles: how it reads grids:")
         ->type_name("KIND");
     addParsed(
         *command, "--step-rate", words->cycles.stepRate,

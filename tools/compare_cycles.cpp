@@ -8,6 +8,7 @@
 #include "cycles_render.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "woodcock/base/whole_file.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
@@ -45,6 +46,19 @@ double renderOurs(const Scene& scene, const SceneDescription& description,
     return result.seconds;
 }
 
+std::filesystem::path pictureOf(const std::filesystem::path& directory, const char* program,
+                                int seed) {
+    return directory / (program + (seed == 0 ? ".exr" : fmt::format("_{}.exr", seed + 1)));
+}
+
+std::vector<std::filesystem::path> picturesOf(const std::filesystem::path& directory, int seeds) {
+    std::vector<std::filesystem::path> files;
+    for (int i = 0; i < seeds; ++i)
+        for (const char* program : {"woodcock", "cycles"})
+            files.push_back(pictureOf(directory, program, i));
+    return files;
+}
+
 CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene& loaded,
                           const BothOptions& o, const std::filesystem::path& file,
                           const std::string& commandLine, ProgressStyle style) {
@@ -72,6 +86,8 @@ std::vector<PictureSource> renderBoth(const BothOptions& o, const std::filesyste
     checkInput(o.input);
     SceneDescription description = parseInput(o.input);
     description.render.spp = o.spp.value_or(description.render.spp);
+    const int seeds = o.seeds.value_or(fewestSeeds);
+    refuseOverwriting(picturesOf(directory, seeds), filesRead(o.input, description));
     const LoadedScene loaded = loadAndComplete(description);
     const Scene scene = buildScene(description, loaded);
 
@@ -79,11 +95,9 @@ std::vector<PictureSource> renderBoth(const BothOptions& o, const std::filesyste
     double ours = 0, theirs = 0;
     CyclesResult last;
     const std::uint64_t firstSeed = description.render.seed;
-    const int seeds = o.seeds.value_or(fewestSeeds);
     for (int i = 0; i < seeds; ++i) {
         description.render.seed = firstSeed + static_cast<std::uint64_t>(i);
-        const std::string suffix = i == 0 ? ".exr" : fmt::format("_{}.exr", i + 1);
-        const auto a = directory / ("woodcock" + suffix), b = directory / ("cycles" + suffix);
+        const auto a = pictureOf(directory, "woodcock", i), b = pictureOf(directory, "cycles", i);
         // Cycles first: what it cannot express, or a Blender that is not there, is known at once.
         last = renderTheirs(description, loaded, o, b, commandLine, style);
         theirs += last.seconds;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <climits>
 
 #include "commands.h"
@@ -61,6 +62,7 @@ void run(const Options& options, const std::string& commandLine) {
     SceneDescription scene = parseInput(options.input);
     scene.render.spp = options.spp.value_or(scene.render.spp);
     scene.render.seed = options.seed.value_or(scene.render.seed);
+    refuseOverwriting(std::array{options.image, options.blend}, filesRead(options.input, scene));
     const LoadedScene loaded = loadAndComplete(scene);
 
     CyclesOptions cycles;

@@ -3,16 +3,15 @@
 
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <charconv>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "blender.h"
 #include "child_process.h"
 #include "cycles_surfaces.h"
+#include "scratch_directory.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
@@ -30,37 +29,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A directory of its own, removed with its contents at the end.
-class WorkDirectory {
-public:
-    WorkDirectory() {
-        std::string name = (fs::temp_directory_path() / "woodcock-cycles-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw failure("cannot make the directory '{}'", name);
-        path_ = name;
-    }
-    ~WorkDirectory() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    WorkDirectory(const WorkDirectory&) = delete;
-    WorkDirectory& operator=(const WorkDirectory&) = delete;
-    fs::path operator/(const char* name) const { return path_ / name; }
-    std::string string() const { return path_.string(); }
-
-private:
-    fs::path path_;
-};
-
-void writeText(const fs::path& file, std::string_view text) {
-    writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-}
-
-void writeScripts(const WorkDirectory& directory) {
+void writeScripts(const ScratchDirectory& directory) {
     const std::pair<const char*, std::string_view> scripts[] = {
         {"render_in_cycles.py", blenderRenderInCycles}, {"cycles_nodes.py", blenderCyclesNodes},
         {"cycles_volumes.py", blenderCyclesVolumes},    {"cycles_lights.py", blenderCyclesLights},
         {"cycles_surfaces.py", blenderCyclesSurfaces},  {"mapping.py", blenderMapping}};
-    for (const auto& [name, text] : scripts) writeText(directory / name, text);
+    for (const auto& [name, text] : scripts) writeWholeFile(directory / name, text);
 }
 
 /// Of Blender's line "... | Sample 12/64": 12/64.
@@ -129,9 +103,9 @@ CyclesResult renderWithCycles(const SceneDescription& scene, const LoadedScene& 
     const Blender blender = findBlender(options.blender, options.shouldStop);
     spdlog::debug("{} is {}", blender.program, blender.version);
 
-    const WorkDirectory directory;
+    const ScratchDirectory directory;
     writeScripts(directory);
-    writeText(directory / "scene.json", text);
+    writeWholeFile(directory / "scene.json", text);
     writeCyclesMeshes(directory.string(), scene, loaded);
     const auto onLine = [&](const std::string& line) {
         spdlog::debug("{}", line);

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "info_report.h"
+#include "print.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/grid_roles.h"
 
@@ -44,7 +45,7 @@ FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridN
 }
 
 void report(const FileInfo& file) {
-    if (file.error.empty()) fmt::print("{}", infoText(file));
+    if (file.error.empty()) printText(infoText(file));
     std::fflush(stdout);  // keeps the order where both streams end on one terminal
     if (!file.error.empty()) spdlog::error("{}", file.error);
     for (const GridInfo& grid : file.grids)
@@ -58,8 +59,8 @@ void runInfo(const InfoOptions& options) {
         if (!options.json) report(files.back());
     }
     if (options.json)
-        fmt::print("{}\n",
-                   infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        printData(infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                  "\n");
     const bool sound =
         std::all_of(files.begin(), files.end(), [](const FileInfo& file) { return file.sound(); });
     if (!sound) throw CLI::RuntimeError(exitBadInput);

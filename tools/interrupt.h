@@ -3,8 +3,8 @@
 
 namespace woodcock::tool {
 
-/// From now on the first SIGINT or SIGTERM is remembered, and a second one ends the program at once
-/// with exit code 130.
+/// From now on the first SIGINT, SIGTERM or SIGHUP (where it was not ignored) is remembered, and a
+/// second one ends the program at once with exit code 130.
 void catchInterrupts();
 
 bool interrupted();

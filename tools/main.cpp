@@ -2,11 +2,13 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
+#include <csignal>
 #include <new>
 #include <vector>
 
 #include "commands.h"
 #include "log.h"
+#include "print.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/version.h"
@@ -113,19 +115,38 @@ int run(int argc, char** argv) {
     return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The exit code of `act`; what goes wrong in it is said.
+template <class Act>
+int report(Act act) {
     try {
-        tool::setUpLog(tool::LogStyle::Text, "info");
-        return run(argc, argv);
+        return act();
     } catch (const Error& error) {
         spdlog::error("{}", error.what());
         return exitCode(error.kind());
     } catch (const std::bad_alloc&) {
         spdlog::error("out of memory");
     } catch (const std::exception& error) {
-        spdlog::error("{}", error.what());
+        spdlog::error(
+            "{}: the program did not expect this; please report it with the command and its files",
+            error.what());
     }
     return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    tool::holdStandardStreams();
+    // A reader that ends and a limit of file sizes are errors of writing, not the program's end.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const int code = report([&] {
+        tool::setUpLog(tool::LogStyle::Text, "info");
+        return run(argc, argv);
+    });
+    const int printed = report([] {
+        tool::finishStdout();
+        return 0;
+    });
+    return code ? code : printed;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "progress.h"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "print.h"
 #include "woodcock/base/parse.h"
 
 namespace woodcock::tool {
@@ -15,10 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void printLine(const Json& json) {
-    fmt::print(stderr, "{}\n", json.dump());
-    std::fflush(stderr);
-}
+void printLine(const Json& json) { printProgress("{}\n", json.dump()); }
 
 std::string bar(double fraction) {
     constexpr int width = 30;
@@ -57,10 +54,9 @@ void Progress::update(const RenderProgress& progress) {
         const std::string noise =
             std::isfinite(progress.noise) ? ", " + noiseText(progress.noise) : "";
         // Carriage return, and erase to the end of the line.
-        fmt::print(stderr, "\r{} {:3.0f} %, {} left, {} samples{}\x1b[K", bar(progress.fraction),
-                   100 * progress.fraction, formatDuration(progress.secondsLeft), progress.samples,
-                   noise);
-        std::fflush(stderr);
+        printProgress("\r{} {:3.0f} %, {} left, {} samples{}\x1b[K", bar(progress.fraction),
+                      100 * progress.fraction, formatDuration(progress.secondsLeft),
+                      progress.samples, noise);
     }
 }
 
@@ -73,11 +69,11 @@ void Progress::finish(const RenderResult& result) {
                    {"noise", result.film.noise()},
                    {"non_finite", result.film.nonFiniteCount()}});
     else if (style_ == ProgressStyle::Bar)
-        fmt::print(stderr, "\r\x1b[K");
+        printProgress("\r\x1b[K");
 }
 
 WorkProgress::~WorkProgress() {
-    if (style_ == ProgressStyle::Bar) fmt::print(stderr, "\r\x1b[K");
+    if (style_ == ProgressStyle::Bar) printProgress("\r\x1b[K");
 }
 
 void WorkProgress::update(double fraction) {
@@ -94,9 +90,8 @@ void WorkProgress::update(double fraction) {
                    {"seconds_left", left}});
         return;
     }
-    fmt::print(stderr, "\r{} {} {:3.0f} %, {} left\x1b[K", name_, bar(fraction), 100 * fraction,
-               formatDuration(left));
-    std::fflush(stderr);
+    printProgress("\r{} {} {:3.0f} %, {} left\x1b[K", name_, bar(fraction), 100 * fraction,
+                  formatDuration(left));
 }
 
 std::string noiseText(double noise) {

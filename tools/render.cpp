@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
+#include "choices_text.h"
 #include "commands.h"
+#include "frames.h"
 #include "interrupt.h"
-#include "log.h"
+#include "output_folders.h"
+#include "picture_warnings.h"
+#include "print.h"
 #include "progress.h"
 #include "quality_auto.h"
 #include "render_options.h"
@@ -17,10 +22,13 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
+#include "woodcock/render/needs_text.h"
 #include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
+#include "woodcock/scene/light_changes.h"
 #include "woodcock/scene/scene_files.h"
 #include "woodcock/scene/write.h"
 
@@ -68,42 +76,28 @@ SceneDescription describeScene(const RenderOptions& options) {
 }
 
 bool environmentIsHidden(const SceneDescription& scene) {
-    bool hidden = !scene.lights.empty();  // lights that are left to the program: a visible sky
-    for (const LightDescription& light : scene.lights)
+    bool hidden = true;
+    for (const LightDescription& light : foreseenLights(scene))
         if (const auto* environment = std::get_if<EnvironmentDescription>(&light.light))
             hidden &= !environment->visible;
     return hidden;
 }
 
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code missing;
-    return a.lexically_normal() == b.lexically_normal() ||
-           std::filesystem::equivalent(a, b, missing);
-}
+bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 
 /// Nothing that is read may be written over, and nothing that is written may be written twice.
-void checkFiles(SceneDescription scene, const RenderOptions& options) {
-    std::vector<std::filesystem::path> read = options.inputs, written;
-    for (const std::filesystem::path* file : sceneFiles(scene)) read.push_back(*file);
-    read.push_back(scene.ocio);
+void checkFiles(const SceneDescription& scene, const RenderOptions& options) {
+    std::vector<std::filesystem::path> written;
     if (options.rendersImages()) written = scene.output.files;
     for (const std::filesystem::path& file : {options.stats, options.writeScene})
-        if (!file.empty()) written.push_back(file);
-    for (auto file = written.begin(); file != written.end(); ++file) {
-        const auto isThis = [&](const auto& other) { return sameFile(*file, other); };
-        if (std::any_of(read.begin(), read.end(), isThis))
-            throw usageError("'{}' is an input and an output", file->string());
-        if (std::any_of(written.begin(), file, isThis))
-            throw usageError("'{}' is named twice as an output", file->string());
-    }
+        if (!isStdout(file)) written.push_back(file);
+    refuseOverwriting(written, filesRead(options.sceneInput(), scene));
 }
 
 /// Those of a scene file are known to be right.
 ExrLayers layersOf(const SceneDescription& scene) {
     return inPlace("--layers", [&] { return layersFromNames(scene.output.layers); });
 }
-
-bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 
 /// Where the name that a message of ColorConfig begins with was given: "scene.toml:9:8: ".
 std::string placeOfDisplayError(const SceneDescription& scene, std::string_view message) {
@@ -115,8 +109,11 @@ std::string placeOfDisplayError(const SceneDescription& scene, std::string_view 
 }
 
 Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& options) {
-    const auto check = [](const std::string& place, const std::filesystem::path& file) {
-        if (!file.empty() && !isStdout(file)) inPlace(place, [&] { checkWritable(file); });
+    const auto check = [&](const std::string& place, const std::filesystem::path& file) {
+        if (file.empty() || isStdout(file)) return;
+        checkNoPattern(file, place);
+        prepareFolder(file, options.mkdir, place);
+        inPlace(place, [&] { checkWritable(file); });
     };
     check("--stats", options.stats);
     check("--write-scene", options.writeScene);
@@ -124,14 +121,18 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
         inPlace(findPlace(scene.places, "ocio"), [&] { return ColorConfig(scene.ocio); });
     OutputSettings settings{.colour = std::move(colour)};
     if (options.rendersImages()) settings.files = scene.output.files;
-    for (std::size_t i = 0; i < settings.files.size(); ++i)
-        inPlace(findPlace(scene.places, fmt::format("output.files[{}]", i)),
-                [&] { checkWritable(settings.files[i]); });
+    refuseOverwriting(settings.files, settings.colour.files());
+    for (std::size_t i = 0; i < settings.files.size(); ++i) {
+        const std::string place = findPlace(scene.places, fmt::format("output.files[{}]", i));
+        inPlace(place, [&] { imageFormat(settings.files[i]); });
+        check(place, settings.files[i]);
+    }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
     settings.withAlpha = environmentIsHidden(scene);
+    settings.glows = anythingGlows(scene);
     try {
         return Outputs(std::move(settings));
     } catch (const Error& e) {
@@ -139,15 +140,17 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
     }
 }
 
-/// Throws where the image's sums cannot be held, before anything is loaded.
-void checkMemory(const RenderSettings& settings, const SceneDescription& scene) {
+/// Throws where the image's sums cannot be held, or not written in the end: `writing` are the bytes
+/// of a pixel that encoding takes.
+void checkMemory(const RenderSettings& settings, const SceneDescription& scene, double writing,
+                 double possible) {
     const auto crop = settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
-    constexpr double encoded = 32;  // bytes of a pixel in an image file with all layers, about
     const double kept = double(sizeof(Film::Pixel)) +
+                        (scene.surfaces.empty() ? 0 : double(sizeof(Film::SurfacePixel))) +
                         (settings.featureLayers ? double(sizeof(Film::FeaturePixel)) : 0) +
-                        (environmentIsHidden(scene) ? 0 : double(sizeof(Film::ForegroundPixel)));
-    const double needed = double(crop.width()) * crop.height() * (kept + encoded);
-    const auto possible = static_cast<double>(memoryLimit());
+                        (environmentIsHidden(scene) ? 0 : double(sizeof(Film::ForegroundPixel))) +
+                        (settings.adaptive ? 5 * double(sizeof(double)) : 0);
+    const double needed = double(crop.width()) * crop.height() * (kept + writing);
     if (needed <= possible) return;
     const double share = std::sqrt(possible / needed);
     const std::string place = findPlace(scene.places, "render.resolution");
@@ -158,6 +161,18 @@ void checkMemory(const RenderSettings& settings, const SceneDescription& scene) 
                     place, place.empty() ? "" : ": ", crop.width(), crop.height(),
                     formatGiB(needed), formatGiB(possible), std::floor(crop.width() * share),
                     std::floor(crop.height() * share)));
+}
+
+/// The same with what is left once the scene stands.
+void checkMemoryLeft(const RenderSettings& settings, const SceneDescription& scene,
+                     const Outputs& outputs) {
+    // Stacks and buffers of the threads, and what libraries take to write.
+    constexpr double ofThread = 16 << 20, ofAll = 64 << 20;
+    const int threads = settings.threads > 0
+                            ? settings.threads
+                            : static_cast<int>(std::thread::hardware_concurrency());
+    const double left = static_cast<double>(memoryLeft()) - ofThread * threads - ofAll;
+    checkMemory(settings, scene, outputs.bytesPerPixel(), std::max(left, 0.0));
 }
 
 RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions& options) {
@@ -183,18 +198,20 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
     const ExrLayers layers = layersOf(scene);
     settings.depthLayers = layers.depth || layers.transmittance;
     settings.featureLayers = layers.albedo || layers.normal;
-    checkMemory(settings, scene);
+    constexpr double encoded = 32;  // of a pixel in an image file with all layers, about
+    checkMemory(settings, scene, encoded, static_cast<double>(memoryLimit()));
     return settings;
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {
-    if (isStdout(file)) {
-        fmt::print("{}", text);
-        if (std::fflush(stdout) != 0) throw failure("cannot write to stdout");
-        return;
-    }
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(text.data());
-    writeWholeFile(file, {bytes, text.size()});
+    if (isStdout(file))
+        printData(text);
+    else
+        writeWholeFile(file, text);
+}
+
+void warnUnlessEmpty(const std::string& text) {
+    if (!text.empty()) spdlog::warn("{}", text);
 }
 
 bool haveSameFields(const SceneDescription& a, const SceneDescription& b) {
@@ -214,7 +231,10 @@ std::string samplesText(const RenderResult& result, const RenderSettings& settin
 
 RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
                                 ProgressStyle style) {
-    spdlog::info("{}", findNeeds(scene).describe());
+    const Needs needs = findNeeds(scene);
+    spdlog::info("the scene {}", usedOf(needs));
+    if (const std::string unused = unusedOf(needs); !unused.empty())
+        spdlog::debug("the scene {}", unused);
     Progress progress(style);
     progress.start(settings);
     RenderResult result = render(scene, settings, [&](const RenderProgress& now) {
@@ -223,24 +243,28 @@ RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settin
     });
     progress.finish(result);
     spdlog::info("{} in {}: {}, {}", stopReasonName(result.reason), formatDuration(result.seconds),
-                 samplesText(result, settings), noiseText(result.film.noise()));
+                 samplesText(result, settings), noiseOf(result));
     if (const std::uint64_t count = result.counters.clamped)
         spdlog::info("{} of {} paths were clamped to a radiance of {:g}", count,
                      result.counters.paths, settings.approximations.clamp);
     if (const std::uint64_t count = result.film.nonFiniteCount())
         spdlog::warn("{} samples were not finite and are left out", count);
+    const std::uint64_t missing = result.film.pixelsWithoutSamples();
+    if (missing > 0 && result.film.mostSamples() > 0)
+        spdlog::warn("{} of {} pixels have no sample yet; they are black, with alpha 0{}", missing,
+                     std::int64_t{result.film.crop().width()} * result.film.crop().height(),
+                     result.reason == StopReason::TimeLimit
+                         ? ": one sample of each takes longer than twice the time limit"
+                         : "");
     return result;
 }
 
 void run(const RenderOptions& options, const std::string& commandLine) {
-    const ProgressStyle style =
-        options.quiet ? ProgressStyle::None : progressStyle(options.progress);
-    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
-             options.quiet ? "warning" : options.logLevel.value_or("info"));
+    const ProgressStyle style = options.reports.start();
     options.check();
-    catchInterrupts();
 
     SceneDescription description = describeScene(options);
+    catchInterrupts();  // not while a scene that comes through a pipe is waited for
     const std::vector<std::filesystem::path>& files = description.output.files;
     if (files.empty() && options.rendersImages())
         throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
@@ -251,10 +275,16 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
 
     const auto loadStart = std::chrono::steady_clock::now();
+    const Openings open = openingsOf(description);
     LoadedScene loaded = loadAndComplete(description);
-    if (!options.writeScene.empty())
+    checkFiles(description, options);  // with what --set says of lights that were chosen
+    if (!options.writeScene.empty()) {
         writeTextFile(options.writeScene,
                       writeScene(description, options.writeScene.parent_path()));
+        if (!isStdout(options.writeScene))
+            spdlog::info("wrote {}: {}", options.writeScene.string(),
+                         describeChoices(open, description));
+    }
     if (!options.rendersImages()) return;
     if (options.choosesQuality()) {
         const SceneDescription before = description;
@@ -263,25 +293,40 @@ void run(const RenderOptions& options, const std::string& commandLine) {
         if (!haveSameFields(before, description)) loaded = loadScene(description);
         settings = renderSettings(description, options);
     }
+    PictureWarnings warnings(description, loaded);
     std::vector<std::string> notes;
     const Scene scene = buildScene(description, std::move(loaded), &notes);
     for (const std::string& note : notes) spdlog::info("{}", note);
     const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart;
     if (interrupted()) throw CLI::RuntimeError(interruptedCode);
     for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);
+    warnUnlessEmpty(warnings.ofCamera(scene));
 
+    checkMemoryLeft(settings, description, outputs);
     const RenderResult result = renderWithProgress(scene, settings, style);
     const std::string digest = sceneDigest(description);
     if (result.film.mostSamples() > 0) {
-        outputs.write(result.film, {settings.firstSample, result.endSample, settings.seed,
-                                    result.seconds, digest, commandLine, settings.adaptive});
+        const std::string note =
+            outputs.write(result.film, {settings.firstSample, result.endSample, settings.seed,
+                                        result.seconds, digest, commandLine, settings.adaptive});
         for (const std::filesystem::path& file : files) spdlog::info("wrote {}", file.string());
-    } else {
+        if (!note.empty()) spdlog::info("{}", note);
+        warnUnlessEmpty(warnings.ofPicture(scene, result));
+    } else if (result.reason != StopReason::TimeLimit) {
         spdlog::warn("interrupted before anything was rendered: nothing is written");
     }
-    if (!options.stats.empty())
-        writeTextFile(options.stats, statsText(result, settings, digest, loading.count()));
+    const std::string stats =
+        statsText(result, settings, digest, loading.count(),
+                  result.film.mostSamples() > 0 ? files : std::vector<std::filesystem::path>());
+    if (!options.stats.empty()) writeTextFile(options.stats, stats);
+    if (options.reports.json) writeTextFile("-", stats);
     if (result.reason == StopReason::Interrupted) throw CLI::RuntimeError(interruptedCode);
+    if (result.film.mostSamples() == 0)
+        throw failure(
+            "nothing was rendered within twice the time limit of {}: nothing is written. Paths may "
+            "be without end: look for media of albedo 1 that fill all space, or give max_bounces "
+            "or max_scatterings",
+            formatDuration(settings.timeLimit));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_files.h"
 
 namespace woodcock::tool {
 
@@ -56,6 +57,13 @@ SceneDescription parseInput(const SceneInput& input) {
     scene = parseAtAnySize(input, overrides);
     scene.places["render.resolution"] = "--res";
     return scene;
+}
+
+std::vector<std::filesystem::path> filesRead(const SceneInput& input, SceneDescription scene) {
+    std::vector<std::filesystem::path> files = input.files;
+    for (const std::filesystem::path* file : sceneFiles(scene)) files.push_back(*file);
+    files.push_back(scene.ocio);
+    return files;
 }
 
 LoadedScene loadAndComplete(SceneDescription& description) {

@@ -2,18 +2,21 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <memory>
 #include <thread>
 
 #include "commands.h"
 #include "interrupt.h"
 #include "option_kinds.h"
+#include "print.h"
 #include "progress.h"
 #include "scene_input.h"
 #include "trade_output.h"
 #include "trade_parts.h"
 #include "trade_pictures.h"
 #include "trade_report.h"
+#include "woodcock/base/whole_file.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::tool {
@@ -66,6 +69,10 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine) {
     prepareReport(o.report, {"trade.json", "trade.csv", "trade.html"});
     catchInterrupts();
     SceneDescription complete = parseInput(o.input);
+    std::vector<std::filesystem::path> read = filesRead(o.input, complete);
+    read.push_back(o.candidates);
+    for (const char* name : {"trade.json", "trade.csv", "trade.html"})
+        if (!o.report.empty()) refuseOverwriting(std::array{o.report / name}, read);
     loadAndComplete(complete);
 
     std::optional<TradeResult> result = measure(o, complete, given);
@@ -78,12 +85,15 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine) {
     report.budget = o.budget.value_or(defaultBudget);
     report.result = std::move(*result);
     if (!o.report.empty()) report.pictures = tradePictures(report.result, complete);
+    const std::string text =
+        tradeJson(report, false).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
+        "\n";
     if (o.json)
-        fmt::print("{}\n", tradeJson(report, false).dump(1));
+        printData(text);
     else
-        fmt::print("{}", tradeText(report));
+        printText(tradeText(report));
     if (o.report.empty()) return;
-    writeReport(o.report / "trade.json", tradeJson(report, false).dump(1) + "\n");
+    writeReport(o.report / "trade.json", text);
     writeReport(o.report / "trade.csv", tradeCsv(report));
     writeReport(o.report / "trade.html", tradePage(tradeJson(report, true)));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "print.h"
 #include "trade_parts.h"
 #include "trade_report.h"
 #include "woodcock/scene/build.h"
@@ -30,15 +31,15 @@ std::string pictures(const NeedCost& c) {
 
 void print(const NeedCost& c) {
     if (c.needed) {
-        fmt::print("{:<22} {:>11} {:>11} {:>16} {:>16}  needed\n", nameOf(c), "", "", "", "");
+        print("{:<22} {:>11} {:>11} {:>16} {:>16}  needed\n", nameOf(c), "", "", "", "");
     } else {
-        fmt::print(
+        print(
             "{:<22} {:>11.3g} {:>11.3g} {:>8.3f} +- {:.3f} {:>8.3f} +- {:.3f}  {}; picture: "
             "{}\n",
             nameOf(c), c.without.value, c.with.value, c.ratio.value, c.ratio.se, c.variance.value,
             c.variance.se, verdict(c), pictures(c));
     }
-    std::fflush(stdout);
+    std::fflush(stdout);  // what takes long is seen as it comes
 }
 
 std::vector<std::string> notesOn(const std::vector<NeedCost>& costs) {
@@ -104,17 +105,18 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
     bool first = true;
     const auto show = [&](const NeedCost& cost) {
         if (std::exchange(first, false))
-            fmt::print("{:<22} {:>11} {:>11} {:>16} {:>16}\n", "need", "without [s]", "with [s]",
-                       "ratio of times", "of variances");
+            print("{:<22} {:>11} {:>11} {:>16} {:>16}\n", "need", "without [s]", "with [s]",
+                  "ratio of times", "of variances");
         print(cost);
     };
     const auto costs = needsCost(scene, settings, {.budget = budget, .onResult = show});
     const std::vector<std::string> notes = notesOn(costs);
-    for (const std::string& note : notes) fmt::print("note: {}\n", note);
+    for (const std::string& note : notes) print("note: {}\n", note);
     if (report.empty()) return;
     const std::string name = input.files.front().filename().string();
     const Json json = needsJson(name, costs, notes);
-    writeReport(report / "needs.json", json.dump(1) + "\n");
+    writeReport(report / "needs.json",
+                json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     writeReport(report / "needs.csv", needsCsv(costs));
     writeReport(report / "needs.html", needsPage(json));
 }

@@ -21,7 +21,7 @@ void prepareReport(const std::filesystem::path& directory,
 }
 
 void writeReport(const std::filesystem::path& file, const std::string& text) {
-    writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    writeWholeFile(file, text);
     spdlog::info("wrote {}", file.string());
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <cmath>
 
+#include "print.h"
+#include "scratch_directory.h"
 #include "trade_parts.h"
 #include "trade_report.h"
 #include "woodcock/trade/scaling.h"
@@ -14,54 +15,32 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A directory of its own, removed at the end.
-class Scratch {
-public:
-    Scratch()
-        : path_(std::filesystem::temp_directory_path() /
-                fmt::format("woodcock_scaling_{}", getpid())) {
-        std::filesystem::create_directories(path_);
-    }
-    ~Scratch() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
-
 void print(const ScalingReport& report) {
     for (const Curve& curve : report.curves) {
-        fmt::print("{}\n", curve.name);
+        print("{}\n", curve.name);
         for (const CurveSeries& series : curve.series) {
             const Measured slope = series.slope();
-            fmt::print("  {}{}\n", series.name,
-                       std::isfinite(slope.se)
-                           ? fmt::format(": slope {:.3f} +- {:.3f}", slope.value, slope.se)
-                           : "");
+            print("  {}{}\n", series.name,
+                  std::isfinite(slope.se)
+                      ? fmt::format(": slope {:.3f} +- {:.3f}", slope.value, slope.se)
+                      : "");
             for (const CurvePoint& p : series.points)
-                fmt::print(
-                    "    {:<12.5g} {:>12.5g} +- {:<10.2g} {}\n", p.x, p.y, p.se,
-                    &p == series.points.data() ? curve.yLabel + " over " + curve.xLabel : "");
+                print("    {:<12.5g} {:>12.5g} +- {:<10.2g} {}\n", p.x, p.y, p.se,
+                      &p == series.points.data() ? curve.yLabel + " over " + curve.xLabel : "");
         }
     }
     for (const CurveTable& table : report.tables) {
-        fmt::print("{}\n ", table.title);
-        for (const std::string& column : table.columns) fmt::print(" {:>10}", column);
-        fmt::print("\n");
+        print("{}\n ", table.title);
+        for (const std::string& column : table.columns) print(" {:>10}", column);
+        print("\n");
         for (const std::vector<double>& row : table.rows) {
-            fmt::print(" ");
+            print(" ");
             for (std::size_t i = 0; i < row.size(); ++i)
-                fmt::print(" {:>{}.4g}", row[i],
-                           std::max<std::size_t>(10, table.columns[i].size()));
-            fmt::print("\n");
+                print(" {:>{}.4g}", row[i], std::max<std::size_t>(10, table.columns[i].size()));
+            print("\n");
         }
     }
-    for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
+    for (const std::string& note : report.notes) print("note: {}\n", note);
 }
 
 Json curveJson(const Curve& curve) {
@@ -104,7 +83,7 @@ std::string scalingCsv(const ScalingReport& report) {
 
 void runScaling(double budget, const std::filesystem::path& report) {
     prepareReport(report, {"scaling.json", "scaling.csv", "scaling.html"});
-    const Scratch scratch;
+    const ScratchDirectory scratch;
     const ScalingReport found =
         measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
                             spdlog::info("{}", what);
@@ -112,7 +91,8 @@ void runScaling(double budget, const std::filesystem::path& report) {
     print(found);
     if (report.empty()) return;
     const Json json = scalingJson(found);
-    writeReport(report / "scaling.json", json.dump(1) + "\n");
+    writeReport(report / "scaling.json",
+                json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     writeReport(report / "scaling.csv", scalingCsv(found));
     writeReport(report / "scaling.html", scalingPage(json));
 }

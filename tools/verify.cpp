@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "option_kinds.h"
+#include "print.h"
 #include "tests/proof/proof.h"
 #include "verify_report.h"
 #include "woodcock/base/error.h"
@@ -39,7 +40,7 @@ struct VerifyOptions {
 };
 
 void write(const std::filesystem::path& file, const std::string& text) {
-    writeWholeFile(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+    writeWholeFile(file, text);
 }
 
 /// What would waste the time that checks take.
@@ -89,12 +90,11 @@ public:
                    formatDuration(seconds * static_cast<double>(checks_ - done) /
                                   static_cast<double>(done)) +
                    " left";
-        fmt::print(stderr, "\r{} of {} checks, {}{}: {}\x1b[K", done, checks_,
-                   formatDuration(seconds), left, check);
-        std::fflush(stderr);
+        printProgress("\r{} of {} checks, {}{}: {}\x1b[K", done, checks_, formatDuration(seconds),
+                      left, check);
     }
     void clear() const {
-        if (terminal_) fmt::print(stderr, "\r\x1b[K");
+        if (terminal_) printProgress("\r\x1b[K");
     }
 
 private:
@@ -117,7 +117,7 @@ void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report)
         report.times.push_back({check.kind, check.name, secondsSince(start)});
         report.cases.insert(report.cases.end(), cases.begin(), cases.end());
         progress.clear();
-        if (print) fmt::print("{}", casesText(check.name, cases));
+        if (print) printText(casesText(check.name, cases));
         std::fflush(stdout);
     }
     progress.clear();
@@ -135,11 +135,14 @@ void runVerify(const VerifyOptions& o) {
     report.only = o.only;
     report.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
     runChecks(list, !o.json, report);
-    fmt::print("{}", o.json ? reportJson(report) : summaryText(report));
+    if (o.json)
+        printData(reportJson(report));
+    else
+        printText(summaryText(report));
     if (!o.report.empty()) {
         write(o.jsonFile(), reportJson(report));
         write(o.htmlFile(), reportHtml(report));
-        if (!o.json) fmt::print("wrote {} and {}\n", o.jsonFile().string(), o.htmlFile().string());
+        if (!o.json) print("wrote {} and {}\n", o.jsonFile().string(), o.htmlFile().string());
     }
     if (!report.complete) throw CLI::RuntimeError(exitInterrupted);
     if (std::any_of(report.cases.begin(), report.cases.end(),

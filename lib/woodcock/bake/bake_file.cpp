@@ -35,16 +35,22 @@ openvdb::GridBase::Ptr coarsened(const openvdb::GridBase& grid, int level) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> bakedFiles(const std::filesystem::path& file, int levels) {
+    std::vector<std::filesystem::path> files{file};
+    for (int level = 1; level <= levels; ++level)
+        files.push_back(file.parent_path() /
+                        fmt::format("{}.lod{}.vdb", file.stem().string(), level));
+    return files;
+}
+
 std::vector<std::filesystem::path> writeBake(const std::filesystem::path& file, const Bake& bake,
                                              const VdbWriteOptions& options, int levels) {
-    std::vector<std::filesystem::path> files{file};
+    const std::vector<std::filesystem::path> files = bakedFiles(file, levels);
     writeVdb(file, *bake.grids, options);
     for (int level = 1; level <= levels; ++level) {
         VdbGrids coarse;
         for (const auto& grid : bake.grids->grids) coarse.grids.push_back(coarsened(*grid, level));
-        files.push_back(file.parent_path() /
-                        fmt::format("{}.lod{}.vdb", file.stem().string(), level));
-        writeVdb(files.back(), coarse, options);
+        writeVdb(files[static_cast<std::size_t>(level)], coarse, options);
     }
     return files;
 }

@@ -12,6 +12,9 @@
 
 namespace woodcock {
 
+/// The files that writeBake() writes.
+std::vector<std::filesystem::path> bakedFiles(const std::filesystem::path& file, int levels);
+
 /// Writes what was baked, and `levels` coarser versions beside it: smoke.vdb, smoke.lod1.vdb with
 /// voxels twice as large, and so on (full weighting of 27 voxels, as in multigrid methods, so that
 /// a coarse voxel sits on every second fine one and mass is kept). Returns the files. Errors:

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "woodcock/convert/nanovdb_file.h"
-#include "woodcock/convert/openvdb_convert_source.h"
-#include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/convert/nanovdb_file.h"
+#include "woodcock/convert/openvdb_convert_source.h"
+#include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_transform.h"
@@ -240,7 +240,7 @@ void sayWritten(const fs::path& out, const VdbGrids& grids, const ConvertOptions
         contents += fmt::format("'{}' ({}), {} active voxels; ", grid->getName(), grid->valueType(),
                                 grid->activeVoxelCount());
     say(options.info,
-        fmt::format("wrote {}: {}{} bytes", out.string(), contents, fs::file_size(out)));
+        fmt::format("wrote {}: {}{} bytes", out.string(), contents, bytesOfFile(out)));
 }
 
 void writeVdbFile(const fs::path& in, const fs::path& out, VdbGrids& grids,
@@ -328,11 +328,6 @@ const Format& outputFormat(const fs::path& out) {
     if (format && (format->writeGrids || format->writeDense)) return *format;
     throw usageError("the name of '{}' tells no format that can be written; these can: {}",
                      out.string(), listFormats(true));
-}
-
-bool sameFile(const fs::path& a, const fs::path& b) {
-    std::error_code ignored;
-    return a.lexically_normal() == b.lexically_normal() || fs::equivalent(a, b, ignored);
 }
 
 /// Options that would be ignored are mistakes.

@@ -4,6 +4,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+
 #include "woodcock/base/error.h"
 
 namespace woodcock {
@@ -61,6 +63,11 @@ OIIO::ImageSpec specOf(const ImageHeader& header) {
 // Into memory, because OpenEXR's file closes in a destructor that hides a full disk.
 std::vector<unsigned char> encodeImage(const ImageHeader& header, std::span<const float> pixels) {
     std::vector<unsigned char> bytes;
+    // At once, or growing would hold it twice. No encoder makes much more of what it cannot pack.
+    std::size_t pixelBytes = 0;
+    for (const ImageChannel& channel : header.channels) pixelBytes += typeOf(channel.type).size();
+    bytes.reserve(pixels.size() / std::max<std::size_t>(header.channels.size(), 1) * pixelBytes +
+                  (1 << 16));
     OIIO::Filesystem::IOVecOutput memory(bytes);
     const auto output = OIIO::ImageOutput::create(header.format);
     if (!output || !output->supports("ioproxy"))

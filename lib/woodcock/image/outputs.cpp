@@ -2,6 +2,7 @@
 #include "woodcock/image/outputs.h"
 
 #include <algorithm>
+#include <new>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
@@ -22,6 +23,16 @@ Outputs::Outputs(OutputSettings settings) : settings_(std::move(settings)) {
     }
 }
 
+double Outputs::bytesPerPixel() const {
+    constexpr double displayBytes = 4 * 4 + 3 * 4 + 2 * 4;  // floats, without alpha, and the file's
+    double most = 0;
+    for (const std::filesystem::path& file : settings_.files)
+        most = std::max(most, imageFormat(file) == ImageFormat::Exr
+                                  ? exrBytesPerPixel({settings_.half, settings_.layers, {}})
+                                  : displayBytes);
+    return most;
+}
+
 void Outputs::write(const Film& film, const RenderMetadata& metadata) const {
     std::string failures;
     for (const std::filesystem::path& file : settings_.files) {
@@ -33,6 +44,9 @@ void Outputs::write(const Film& film, const RenderMetadata& metadata) const {
                 writeDisplay(file, film, *transform_, settings_.withAlpha);
         } catch (const Error& e) {
             failures += (failures.empty() ? "" : "\n") + std::string(e.what());
+        } catch (const std::bad_alloc&) {
+            failures += fmt::format("{}cannot write '{}': there is too little memory to encode it",
+                                    failures.empty() ? "" : "\n", file.string());
         }
     }
     if (!failures.empty()) throw failure("{}", failures);

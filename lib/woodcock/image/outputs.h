@@ -31,6 +31,9 @@ public:
     /// What the user should know about the colour configuration; empty: nothing.
     const std::string& note() const { return settings_.colour.note(); }
 
+    /// Bytes of memory for each pixel that write() takes beside the film.
+    double bytesPerPixel() const;
+
     /// Writes every file, the others too when one fails; then throws Error{Failure} of those.
     void write(const Film& film, const RenderMetadata& metadata) const;
 

@@ -17,6 +17,8 @@ namespace {
 std::vector<float> scenePixels(const Film& film, bool straight) {
     std::vector<float> pixels;
     const Film::Window crop = film.crop();
+    pixels.reserve(4 * static_cast<std::size_t>(crop.width()) *
+                   static_cast<std::size_t>(crop.height()));
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
             const float alpha = film.alpha(x, y);
@@ -29,6 +31,7 @@ std::vector<float> scenePixels(const Film& film, bool straight) {
 
 std::vector<float> withoutAlpha(const std::vector<float>& rgba) {
     std::vector<float> rgb;
+    rgb.reserve(rgba.size() / 4 * 3);
     for (std::size_t i = 0; i < rgba.size(); i += 4)
         rgb.insert(rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
     return rgb;

@@ -143,6 +143,14 @@ ExrLayers layersFromNames(const std::vector<std::string>& names) {
     return layers;
 }
 
+double exrBytesPerPixel(const ExrSettings& settings) {
+    const ExrLayers& l = settings.layers;
+    const int floats =
+        l.depth + l.samples + 3 * (l.albedo + l.normal + l.transmittance + l.error + l.variance);
+    constexpr int ofFloat = sizeof(float);
+    return ofFloat * (4 + floats) + (settings.half ? 2 : ofFloat) * 4 + ofFloat * floats;
+}
+
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
               const ExrSettings& settings) {
     const std::vector<ChannelGroup> groups = channelGroups(film, settings);

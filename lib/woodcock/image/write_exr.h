@@ -46,6 +46,9 @@ struct ExrSettings {
 
 /// Writes the film's means, premultiplied by alpha, with the crop as data window. Whole or not at
 /// all; throws Error{Failure}.
+/// Bytes of a pixel that writeExr() takes while it works: as floats, and as the file holds it.
+double exrBytesPerPixel(const ExrSettings& settings);
+
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
               const ExrSettings& settings);
 
