@@ -29,7 +29,7 @@ std::string pictures(const NeedCost& c) {
                       : fmt::format("{:+.1e} +- {:.0e}", c.difference.value, c.difference.se);
 }
 
-void print(const NeedCost& c) {
+void printRow(const NeedCost& c) {
     if (c.needed) {
         print("{:<22} {:>11} {:>11} {:>16} {:>16}  needed\n", nameOf(c), "", "", "", "");
     } else {
@@ -107,7 +107,7 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
         if (std::exchange(first, false))
             print("{:<22} {:>11} {:>11} {:>16} {:>16}\n", "need", "without [s]", "with [s]",
                   "ratio of times", "of variances");
-        print(cost);
+        printRow(cost);
     };
     const auto costs = needsCost(scene, settings, {.budget = budget, .onResult = show});
     const std::vector<std::string> notes = notesOn(costs);

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void print(const ScalingReport& report) {
+void printReport(const ScalingReport& report) {
     for (const Curve& curve : report.curves) {
         print("{}\n", curve.name);
         for (const CurveSeries& series : curve.series) {
@@ -88,7 +88,7 @@ void runScaling(double budget, const std::filesystem::path& report) {
         measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
                             spdlog::info("{}", what);
                         }});
-    print(found);
+    printReport(found);
     if (report.empty()) return;
     const Json json = scalingJson(found);
     writeReport(report / "scaling.json",
