@@ -151,9 +151,9 @@ TEST(OpenImage, SizesAreHeldAgainstTheFile) {
 /// A small EXR with an attribute's bytes replaced.
 std::string exrWith(const std::string& whole, const std::string& name, const std::string& bytes) {
     std::string changed = whole;
-    const std::size_t at = whole.find('\0' + name + '\0');
+    const std::size_t at = whole.find(name + '\0');
     EXPECT_NE(at, std::string::npos) << name;
-    const std::size_t type = at + name.size() + 2, data = whole.find('\0', type) + 5;
+    const std::size_t type = at + name.size() + 1, data = whole.find('\0', type) + 5;
     return changed.replace(data, bytes.size(), bytes);
 }
 
