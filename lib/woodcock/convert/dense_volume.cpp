@@ -108,6 +108,19 @@ void readBlock(const DenseVolume& volume, const Dims& begin, const Dims& size, d
     readBlockAs(volume, begin, size, values);
 }
 
+void setVoxelSides(DenseVolume& volume, Vec3d sides) {
+    for (int a = 0; a < 3; ++a) {
+        Vec3d& column = volume.worldFromIndex.column[axis(a)];
+        column = column * (sides[a] / length(column));
+    }
+}
+
+void fillUnitCube(DenseVolume& volume) {
+    Vec3d sides;
+    for (int a = 0; a < 3; ++a) sides[a] = 1 / static_cast<double>(volume.dims[axis(a)]);
+    volume.worldFromIndex = Affine3d::translate(sides * 0.5) * Affine3d::scale(sides);
+}
+
 DenseVolume selectChannel(DenseVolume volume, int channel) {
     if (channel < 0 || channel >= volume.channels)
         throw usageError("there is no channel {} in '{}'; there are {}, from 0 on", channel,

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "woodcock/base/affine.h"
 #include "woodcock/convert/sample_type.h"
 #include "woodcock/convert/work_progress.h"
-#include "woodcock/base/affine.h"
 
 namespace woodcock {
 
@@ -37,7 +37,11 @@ struct DenseVolume {
     const char* samples = nullptr;
     std::shared_ptr<const void> owner;  ///< of the samples
     Affine3d worldFromIndex;
-    bool placed = false;             ///< the file says where the voxels lie
+    bool placed = false;    ///< the file says where the voxels lie
+    bool unitCube = false;  ///< not placed, and meant to fill the unit cube
+    /// The channels are volumes of their own, one after the other ("times"), and no colour; empty:
+    /// they belong together.
+    std::string list;
     std::vector<std::string> notes;  ///< what a user should know about the reading
 
     std::uint64_t voxels() const {
@@ -64,6 +68,12 @@ std::optional<std::uint64_t> denseBytes(const Dims& dims, int channels, SampleTy
 /// leaf of a VDB.
 void readBlock(const DenseVolume& volume, const Dims& begin, const Dims& size, float* values);
 void readBlock(const DenseVolume& volume, const Dims& begin, const Dims& size, double* values);
+
+/// Gives the sides of voxels these lengths; directions and the first voxel's place stay.
+void setVoxelSides(DenseVolume& volume, Vec3d sides);
+
+/// Cells that fill the cube from 0 to 1.
+void fillUnitCube(DenseVolume& volume);
 
 /// The same volume with one channel. Errors: Usage where there is no such channel.
 DenseVolume selectChannel(DenseVolume volume, int channel);
