@@ -238,8 +238,28 @@ TEST_F(DenseFormats, DamagedMitsubaVolumesAreRefused) {
     refused(vol({1, -1, 1, 1, 1}, box, "1234"), "no volume");
     refused(vol({1, 1, 1, 1, -1}, box, "1234"), "no volume");
     refused(vol({1, 1 << 30, 1 << 30, 1 << 30, 1 << 30}, box, "1234"), "no volume");
-    refused(vol({1, 1, 1, 1, 1}, {0, 0, 0, 0, 1, 1}, "1234"), "box");
-    refused(vol({1, 1, 1, 1, 1}, {0, 0, 0, NAN, 1, 1}, "1234"), "box");
+}
+
+/// Mitsuba does not look at the box, and fills the unit cube.
+TEST_F(DenseFormats, MitsubaVolumesWithoutABoxFillTheUnitCube) {
+    std::vector<float> integers(6);
+    const std::vector<std::int32_t> whole{0, 0, 0, 25, 25, 25};
+    std::memcpy(integers.data(), whole.data(), sizeof(float) * 6);
+    const auto expectCube = [&](const std::vector<float>& box) {
+        const DenseVolume volume = readMitsubaVolume(
+            file("a.vol", vol({1, 2, 4, 5, 1}, box, bytesOf(countingAs<float>(40)))));
+        EXPECT_TRUE(volume.unitCube);
+        EXPECT_FALSE(volume.placed);
+        EXPECT_EQ(volume.notes.size(), 1u);
+        EXPECT_EQ(volume.worldFromIndex.point({-0.5, -0.5, -0.5}), (Vec3d{0, 0, 0}));
+        EXPECT_EQ(volume.worldFromIndex.point({1.5, 3.5, 4.5}), (Vec3d{1, 1, 1}));
+        EXPECT_EQ(valuesOf(volume), countingXFirst({2, 4, 5}));
+    };
+    expectCube({0, 0, 0, 0, 0, 0});
+    expectCube({0, 0, 0, 0, 1, 1});
+    expectCube({0, 0, 0, NAN, 1, 1});
+    expectCube({1, 1, 1, 0, 0, 0});
+    expectCube(integers);
 }
 
 TEST_F(DenseFormats, WritersRefuseWhatATypeCannotHold) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "woodcock/base/printable.h"
 #include "woodcock/convert/dense_formats.h"
 #include "woodcock/convert/source_bytes.h"
-#include "woodcock/base/printable.h"
 
 namespace woodcock {
 
@@ -32,11 +32,23 @@ SampleType typeOf(std::int32_t encoding, const std::filesystem::path& file) {
     }
 }
 
+/// Mitsuba fills the unit cube and does not look at the box unless `use_grid_bbox` is set: so
+/// nobody notices that some writers leave it empty, and others write whole numbers there, which are
+/// next to nothing as floats.
 void placeInBox(DenseVolume& volume, Vec3d lower, Vec3d upper, const std::filesystem::path& file) {
-    if (!isFinite(lower) || !isFinite(upper) || !(lower.x < upper.x) || !(lower.y < upper.y) ||
-        !(lower.z < upper.z))
-        throw inputError("{}: its box from ({}, {}, {}) to ({}, {}, {}) is empty or not finite",
-                         file.string(), lower.x, lower.y, lower.z, upper.x, upper.y, upper.z);
+    constexpr double least = 1e-30;
+    bool usable = isFinite(lower) && isFinite(upper);
+    for (int i = 0; i < 3; ++i) usable = usable && upper[i] - lower[i] > least;
+    if (!usable) {
+        volume.unitCube = true;
+        fillUnitCube(volume);
+        volume.notes.push_back(fmt::format(
+            "{}: its box, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), is "
+            "empty or none: it fills the unit cube, as in Mitsuba without "
+            "use_grid_bbox, where --voxel, --size or --origin do not place it",
+            file.string(), lower.x, lower.y, lower.z, upper.x, upper.y, upper.z));
+        return;
+    }
     Vec3d voxel;
     for (int i = 0; i < 3; ++i)
         voxel[i] = (upper[i] - lower[i]) / static_cast<double>(volume.dims[static_cast<size_t>(i)]);
