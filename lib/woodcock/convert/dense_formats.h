@@ -29,9 +29,15 @@ DenseVolume readRaw(const std::filesystem::path& file, const RawLayout& layout);
 /// module has it, or array[x, y, z, channel]. Integers, halves, floats, doubles and booleans.
 DenseVolume readNpy(const std::filesystem::path& file);
 
+/// NumPy's archive of arrays, packed or not: each of three or four dimensions, or the one named
+/// `array`. They are of one size; notes name the others.
+std::vector<DenseVolume> readNpz(const std::filesystem::path& file,
+                                 const std::optional<std::string>& array);
+
 /// Mitsuba's grid volume (magic VOL, version 3): floats, as Mitsuba 3 has them, and the halves and
 /// bytes (0 to 255 mean 0 to 1) of Mitsuba 0.6. The box in the file is that of the cells, whose
-/// centres have the values: so Mitsuba 3's gridvolume sees it with use_grid_bbox.
+/// centres have the values: so Mitsuba 3's gridvolume sees it with use_grid_bbox. Where the box is
+/// empty or none, the cells fill the unit cube, as they do without that.
 DenseVolume readMitsubaVolume(const std::filesystem::path& file);
 
 /// The grids of one medium of a pbrt scene, of type uniformgrid or rgbgrid (heterogeneous in
@@ -51,6 +57,10 @@ DenseVolume readNrrd(const std::filesystem::path& file);
 /// right of a picture is at the greatest y and x. The numbers of bytes are 0 to 1, floats are as
 /// they are; nothing is taken for a colour.
 DenseVolume readImageStack(const std::filesystem::path& pattern, const WorkProgress& progress);
+/// The same of files whose names differ in one number, and of the pages of one TIFF file.
+DenseVolume readImageFiles(const std::vector<std::filesystem::path>& files,
+                           const WorkProgress& progress);
+DenseVolume readImagePages(const std::filesystem::path& file, const WorkProgress& progress);
 
 /// True for a name with #### or %04d in it.
 bool isImagePattern(const std::filesystem::path& file);
@@ -61,6 +71,7 @@ bool isImagePattern(const std::filesystem::path& file);
 
 struct DenseWriteOptions {
     std::optional<SampleType> type{};  ///< as in the volume where absent
+    bool packed = false;               ///< by gzip, where the format can be
     WorkProgress progress{};
 };
 

@@ -4,10 +4,10 @@
 
 namespace woodcock {
 
-bool isImagePattern(const std::filesystem::path& file) { return hasSliceNumber(file); }
+namespace {
 
-DenseVolume readImageStack(const std::filesystem::path& pattern, const WorkProgress& progress) {
-    auto slices = std::make_shared<Slices>(readSlices(pattern, progress));
+DenseVolume upright(Slices read) {
+    auto slices = std::make_shared<Slices>(std::move(read));
     DenseVolume volume;
     volume.dims = {slices->width, slices->height, static_cast<std::int64_t>(slices->count)};
     volume.channels = slices->channels;
@@ -18,6 +18,23 @@ DenseVolume readImageStack(const std::filesystem::path& pattern, const WorkProgr
     volume.samples = reinterpret_cast<const char*>(slices->values.data());
     volume.owner = std::move(slices);
     return volume;
+}
+
+}  // namespace
+
+bool isImagePattern(const std::filesystem::path& file) { return hasSliceNumber(file); }
+
+DenseVolume readImageStack(const std::filesystem::path& pattern, const WorkProgress& progress) {
+    return upright(readSlices(pattern, progress));
+}
+
+DenseVolume readImageFiles(const std::vector<std::filesystem::path>& files,
+                           const WorkProgress& progress) {
+    return upright(readSliceFiles(files, progress));
+}
+
+DenseVolume readImagePages(const std::filesystem::path& file, const WorkProgress& progress) {
+    return upright(readPages(file, progress));
 }
 
 }  // namespace woodcock

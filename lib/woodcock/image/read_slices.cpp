@@ -70,6 +70,73 @@ std::map<std::uint64_t, fs::path> findSlices(const fs::path& pattern) {
     return slices;
 }
 
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+/// A name as texts and the runs of digits between them.
+struct SplitName {
+    std::vector<std::string> texts, digits;
+};
+
+SplitName split(const std::string& name) {
+    SplitName parts;
+    parts.texts.emplace_back();
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        if (!isDigit(name[i])) {
+            parts.texts.back() += name[i];
+            continue;
+        }
+        if (i == 0 || !isDigit(name[i - 1])) {
+            parts.digits.emplace_back();
+            parts.texts.emplace_back();
+        }
+        parts.digits.back() += name[i];
+    }
+    return parts;
+}
+
+std::uint64_t numberOf(const std::string& digits, const fs::path& file) {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error != std::errc() || end != digits.data() + digits.size())
+        throw inputError("'{}' has a number that is too long", file.string());
+    return number;
+}
+
+/// Which run of digits tells the files apart: the one that differs.
+std::size_t findRun(const std::vector<fs::path>& files) {
+    const SplitName first = split(files.front().filename().string());
+    std::optional<std::size_t> run;
+    for (const fs::path& file : files) {
+        const SplitName parts = split(file.filename().string());
+        bool alike = parts.texts == first.texts && file.parent_path() == files[0].parent_path();
+        for (std::size_t i = 0; alike && i < parts.digits.size(); ++i) {
+            if (parts.digits[i] == first.digits[i]) continue;
+            alike = !run || *run == i;
+            run = i;
+        }
+        if (!alike)
+            throw inputError(
+                "'{}' and '{}' are no slices of one volume: their names must be equal but for one "
+                "number, in one folder",
+                files.front().string(), file.string());
+    }
+    if (!run) throw inputError("'{}' is given more than once", files.front().string());
+    return *run;
+}
+
+std::map<std::uint64_t, fs::path> sortSlices(const std::vector<fs::path>& files) {
+    const std::size_t run = findRun(files);
+    std::map<std::uint64_t, fs::path> slices;
+    for (const fs::path& file : files) {
+        const std::uint64_t number = numberOf(split(file.filename().string()).digits[run], file);
+        const auto [other, isNew] = slices.emplace(number, file);
+        if (!isNew)
+            throw inputError("'{}' and '{}' have the same number, {}", other->second.string(),
+                             file.string(), number);
+    }
+    return slices;
+}
+
 void requireNoGaps(const std::map<std::uint64_t, fs::path>& slices, const fs::path& pattern) {
     std::string missing;
     int gaps = 0;
@@ -109,8 +176,10 @@ bool hasSliceNumber(const fs::path& pattern) {
     return findNumber(pattern.filename().string()).has_value();
 }
 
-Slices readSlices(const fs::path& pattern, const std::function<void(double)>& report) {
-    const std::map<std::uint64_t, fs::path> files = findSlices(pattern);
+namespace {
+
+Slices readNumbered(const std::map<std::uint64_t, fs::path>& files, const fs::path& pattern,
+                    const std::function<void(double)>& report) {
     requireNoGaps(files, pattern);
     Slices slices;
     slices.firstNumber = files.begin()->first;
@@ -136,6 +205,62 @@ Slices readSlices(const fs::path& pattern, const std::function<void(double)>& re
             report(static_cast<double>(++done) / static_cast<double>(slices.count));
         else
             ++done;
+    }
+    return slices;
+}
+
+/// Pages of a file, as OpenImageIO counts them. It is bounded, as a file may say anything.
+std::uint64_t countPages(OIIO::ImageInput& input) {
+    constexpr int most = 1 << 20;
+    int pages = 0;
+    while (pages < most && input.seek_subimage(pages, 0)) ++pages;
+    input.geterror();  // of the page that there is not
+    return static_cast<std::uint64_t>(pages);
+}
+
+}  // namespace
+
+Slices readSlices(const fs::path& pattern, const std::function<void(double)>& report) {
+    return readNumbered(findSlices(pattern), pattern, report);
+}
+
+Slices readSliceFiles(const std::vector<fs::path>& files,
+                      const std::function<void(double)>& report) {
+    return readNumbered(sortSlices(files), files.front(), report);
+}
+
+Slices readPages(const fs::path& file, const std::function<void(double)>& report) {
+    const auto input = open(file);
+    Slices slices;
+    slices.count = countPages(*input);
+    if (slices.count < 2) {
+        const std::string imageJ = input->spec(0).get_string_attribute("ImageDescription");
+        if (imageJ.starts_with("ImageJ=") && imageJ.find("images=") != imageJ.npos)
+            throw inputError(
+                "'{}' is a stack that ImageJ wrote beyond TIFF's own limits, as one page and bare "
+                "numbers; save it as an image sequence",
+                file.string());
+        throw inputError(
+            "'{}' is one picture, and a volume needs several: of slices in files of their own name "
+            "all, as slice.####{}",
+            file.string(), file.extension().string());
+    }
+    OIIO::ImageSpec spec = input->spec(0);
+    prepare(slices, spec, file);
+    const std::size_t size = slices.values.size() / slices.count;
+    for (std::uint64_t page = 0; page < slices.count; ++page) {
+        spec = input->spec(static_cast<int>(page));
+        if (spec.width != slices.width || spec.height != slices.height ||
+            spec.nchannels != slices.channels || spec.depth > 1 || spec.deep)
+            throw inputError(
+                "page {} of '{}' is {} x {} with {} channels; its first is {} x {} with {}",
+                page + 1, file.string(), spec.width, spec.height, spec.nchannels, slices.width,
+                slices.height, slices.channels);
+        if (!input->read_image(static_cast<int>(page), 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
+                               slices.values.data() + page * size))
+            throw inputError("cannot read page {} of '{}': {}", page + 1, file.string(),
+                             input->geterror());
+        if (report) report(static_cast<double>(page + 1) / static_cast<double>(slices.count));
     }
     return slices;
 }

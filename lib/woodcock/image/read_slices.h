@@ -30,4 +30,13 @@ bool hasSliceNumber(const std::filesystem::path& pattern);
 Slices readSlices(const std::filesystem::path& pattern,
                   const std::function<void(double)>& report = {});
 
+/// Reads the files of a list, whose names differ in one number: in its order, whatever the list's.
+/// Errors: Input as readSlices(), and where the names differ in more.
+Slices readSliceFiles(const std::vector<std::filesystem::path>& files,
+                      const std::function<void(double)>& report = {});
+
+/// Reads the pages of one file, as a TIFF has several. Errors: Input as readSlices(), and where
+/// there is but one.
+Slices readPages(const std::filesystem::path& file, const std::function<void(double)>& report = {});
+
 }  // namespace woodcock
