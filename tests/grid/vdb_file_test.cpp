@@ -7,6 +7,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/write_vdb.h"
 #include "woodcock/grid/grid_roles.h"
+#include "woodcock/grid/nanovdb_file.h"
 #include "woodcock/grid/vdb_load.h"
 
 namespace woodcock::test {
@@ -111,7 +112,7 @@ TEST_F(VdbFileTest, FilesThatAreNone) {
     writeText(file_, "hello\tworld, this is text");
     expectBad(name() + " is not a VDB file: it begins with \"hello\\x09world, thi\"");
     writeText(file_, "NanoVDB0 and more bytes");
-    expectBad("is not a VDB file but a NanoVDB file; convert it");
+    if (hasNanoVdb()) expectBad(name() + " is of NanoVDB's format");
     writeText(file_, "version https://git-lfs.github.com/spec/v1\noid sha256:0");
     expectBad("is not a VDB file but a Git LFS pointer");
 }
@@ -202,6 +203,23 @@ TEST(VdbAssets, TheListingOfAFireCacheReadsNoVoxels) {
               "temperature (half-saved float), flame (half-saved float)");
     EXPECT_EQ(findGrid(file, GridRole::Density).grid.name, "density");
     EXPECT_EQ(file.grids[0].gridClass, GridClass::Staggered);
+}
+
+/// vdb_lod's levels of detail are one thing at several resolutions: the finest is drawn.
+TEST_F(VdbFileTest, TheFinestLevelOfDetailIsTheGrid) {
+    const auto level = [](const char* name) { return GridSpec{.name = name, .voxels = one}; };
+    writeVdb(file_,
+             {level("density_level_2"), level("density_level_0.5"), level("density_level_10"),
+              level("temperature_level_0"), level("density_level_x")});
+    const VdbFile file = listGrids(file_);
+    for (const FoundGrid& found : {findGrid(file, GridRole::Density), findGrid(file, "Density")}) {
+        EXPECT_EQ(found.grid.name, "density_level_0.5");
+        EXPECT_NE(found.note.find("took 'density_level_0.5', the finest"), std::string::npos)
+            << found.note;
+    }
+    EXPECT_TRUE(hasRole(file, GridRole::Temperature));
+    EXPECT_EQ(findGrid(file, "density_level_2").note, "");
+    EXPECT_FALSE(hasRole(file, GridRole::Emission));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/write_vdb.h"
 #include "woodcock/base/error.h"
+#include "woodcock/medium/optical_depth.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
 
@@ -71,6 +72,25 @@ TEST(BuildScene, DensityWithScaleAndAlbedo) {
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1.5f, 6, 3));
     EXPECT_EQ(b.scene.medium.parts[0].g(), 0.5);
     EXPECT_EQ(sigmaT(b.scene.medium, {-5, 0, 0}), Rgb(0));
+}
+
+/// A vec3 density: extinction of red, green and blue apart, each as in closed form.
+TEST(BuildScene, VectorDensitiesAreExtinctionsOfTheChannels) {
+    const TempDir dir;
+    writeVdb(dir / "a.vdb", {evenColour("density", {1, 0.5, 0})});
+    const BuiltScene built =
+        build(dir, "[[volume]]\nfile = \"a.vdb\"\nscale = 2\nalbedo = [1, 0.5, 1]\n");
+    ASSERT_EQ(built.scene.medium.parts.size(), 1u);
+    EXPECT_TRUE(built.scene.medium.parts[0].chromatic());
+    expectNear(sigmaT(built.scene.medium, {1, 1, 1}), {2, 1, 0});
+    expectNear(sigmaS(built.scene.medium, {1, 1, 1}), {2, 0.5f, 0});
+    // Eight voxels of 0.5: interpolation keeps each voxel's integral.
+    const Rgb depth = exactOpticalDepth(built.scene.medium, {1, 1, -10}, {0, 0, 1}, 0, 20);
+    EXPECT_NEAR(depth[0], 2 * 1 * 4, 1e-5);
+    EXPECT_NEAR(depth[1], 2 * 0.5 * 4, 1e-5);
+    EXPECT_EQ(depth[2], 0);
+    ASSERT_FALSE(built.loaded.notes.empty());
+    EXPECT_NE(built.loaded.notes[0].find("red, green and blue"), std::string::npos);
 }
 
 TEST(BuildScene, AlbedoGridsMultiply) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <limits>
 #include <span>
 
 #include "woodcock/base/error.h"
@@ -54,10 +56,43 @@ bool meansSomethingElse(std::string_view name) {
     return lower.starts_with("vel.") || lower.starts_with("velocity");
 }
 
+/// The first that matches; of several, the first that holds numbers.
 template <class Match>
 const GridListing* firstWhere(const VdbFile& file, Match match) {
-    const auto it = std::find_if(file.grids.begin(), file.grids.end(), match);
-    return it == file.grids.end() ? nullptr : &*it;
+    const GridListing* first = nullptr;
+    for (const GridListing& grid : file.grids) {
+        if (!match(grid)) continue;
+        if (grid.channels > 0) return &grid;
+        if (!first) first = &grid;
+    }
+    return first;
+}
+
+/// The finest of the levels of detail that OpenVDB's vdb_lod and Houdini's VDB LOD write for a grid
+/// `name`: "name_level_0" at full resolution, "name_level_1" at half of it, "name_level_0.5"
+/// between them. Null where there are none.
+const GridListing* findFinestLevel(const VdbFile& file, std::string_view name) {
+    const std::string begin = lowerCase(name) + "_level_";
+    const GridListing* finest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const GridListing& grid : file.grids) {
+        const std::string lower = lowerCase(grid.name);
+        if (!lower.starts_with(begin) || grid.channels == 0) continue;
+        const char* const end = lower.data() + lower.size();
+        double level = 0;
+        const auto [stop, error] = std::from_chars(lower.data() + begin.size(), end, level);
+        if (error != std::errc() || stop != end || !(level < least)) continue;
+        least = level;
+        finest = &grid;
+    }
+    return finest;
+}
+
+std::string levelNote(const VdbFile& file, const GridListing& level, std::string_view name) {
+    return fmt::format(
+        "{} holds levels of detail of '{}'; took '{}', the finest of them; the others are coarser "
+        "copies of it",
+        file.path.string(), name, level.uniqueName);
 }
 
 /// Says so where the file holds others of the same name.
@@ -75,6 +110,8 @@ const GridListing* findByRoleName(const VdbFile& file, GridRole role) {
         if (const auto* grid =
                 firstWhere(file, [&](const GridListing& g) { return lowerCase(g.name) == name; }))
             return grid;
+    for (std::string_view name : namesOf(role))
+        if (const auto* grid = findFinestLevel(file, name)) return grid;
     return nullptr;
 }
 
@@ -116,6 +153,8 @@ FoundGrid findGrid(const VdbFile& file, std::string_view name) {
         }))
         return found(file, *grid,
                      fmt::format("'{}' is '{}' in {}", name, grid->uniqueName, file.path.string()));
+    if (const auto* grid = findFinestLevel(file, name))
+        return {*grid, levelNote(file, *grid, name)};
 
     std::vector<std::string> names;
     for (const GridListing& grid : file.grids) names.push_back(grid.uniqueName);
@@ -126,7 +165,12 @@ FoundGrid findGrid(const VdbFile& file, std::string_view name) {
 }
 
 FoundGrid findGrid(const VdbFile& file, GridRole role) {
-    if (const auto* grid = findByRoleName(file, role)) return found(file, *grid);
+    if (const auto* grid = findByRoleName(file, role)) {
+        const std::size_t level = lowerCase(grid->name).find("_level_");
+        return level == std::string::npos
+                   ? found(file, *grid)
+                   : FoundGrid{*grid, levelNote(file, *grid, grid->name.substr(0, level))};
+    }
     if (role == GridRole::Density) {
         std::vector<const GridListing*> candidates;
         for (const GridListing& grid : file.grids)
@@ -145,6 +189,11 @@ FoundGrid findGrid(const VdbFile& file, GridRole role) {
         names += (names.empty() ? "" : ", ") + std::string(name);
     throw inputError("no {} grid in {} (looked for: {}); it has: {}; name the grid to use",
                      roleName(role), file.path.string(), names, describeGrids(file));
+}
+
+bool isNamedFor(const GridListing& grid, GridRole role) {
+    const auto names = namesOf(role);
+    return std::find(names.begin(), names.end(), lowerCase(grid.name)) != names.end();
 }
 
 bool hasRole(const VdbFile& file, GridRole role) { return findByRoleName(file, role) != nullptr; }

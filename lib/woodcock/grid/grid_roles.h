@@ -27,6 +27,9 @@ FoundGrid findGrid(const VdbFile& file, std::string_view name);
 /// the file holds.
 FoundGrid findGrid(const VdbFile& file, GridRole role);
 
+/// Whether the grid's name is one of the role's usual names, in any case.
+bool isNamedFor(const GridListing& grid, GridRole role);
+
 /// True when some grid of the file has one of the role's names.
 bool hasRole(const VdbFile& file, GridRole role);
 

@@ -38,12 +38,19 @@ public:
                                     volume.repair, purpose);
         if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
         note(std::move(found.note));
-        const LoadOptions options{
-            .use = purpose == Purpose::Density ? GridUse::Scalar : GridUse::Colour,
-            .storage = storageOf(volume),
-            .repair = volume.repair};
+        // A velocity that happens to be nowhere negative is no density.
+        const bool velocity =
+            purpose == Purpose::Density && isNamedFor(found.grid, GridRole::Velocity);
+        const LoadOptions options{.use = velocity ? GridUse::Scalar : GridUse::Colour,
+                                  .storage = storageOf(volume),
+                                  .repair = volume.repair};
         LoadedGrid grid = loadGrid(vdb, found.grid, options);
         for (std::string& text : grid.notes) note(std::move(text));
+        if (purpose == Purpose::Density && found.grid.channels == 3)
+            note(
+                fmt::format("grid '{}' in {} is a vector grid ({}): its three numbers are the "
+                            "densities of red, green and blue",
+                            found.grid.uniqueName, vdb.path.string(), found.grid.valueType));
         if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
         grid.field.setLookup(lookup_);
         const LoadedField loaded{std::make_shared<Field>(std::move(grid.field)),
