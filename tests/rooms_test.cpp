@@ -42,7 +42,7 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
 const std::map<std::string, std::set<std::string>> roomsOfLibrary{
     {"openvdb", {"grid", "mesh", "convert", "bake"}},
     {"openvdb_ax", {"bake"}},
-    {"nanovdb", {"convert"}},
+    {"nanovdb", {"grid", "convert"}},
     {"assimp", {"mesh"}},
     {"embree3", {"surface"}},
     {"embree4", {"surface"}},

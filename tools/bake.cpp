@@ -52,7 +52,7 @@ RecipeText findRecipe(const std::string& input) {
         return {std::string(preset->second), input, ""};
     const fs::path file = input;
     if (file.extension() == ".toml") return readRecipe(file);
-    if (file.extension() == ".vdb") return recipeOfGrids(file);
+    if (file.extension() == ".vdb" || file.extension() == ".nvdb") return recipeOfGrids(file);
     if (fs::exists(file))
         throw usageError(
             "'{}' is neither a recipe (.toml) nor a volume (.vdb); to convert other "

@@ -26,7 +26,7 @@ constexpr double largest = std::numeric_limits<double>::max();
 
 /// What the command line says, as it is written.
 struct ConvertWords {
-    std::filesystem::path in, out;
+    std::vector<std::filesystem::path> files;  ///< inputs, then the output
     std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
         axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
         compression, outType, bounds, band, radius;
@@ -99,6 +99,20 @@ T oneOf(const std::string& text, std::initializer_list<std::pair<const char*, T>
     throw usageError("'{}' is not one of {}", text, names);
 }
 
+/// "0.1", or "0.1,0.1,0.5".
+void readSides(const std::string& text, std::optional<double>& one, std::optional<Vec3d>& each) {
+    constexpr double least = 1e-30, most = 1e30;
+    if (text.find(',') == text.npos) {
+        one = parseNumber(text, least, most);
+        return;
+    }
+    const auto sides = numbers(text, 3, "0.1,0.1,0.5");
+    for (const double side : sides)
+        if (!(side >= least && side <= most))
+            throw usageError("'{}' has a side that is not between {} and {}", text, least, most);
+    each = Vec3d{sides[0], sides[1], sides[2]};
+}
+
 void readValueWords(const ConvertWords& words, ValueOptions& values) {
     const auto number = [](double& to) {
         return [&to](const std::string& t) { to = parseNumber(t, -largest, largest); };
@@ -138,10 +152,11 @@ ConvertOptions readWords(const ConvertWords& words) {
         options.channel = static_cast<int>(parseCount(t, 0, 1023));
     });
     ifGiven("--axes", words.axes, [&](const std::string& t) { options.axes = parseAxisOrder(t); });
+    Placement& placement = options.placement;
     ifGiven("--voxel", words.voxel,
-            [&](const std::string& t) { options.placement.voxel = parseNumber(t, 1e-30, 1e30); });
+            [&](const std::string& t) { readSides(t, placement.voxel, placement.voxelSides); });
     ifGiven("--size", words.size,
-            [&](const std::string& t) { options.placement.size = parseNumber(t, 1e-30, 1e30); });
+            [&](const std::string& t) { readSides(t, placement.size, placement.sizeSides); });
     const auto length = [](std::optional<double>& to) {
         return [&to](const std::string& t) { to = parseNumber(t, 1e-30, 1e30); };
     };
@@ -216,7 +231,10 @@ void run(const ConvertWords& words) {
         stopWhereInterrupted();
         bar.show(stage, fraction);
     };
-    convert(words.in, words.out, options);
+    if (words.files.size() < 2)
+        throw usageError("'{}' is given alone: name an input and an output",
+                         words.files.empty() ? "" : words.files.front().string());
+    convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(), options);
 }
 
 }  // namespace
@@ -224,14 +242,19 @@ void run(const ConvertWords& words) {
 CLI::App& addConvertCommand(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("convert", "Convert other volumes to VDB, and back");
     const auto words = std::make_shared<ConvertWords>();
-    command.add_option("in", words->in, "What to convert; slices as slice.####.png")->required();
-    command.add_option("out", words->out, "What to write")->required();
+    command
+        .add_option(
+            "IN... OUT", words->files,
+            "What to convert, and the file to write; slices as slice.####.png or one by one")
+        ->required()
+        ->type_name("FILE");
     const auto add = [&](const char* group, const char* name, std::optional<std::string>& to,
                          const char* type, const char* help) {
         command.add_option(name, to, help)->type_name(type)->group(group);
     };
     add("Input", "--from", words->from, "FORMAT", "Format of IN, instead of what its name says");
-    add("Input", "--grid", words->grid, "NAME", "Grid of a VDB, or medium of a pbrt scene");
+    add("Input", "--grid", words->grid, "NAME",
+        "Grid of a VDB, medium of a pbrt scene, or array of a .npz");
     add("Input", "--channel", words->channel, "N", "Take one channel of several, from 0");
     add("Bare numbers", "--dims", words->dims, "X,Y,Z", "Voxels; x varies fastest in the file");
     add("Bare numbers", "--type", words->type, "TYPE",
@@ -246,8 +269,9 @@ CLI::App& addConvertCommand(CLI::App& app) {
         ->group("Shapes");
     add("Place", "--axes", words->axes, "ORDER",
         "Axes of the source that become x, y and z, a minus reversing one: xzy, x,-z,y");
-    add("Place", "--voxel", words->voxel, "SIZE", "Side of a voxel; the shortest if unequal");
-    add("Place", "--size", words->size, "LENGTH", "Longest side of the volume, instead");
+    add("Place", "--voxel", words->voxel, "SIZE",
+        "Side of a voxel, the shortest if unequal; or three: X,Y,Z");
+    add("Place", "--size", words->size, "LENGTH", "Longest side of the volume, instead; or three");
     add("Place", "--origin", words->origin, "X,Y,Z", "Centre of the first voxel");
     constexpr const char* values = "Values, in this order: repair, scale, offset, clamp, threshold";
     command.add_flag("--repair", words->repair, "NaN and infinite values become zero")
@@ -261,7 +285,8 @@ CLI::App& addConvertCommand(CLI::App& app) {
     add("Output", "--name", words->name, "NAME", "Of the grid (density)");
     add("Output", "--precision", words->precision, "P",
         "half, float or double; the error is measured and said");
-    add("Output", "--compression", words->compression, "C", "none, zip or blosc (usual)");
+    add("Output", "--compression", words->compression, "C",
+        "none, zip or blosc; usual: blosc (vdb), none (nvdb, nrrd)");
     add("Output", "--out-type", words->outType, "TYPE", "Of the numbers of a dense file");
     add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
         "First and last voxel that a dense file gets; else the active ones' box");

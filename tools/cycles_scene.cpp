@@ -7,6 +7,7 @@
 
 #include "cycles_json.h"
 #include "cycles_surfaces.h"
+#include "woodcock/grid/vdb_file.h"
 #include "woodcock/scene/build.h"
 
 namespace woodcock::tool {
@@ -37,6 +38,11 @@ public:
             throw cyclesRefusal(place("repair"),
                                 "a volume that is repaired as it is loaded: it reads the "
                                 "file as it is; save it repaired with woodcock convert --repair");
+        if (!volume_.file.empty() && listGrids(volume_.file).nanoVdb)
+            throw cyclesRefusal(place("file"),
+                                "a file of NanoVDB: Blender reads none; `woodcock convert {} "
+                                "x.vdb` makes a VDB of it",
+                                volume_.file.string());
         const std::size_t first = list.size();
         std::visit([&](const auto& c) { add(list, c); }, volume_.coefficients);
         if (loaded_.emission)

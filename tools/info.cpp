@@ -72,7 +72,7 @@ CLI::App& addInfoCommand(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App& command = *app.add_subcommand(
         "info", "Tells what VDB files hold: types, bounds, values, memory, and what looks wrong.");
-    command.add_option("INPUT", options->files, "One or more volumes (.vdb)")
+    command.add_option("INPUT", options->files, "One or more volumes (.vdb, .nvdb)")
         ->required()
         ->type_name("FILE");
     command.add_option("--grid", options->grid, "Only this grid of each file")->type_name("NAME");

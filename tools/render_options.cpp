@@ -119,7 +119,7 @@ void exclude(bool first, bool second, const char* names) {
 }  // namespace
 
 void RenderOptions::addTo(CLI::App& command) {
-    command.add_option("INPUT", inputs, "A scene (.toml), or one or more volumes (.vdb)")
+    command.add_option("INPUT", inputs, "A scene (.toml), or one or more volumes (.vdb, .nvdb)")
         ->required()
         ->type_name("FILE");
     addOutput(command, *this);

@@ -38,7 +38,7 @@ void checkInput(const SceneInput& input) {
     if (files.size() > 1 && std::any_of(files.begin(), files.end(), isSceneFile))
         throw usageError("a scene file is rendered alone, but {} inputs are given", files.size());
     if (std::any_of(files.begin(), files.end(), [](const auto& file) { return file.empty(); }))
-        throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb)");
+        throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb, .nvdb)");
 }
 
 // The size goes through the scene file, where cameras depend on it. What it replaces is checked

@@ -169,6 +169,56 @@ TEST(Precision, TurnsDoublesToFloats) {
     EXPECT_EQ(only<openvdb::DoubleGrid>(grids).tree().getValue({0, 0, 0}), 1.0);
 }
 
+/// Each pair of types that OpenVDB cannot turn into each other too: tiles, background, inactive
+/// values and transform stay, and the error is that of rounding.
+TEST(Precision, TurnsVectorsOfAnyType) {
+    openvdb::initialize();
+    using openvdb::Vec3d, openvdb::Vec3f, openvdb::Vec3i;
+    auto doubles = openvdb::Vec3DGrid::create(Vec3d(0.1, 0, 0));
+    doubles->setName("vel");
+    doubles->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
+    doubles->tree().setValueOn({1, 2, 3}, Vec3d(1 + std::ldexp(1.0, -25), 2, -3));
+    doubles->tree().setValueOff({1, 2, 4}, Vec3d(4, 5, 6));
+    doubles->tree().addTile(2, {256, 0, 0}, Vec3d(7, 8, 9), true);
+    doubles->tree().addTile(1, {-64, 0, 0}, Vec3d(-1, 0, 1), false);
+    VdbGrids grids{{doubles}};
+    const PrecisionLoss loss = setPrecision(grids, Precision::Float);
+    EXPECT_EQ(loss.absolute, std::ldexp(1.0, -25));
+    const auto& floats = only<openvdb::Vec3SGrid>(grids);
+    EXPECT_EQ(floats.getName(), "vel");
+    EXPECT_EQ(floats.voxelSize(), Vec3d(0.25));
+    EXPECT_EQ(floats.background(), Vec3f(0.1f, 0, 0));
+    EXPECT_TRUE(floats.tree().hasSameTopology(doubles->tree()));
+    EXPECT_EQ(floats.tree().getValue({1, 2, 3}), Vec3f(1, 2, -3));
+    EXPECT_EQ(floats.tree().getValue({1, 2, 4}), Vec3f(4, 5, 6));
+    EXPECT_FALSE(floats.tree().isValueOn({1, 2, 4}));
+    EXPECT_EQ(floats.tree().getValue({300, 5, 6}), Vec3f(7, 8, 9));
+    EXPECT_EQ(floats.tree().getValue({-60, 1, 1}), Vec3f(-1, 0, 1));
+    EXPECT_FALSE(floats.tree().isValueOn({-60, 1, 1}));
+
+    auto whole = openvdb::Vec3IGrid::create(Vec3i(0, 0, 1));
+    whole->tree().setValueOn({0, 0, 0}, Vec3i(1, -2, 2147483647));
+    VdbGrids wholes{{whole}};
+    EXPECT_EQ(useFloatingPoint(wholes), 0);
+    const auto& exact = only<openvdb::Vec3DGrid>(wholes).tree();
+    EXPECT_EQ(exact.getValue({0, 0, 0}), Vec3d(1, -2, 2147483647));
+    EXPECT_EQ(exact.background(), Vec3d(0, 0, 1));
+}
+
+TEST(Precision, StatesWhatDoublesCannotHoldOfWholeNumbers) {
+    openvdb::initialize();
+    auto grid = openvdb::Int64Grid::create();
+    grid->tree().setValueOn({0, 0, 0}, (std::int64_t{1} << 53) + 1);
+    grid->tree().setValueOn({0, 0, 1}, -(std::int64_t{1} << 54));
+    VdbGrids grids{{grid}};
+    EXPECT_EQ(useFloatingPoint(grids), 1);
+    EXPECT_EQ(only<openvdb::DoubleGrid>(grids).tree().getValue({0, 0, 1}), -std::ldexp(1.0, 54));
+    auto largest = openvdb::Int64Grid::create();
+    largest->tree().setValueOn({0, 0, 0}, std::numeric_limits<std::int64_t>::max());
+    VdbGrids rounded{{largest}};
+    EXPECT_EQ(useFloatingPoint(rounded), 1);
+}
+
 TEST(RemapGrids, TouchesActiveValuesOnly) {
     openvdb::initialize();
     auto grid = openvdb::FloatGrid::create();

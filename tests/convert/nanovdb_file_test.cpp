@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/nanovdb_file.h"
+#include "woodcock/convert/nanovdb_write.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -9,13 +9,24 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_dir.h"
+#include "woodcock/grid/nanovdb_file.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb_load.h"
 
 namespace woodcock::test {
 namespace {
 
 using openvdb::Coord;
 using openvdb::CoordBBox;
+
+VdbGrids readAll(const std::filesystem::path& path) {
+    FileBytes file(path);
+    const std::size_t count = readNanoVdbHeads(file).grids.size();
+    VdbGrids all;
+    for (std::size_t i = 0; i < count; ++i)
+        all.grids.push_back(readNanoVdbGrid(path, i).grids.front());
+    return all;
+}
 
 #define NEEDS_NANOVDB() \
     if (!hasNanoVdb()) GTEST_SKIP() << "this build has no NanoVDB"
@@ -108,7 +119,7 @@ TEST(NanoVdbFile, KeepsEveryBitOfEveryGrid) {
     const TempDir dir;
     ASSERT_GT(ball()->tree().activeTileCount(), 10u);
     writeNanoVdb(dir / "a.nvdb", {{ball(), tiles(), vectors()}});
-    const VdbGrids read = readNanoVdb(dir / "a.nvdb");
+    const VdbGrids read = readAll(dir / "a.nvdb");
     ASSERT_EQ(read.grids.size(), 3u);
     expectSame(*read.grids[0], *ball());
     expectSame(*read.grids[1], *tiles());
@@ -134,7 +145,7 @@ TEST(NanoVdbFile, EmptyGridsAndThoseWithoutActiveVoxelsAreKept) {
     const auto inactive = openvdb::FloatGrid::create(0);
     inactive->tree().setValueOff({-5, 700, 9}, 2);
     writeNanoVdb(dir / "a.nvdb", {{empty, inactive}});
-    const VdbGrids read = readNanoVdb(dir / "a.nvdb");
+    const VdbGrids read = readAll(dir / "a.nvdb");
     ASSERT_EQ(read.grids.size(), 2u);
     expectSame(*read.grids[0], *empty);
     expectSame(*read.grids[1], *inactive);
@@ -150,8 +161,8 @@ TEST(NanoVdbFile, WhatItCannotKeepIsAnErrorThatNamesTheGrid) {
                 writeNanoVdb(dir / "a.nvdb", {{ball(), grid}});
             });
     };
-    expectBad(openvdb::DoubleGrid::create(), "holds double where float or vec3s is expected");
-    expectBad(openvdb::BoolGrid::create(), "holds bool");
+    expectBad(openvdb::BoolGrid::create(), "holds bool where float, double or vec3s is expected");
+    expectBad(openvdb::Vec3DGrid::create(), "holds vec3d");
     const auto tapered = openvdb::FloatGrid::create();
     tapered->setTransform(openvdb::math::Transform::createFrustumTransform(
         openvdb::BBoxd({0, 0, 0}, {1, 1, 1}), 0.5, 1));
@@ -170,12 +181,12 @@ TEST(NanoVdbFile, OtherFilesAreErrorsThatNameThem) {
     const TempDir dir;
     const auto expectBad = [&](const std::string& bytes, const std::string& part) {
         writeText(dir / "a.nvdb", bytes);
-        expectError(ErrorKind::Input, part, [&] { readNanoVdb(dir / "a.nvdb"); });
-        expectError(ErrorKind::Input, "a.nvdb", [&] { readNanoVdb(dir / "a.nvdb"); });
+        expectError(ErrorKind::Input, part, [&] { readAll(dir / "a.nvdb"); });
+        expectError(ErrorKind::Input, "a.nvdb", [&] { readAll(dir / "a.nvdb"); });
     };
     expectBad("", "is no NanoVDB file: it has 0 bytes");
     expectBad("These are words, and more words.", "is no NanoVDB file");
-    expectError(ErrorKind::Input, "missing.nvdb", [&] { readNanoVdb(dir / "missing.nvdb"); });
+    expectError(ErrorKind::Input, "missing.nvdb", [&] { readAll(dir / "missing.nvdb"); });
 
     writeNanoVdb(dir / "good.nvdb", {{ball()}});
     const std::string good = readText(dir / "good.nvdb");
@@ -197,12 +208,87 @@ TEST(NanoVdbFile, OtherFilesAreErrorsThatNameThem) {
     expectBad(with(14, std::string("\x02", 1)).replace(entry, 8, huge), "are said to hold");
     expectBad(with(entry + 8, huge), "bytes where");
     expectBad(with(grid, "x"), "does not begin with 'NanoVDB0'");
-    expectBad(with(grid + 636, "\x08"), "grid 'density' holds Mask");
-    expectBad(with(grid + 636, "\x63"), "holds an unknown type 99");
+    expectBad(with(grid + 636, "\x08"), "grid 'density' holds mask");
+    expectBad(with(grid + 636, "\x63"), "holds unknown type 99");
     expectBad(with(grid + 300, "\x63"), "the checksum of its head is wrong");
     expectBad(with(good.size() - 5, "\x63"), "the checksum of its nodes is wrong");
     expectBad(good + "more", "the header of a segment");
     expectBad(good + std::string(16, 'x'), "no segment begins at byte");
+}
+
+TEST(NanoVdbFile, CompressedAndDoublesAreTheSameNumbers) {
+    NEEDS_NANOVDB();
+    const TempDir dir;
+    const auto doubles = openvdb::DoubleGrid::create(0.1);
+    doubles->setName("exact");
+    doubles->tree().setValue({1, -2, 3}, 1.0 / 3);
+    std::size_t plain = 0;
+    for (const auto compression :
+         {NanoVdbCompression::None, NanoVdbCompression::Zip, NanoVdbCompression::Blosc}) {
+        writeNanoVdb(dir / "a.nvdb", {{ball(), vectors(), doubles}}, {.compression = compression});
+        const std::size_t bytes = std::filesystem::file_size(dir / "a.nvdb");
+        if (compression == NanoVdbCompression::None)
+            plain = bytes;
+        else
+            EXPECT_LT(bytes, plain / 10);
+        const VdbGrids read = readAll(dir / "a.nvdb");
+        expectSame(*read.grids[0], *ball());
+        expectSame(*read.grids[1], *vectors());
+        ASSERT_TRUE(read.grids[2]->isType<openvdb::DoubleGrid>());
+        const auto& tree = static_cast<const openvdb::DoubleGrid&>(*read.grids[2]).tree();
+        EXPECT_EQ(tree.background(), 0.1);
+        EXPECT_EQ(tree.getValue({1, -2, 3}), 1.0 / 3);
+    }
+}
+
+/// Each leaf has 65536 steps between its extremes; a value is off by half of one at most.
+TEST(NanoVdbFile, QuantisingStatesItsError) {
+    NEEDS_NANOVDB();
+    const TempDir dir;
+    const auto grid = openvdb::FloatGrid::create(0);
+    for (int i = 0; i < 512; ++i)
+        grid->tree().setValue({i >> 6, i >> 3 & 7, i & 7}, static_cast<float>(i * i) / 3);
+    const NanoVdbLoss loss = writeNanoVdb(dir / "a.nvdb", {{grid}}, {.quantise = true});
+    const VdbGrids read = readAll(dir / "a.nvdb");
+    const auto& tree = static_cast<const openvdb::FloatGrid&>(*read.grids[0]).tree();
+    double most = 0;
+    for (auto it = grid->cbeginValueOn(); it; ++it)
+        most = std::max(most, std::abs(static_cast<double>(tree.getValue(it.getCoord())) - *it));
+    const double step = 511.0 * 511 / 3 / 65535;
+    EXPECT_EQ(loss.absolute, most);
+    EXPECT_LE(loss.absolute, step * 0.51);
+    EXPECT_GT(loss.absolute, step * 0.4);
+}
+
+/// A file is a volume as a VDB is: by its usual names, each codec, numbers bit for bit.
+TEST(NanoVdbFile, IsListedAndLoadedAsAVdbIs) {
+    NEEDS_NANOVDB();
+    const TempDir dir;
+    const auto second = ball();
+    second->setTransform(openvdb::math::Transform::createLinearTransform(2));
+    const auto unnamed = vectors();
+    unnamed->setName("");
+    for (const auto compression :
+         {NanoVdbCompression::None, NanoVdbCompression::Zip, NanoVdbCompression::Blosc}) {
+        // Known by what it holds, whatever its name says.
+        writeNanoVdb(dir / "a.vdb", {{ball(), second, unnamed}}, {.compression = compression});
+        const VdbFile listed = listGrids(dir / "a.vdb");
+        EXPECT_TRUE(listed.nanoVdb);
+        EXPECT_EQ(listed.version, "NanoVDB 32.4");
+        EXPECT_EQ(describeGrids(listed), "density[0] (float), density[1] (float), [0] (vec3s)");
+        EXPECT_EQ(listed.grids[1].voxelSize, (Vec3d{2, 2, 2}));
+        EXPECT_EQ(listed.grids[2].gridClass, GridClass::Staggered);
+        const LoadedGrid loaded = loadGrid(dir / "a.vdb", "density[0]", {.nonNegative = false});
+        const auto truth = ball();
+        EXPECT_EQ(loaded.statistics.voxels.active, truth->activeVoxelCount());
+        for (int i = -45; i < 45; ++i)
+            ASSERT_EQ(loaded.field.trilinear({double(i), 1, -2}, 0),
+                      truth->tree().getValue({i, 1, -2}));
+        EXPECT_EQ(loaded.worldFromIndex.point({1, 0, 0}).x,
+                  truth->indexToWorld(Coord(1, 0, 0)).x());
+        expectError(ErrorKind::Input, "it has: density[0] (float)",
+                    [&] { loadGrid(dir / "a.vdb", "heat"); });
+    }
 }
 
 }  // namespace

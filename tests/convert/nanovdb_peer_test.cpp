@@ -12,10 +12,13 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_dir.h"
-#include "woodcock/convert/nanovdb_file.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
+#include "woodcock/convert/nanovdb_write.h"
+#include "woodcock/grid/grid_roles.h"
+#include "woodcock/grid/nanovdb_file.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb_file.h"
 
 namespace woodcock::test {
 namespace {
@@ -53,8 +56,17 @@ void write(const std::filesystem::path& file, Handle handle,
     nanovdb::io::writeGrid(file.string(), handle, codec);
 }
 
+VdbGrids readAll(const std::filesystem::path& path) {
+    FileBytes file(path);
+    const std::size_t count = readNanoVdbHeads(file).grids.size();
+    VdbGrids all;
+    for (std::size_t i = 0; i < count; ++i)
+        all.grids.push_back(readNanoVdbGrid(path, i).grids.front());
+    return all;
+}
+
 openvdb::FloatGrid::Ptr readOne(const std::filesystem::path& file) {
-    return openvdb::gridPtrCast<openvdb::FloatGrid>(readNanoVdb(file).grids.at(0));
+    return openvdb::gridPtrCast<openvdb::FloatGrid>(readAll(file).grids.at(0));
 }
 
 Coord near(RandomStream& random, int reach) {
@@ -162,7 +174,7 @@ TEST(NanoVdbPeer, GridsOfVariableBitsAreReadWithinTheirTolerance) {
     EXPECT_GT(worst, 0.001);
 }
 
-TEST(NanoVdbPeer, OtherNumbersBecomeFloat) {
+TEST(NanoVdbPeer, OtherNumbersStayWhatTheyAre) {
     const TempDir dir;
     const auto doubles = openvdb::DoubleGrid::create(0.1);
     doubles->tree().setValue({1, -2, 3}, 1.0 / 3);
@@ -172,14 +184,36 @@ TEST(NanoVdbPeer, OtherNumbersBecomeFloat) {
     handles.push_back(nanovdb::openToNanoVDB(openvdb::GridBase::Ptr(doubles)));
     handles.push_back(nanovdb::openToNanoVDB(openvdb::GridBase::Ptr(integers)));
     nanovdb::io::writeGrids((dir / "a.nvdb").string(), handles);
-    const VdbGrids read = readNanoVdb(dir / "a.nvdb");
+    const VdbGrids read = readAll(dir / "a.nvdb");
     ASSERT_EQ(read.grids.size(), 2u);
-    const auto& first = static_cast<const openvdb::FloatGrid&>(*read.grids[0]).tree();
-    EXPECT_EQ(first.background(), 0.1f);
-    EXPECT_EQ(first.getValue({1, -2, 3}), 1.0f / 3);
-    const auto& second = static_cast<const openvdb::FloatGrid&>(*read.grids[1]).tree();
+    ASSERT_TRUE(read.grids[0]->isType<openvdb::DoubleGrid>());
+    const auto& first = static_cast<const openvdb::DoubleGrid&>(*read.grids[0]).tree();
+    EXPECT_EQ(first.background(), 0.1);
+    EXPECT_EQ(first.getValue({1, -2, 3}), 1.0 / 3);
+    ASSERT_TRUE(read.grids[1]->isType<openvdb::Int32Grid>());
+    const auto& second = static_cast<const openvdb::Int32Grid&>(*read.grids[1]).tree();
     EXPECT_EQ(second.background(), -7);
-    EXPECT_EQ(second.getValue({1, -2, 3}), 16777216);
+    EXPECT_EQ(second.getValue({1, -2, 3}), 16777217);
+}
+
+/// Masks, points and what else holds no numbers are listed as what they are, beside a density.
+TEST(NanoVdbPeer, GridsWithoutNumbersAreNamedAndLeaveTheOthers) {
+    const TempDir dir;
+    std::vector<Handle> handles;
+    const auto mask = openvdb::MaskGrid::create();
+    mask->setName("density");
+    mask->tree().setValueOn({1, 2, 3});
+    handles.push_back(nanovdb::openToNanoVDB(openvdb::GridBase::Ptr(mask)));
+    handles.push_back(quantised<float>(*sample()));
+    nanovdb::io::writeGrids((dir / "a.nvdb").string(), handles);
+    const VdbFile listed = listGrids(dir / "a.nvdb");
+    EXPECT_EQ(describeGrids(listed), "density[0] (mask), density[1] (float)");
+    EXPECT_FALSE(listed.grids[0].usable());
+    EXPECT_NE(listed.grids[0].unusable.find("grid of mask"), std::string::npos);
+    EXPECT_TRUE(listed.grids[1].usable());
+    // Of two of one name, the one that holds numbers is meant.
+    EXPECT_EQ(findGrid(listed, "density").grid.uniqueName, "density[1]");
+    EXPECT_EQ(findGrid(listed, GridRole::Density).grid.uniqueName, "density[1]");
 }
 
 TEST(NanoVdbPeer, CompressedFilesAndWeakerChecksumsAreTheSameGrid) {
@@ -225,7 +259,7 @@ TEST(NanoVdbPeer, DamagedFilesDoNoHarm) {
                         static_cast<char>(1 << random.bits() % 8);
             writeText(dir / "a.nvdb", bytes);
             try {
-                readNanoVdb(dir / "a.nvdb");
+                readAll(dir / "a.nvdb");
                 ++grids;
             } catch (const Error& e) {
                 EXPECT_NE(std::string(e.what()).find("a.nvdb"), std::string::npos) << e.what();
@@ -249,7 +283,7 @@ TEST(NanoVdbPeer, NodesThatAreSharedAreAnError) {
     }
     write(dir / "a.nvdb", std::move(handle));
     expectError(ErrorKind::Input, "more nodes of level 0 than the 48",
-                [&] { readNanoVdb(dir / "a.nvdb"); });
+                [&] { readAll(dir / "a.nvdb"); });
 }
 
 }  // namespace

@@ -146,7 +146,8 @@ TEST_F(Nrrd, FindsTheAxisOfChannels) {
     // An axis of one entry says nothing.
     expectAxes(read(four("1 4 3 2", "kinds: vector space space space\n")), {4, 3, 2}, 1, "", 1);
     expectRefused(four("2 3 2 2", "kinds: space space space space\n"), "4 of the NRRD file's 4");
-    expectRefused(four("2 3 2 2", "kinds: list space space vector\n"), "2 of the NRRD file's 4");
+    expectRefused(four("2 3 2 2", "kinds: list space space vector\n"),
+                  "axes 0 and 3 are both no axes of space");
     expectRefused(
         "NRRD0004\ntype: short\ndimension: 5\nsizes: 2 2 2 1 3\nencoding: raw\n"
         "endian: little\nkinds: list space space space vector\n\n" +

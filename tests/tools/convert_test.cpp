@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <cstring>
 
 #include "tests/support/paths.h"
+#include "tests/support/read_back.h"
 #include "tests/support/run_program.h"
 #include "tests/support/write_vdb.h"
+#include "woodcock/grid/nanovdb_file.h"
+#include "woodcock/grid/vdb_file.h"
 
 namespace woodcock::test {
 namespace {
@@ -159,6 +163,208 @@ TEST_F(Convert, ChoosesGridsAndTurnsThem) {
     expectDone("two.vdb", "turned.raw",
                {"--grid", "density", "--axes", "-x,y,z", "--out-type", "u8"});
     EXPECT_EQ(readText(file("turned.raw")), "\x06\x05");
+}
+
+/// Sides that differ, along the axes of the file, before it is turned.
+TEST_F(Convert, TakesThreeSidesOfVoxels) {
+    const auto sides = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), layout.begin(), layout.end());
+        expectDone("a.raw", "a.vdb", more);
+        return listGrids(file("a.vdb")).grids.at(0).voxelSize;
+    };
+    EXPECT_EQ(sides({"--voxel", "0.5"}), (Vec3d{0.5, 0.5, 0.5}));
+    EXPECT_EQ(sides({"--voxel", "0.5,0.25,2"}), (Vec3d{0.5, 0.25, 2}));
+    EXPECT_EQ(sides({"--voxel", "0.5,0.25,2", "--axes", "xzy"}), (Vec3d{0.5, 2, 0.25}));
+    EXPECT_EQ(sides({"--size", "6,10,18"}), (Vec3d{0.5, 1, 2}));
+    expectRefused(2, "--voxel: '1,2'", "a.raw", "b.vdb", {"--voxel", "1,2"});
+    expectRefused(2, "--voxel: '1,0,1'", "a.raw", "b.vdb", {"--voxel", "1,0,1"});
+    // Places on the command line stand above a box that is none.
+    std::string empty = "VOL\x03";
+    for (const int n : {1, 12, 10, 9, 1, 0, 0, 0, 0, 0, 0})
+        empty.append(reinterpret_cast<const char*>(&n), sizeof n);
+    writeText(file("a.vol"), empty + numbers());
+    const ProgramResult cube = convert("a.vol", "c.vdb");
+    EXPECT_NE(cube.err.find("unit cube"), std::string::npos) << cube.err;
+    const Vec3d voxel = listGrids(file("c.vdb")).grids.at(0).voxelSize;
+    EXPECT_DOUBLE_EQ(voxel.x, 1.0 / 12);
+    EXPECT_DOUBLE_EQ(voxel.y, 1.0 / 10);
+    EXPECT_DOUBLE_EQ(voxel.z, 1.0 / 9);
+    expectDone("a.vol", "c.vdb", {"--voxel", "0.5"});
+    EXPECT_EQ(listGrids(file("c.vdb")).grids.at(0).voxelSize, (Vec3d{0.5, 0.5, 0.5}));
+}
+
+/// Each output keeps what it can of them, and the others say that they do not.
+TEST_F(Convert, HonoursPrecisionAndCompressionOrRefusesThem) {
+    std::vector<std::string> more = layout;
+    const auto with = [&](std::initializer_list<const char*> options) {
+        more = layout;
+        more.insert(more.end(), options.begin(), options.end());
+        return more;
+    };
+    const auto size = [&](const std::string& name) { return fs::file_size(file(name)); };
+    expectDone("a.raw", "a.nrrd", layout);
+    expectDone("a.raw", "zip.nrrd", with({"--compression", "zip"}));
+    EXPECT_LT(size("zip.nrrd"), size("a.nrrd"));
+    expectDone("zip.nrrd", "zip.raw");
+    EXPECT_EQ(readText(file("zip.raw")), numbers());
+    expectDone("a.raw", "half.npy", with({"--precision", "half"}));
+    EXPECT_EQ(size("half.npy"), 128 + 2u * 12 * 10 * 9);
+    expectDone("a.raw", "double.npy", with({"--precision", "double"}));
+    EXPECT_EQ(size("double.npy"), 128 + 8u * 12 * 10 * 9);
+    for (const char* format : {"raw", "npy", "vol"})
+        expectRefused(2, "--compression is for vdb, nvdb and nrrd", "a.raw",
+                      std::string("b.") + format, with({"--compression", "zip"}));
+    expectRefused(2, "none or zip", "a.raw", "b.nrrd", with({"--compression", "blosc"}));
+    expectRefused(2, "holds no halves", "a.raw", "b.nrrd", with({"--precision", "half"}));
+    expectRefused(2, "holds no halves", "a.raw", "b.vol", with({"--precision", "half"}));
+    expectRefused(2, "floats alone", "a.raw", "b.vol", with({"--precision", "double"}));
+    expectRefused(2, "give one", "a.raw", "b.raw",
+                  with({"--precision", "half", "--out-type", "u8"}));
+    if (!hasNanoVdb()) GTEST_SKIP() << "this build has no NanoVDB";
+    expectDone("a.raw", "a.nvdb", layout);
+    for (const char* codec : {"zip", "blosc"}) {
+        expectDone("a.raw", "packed.nvdb", with({"--compression", codec}));
+        EXPECT_LT(size("packed.nvdb"), size("a.nvdb") / 10);
+        expectDone("packed.nvdb", "packed.raw", all);
+        EXPECT_EQ(readText(file("packed.raw")), numbers());
+    }
+    more = with({"--precision", "half"});
+    EXPECT_NE(convert("a.raw", "half.nvdb", more).err.find("Fp16"), std::string::npos);
+    EXPECT_EQ(listGrids(file("half.nvdb")).grids.at(0).valueType, "Fp16");
+    expectDone("a.raw", "double.nvdb", with({"--precision", "double"}));
+    EXPECT_EQ(listGrids(file("double.nvdb")).grids.at(0).valueType, "double");
+    GridSpec vectors{.name = "vel", .type = VdbType::Vec3d, .voxels = {{{0, 0, 0}, {0.1, 1, 2}}}};
+    writeVdb(dir / "v.vdb", {vectors});
+    for (const char* precision : {"float", "double"}) {
+        const ProgramResult result = convert("v.vdb", "v.nvdb", {"--precision", precision});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        // 0.1 as a float: off by 1.49e-09.
+        EXPECT_NE(result.err.find("change by 1.49e-09"), std::string::npos) << result.err;
+        EXPECT_EQ(listGrids(file("v.nvdb")).grids.at(0).valueType, "vec3s");
+    }
+    EXPECT_NE(convert("v.vdb", "v.nvdb").err.find("change by 1.49e-09"), std::string::npos);
+}
+
+/// Every type of numbers goes everywhere; what holds none is left out and named.
+TEST_F(Convert, TakesGridsOfEveryType) {
+    const auto grid = [](const char* name, VdbType type) {
+        GridSpec spec{.name = name, .type = type};
+        for (const int x : {1, 2, 8, 9}) spec.voxels.push_back({{x, 2, 3}, {1, 1, 1}});
+        spec.tiles = {{{8, 0, 0}, 8, {1, 1, 1}, true}};
+        return spec;
+    };
+    const std::vector<std::pair<const char*, VdbType>> types{
+        {"float", VdbType::Float}, {"double", VdbType::Double}, {"int32", VdbType::Int32},
+        {"int64", VdbType::Int64}, {"bool", VdbType::Bool},     {"mask", VdbType::Mask},
+        {"vec3s", VdbType::Vec3s}, {"vec3d", VdbType::Vec3d},   {"vec3i", VdbType::Vec3i}};
+    std::vector<GridSpec> specs;
+    for (const auto& [name, type] : types) specs.push_back(grid(name, type));
+    GridSpec points{.name = "dust", .type = VdbType::Points};
+    specs.push_back(points);
+    writeVdb(dir / "all.vdb", specs);
+    std::vector<std::string> outputs{"all2.vdb"};
+    if (hasNanoVdb()) outputs.push_back("all.nvdb");
+    for (const std::string& out : outputs) {
+        const ProgramResult result = convert("all.vdb", out);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_NE(result.err.find("'dust' of"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("is left out"), std::string::npos) << result.err;
+        const VdbFile written = listGrids(file(out));
+        ASSERT_EQ(written.grids.size(), types.size()) << out;
+        for (std::size_t i = 0; i < types.size(); ++i)
+            EXPECT_EQ(written.grids[i].name, types[i].first);
+    }
+    for (const auto& [name, type] : types)
+        for (const std::string& source : outputs) {
+            expectDone(source, "a.raw",
+                       {"--grid", name, "--out-type", "u8", "--bounds", "1,2,3,9,2,3"});
+            const bool vector = std::string_view(name).starts_with("vec3");
+            const std::string on = vector ? "\x01\x01\x01" : "\x01";
+            const std::string off(on.size(), '\0');
+            EXPECT_EQ(readText(file("a.raw")), on + on + off + off + off + off + off + on + on)
+                << name << " of " << source;
+        }
+    expectRefused(3, "float, double, int32, int64, bool, mask, vec3s, vec3d, vec3i", "all.vdb",
+                  "a.npy");
+    writeVdb(dir / "two.vdb", {grid("density", VdbType::Float), grid("density", VdbType::Float),
+                               grid("", VdbType::Float), grid("", VdbType::Float)});
+    expectRefused(3, "--grid: density[0], density[1], [0], [1]", "two.vdb", "a.npy");
+    expectDone("two.vdb", "one.raw", {"--grid", "[1]"});
+}
+
+TEST_F(Convert, TakesAListOfSlices) {
+    for (const int n : {9, 10, 11})
+        writeFloats(dir / ("s." + std::to_string(n) + ".exr"), 1, 1, 1, {static_cast<float>(n)});
+    const auto run = [&](std::vector<std::string> files) {
+        for (std::string& name : files) name = file(name);
+        files.insert(files.begin(), "convert");
+        return runProgram(files);
+    };
+    const ProgramResult done = run({"s.10.exr", "s.11.exr", "s.9.exr", "s.raw"});
+    EXPECT_EQ(done.exitCode, 0) << done.err;
+    const float expected[]{9, 10, 11};
+    EXPECT_EQ(readText(file("s.raw")),
+              std::string(reinterpret_cast<const char*>(expected), sizeof expected));
+    const ProgramResult gap = run({"s.11.exr", "s.9.exr", "t.raw"});
+    EXPECT_EQ(gap.exitCode, 3);
+    EXPECT_NE(gap.err.find("are missing between 9 and 11: 10"), std::string::npos) << gap.err;
+    const ProgramResult other = run({"a.raw", "s.9.exr", "t.raw"});
+    EXPECT_EQ(other.exitCode, 2);
+    EXPECT_NE(other.err.find("convert other files one by one"), std::string::npos) << other.err;
+    const ProgramResult one = run({"s.9.exr", "t.raw"});
+    EXPECT_EQ(one.exitCode, 3);
+    EXPECT_NE(one.err.find("slice.####.exr"), std::string::npos) << one.err;
+    const ProgramResult alone = run({"s.9.exr"});
+    EXPECT_EQ(alone.exitCode, 2);
+    EXPECT_NE(alone.err.find("name an input and an output"), std::string::npos) << alone.err;
+}
+
+TEST_F(Convert, HintsAtHounsfieldUnits) {
+    std::string bytes;
+    for (int i = 0; i < 8; ++i) {
+        const short v[]{-1024, -1000, -90, 0, 40, 300, 1200, 3071};
+        bytes.append(reinterpret_cast<const char*>(&v[i]), 2);
+    }
+    writeText(file("ct.raw"), bytes);
+    const std::vector<std::string> dims{"--dims", "2,2,2", "--type", "i16"};
+    const ProgramResult hinted = convert("ct.raw", "ct.vdb", dims);
+    EXPECT_NE(hinted.err.find("Hounsfield"), std::string::npos) << hinted.err;
+    // What it says to do leaves no hint, and air empty and water 1.
+    std::vector<std::string> more = dims;
+    for (const char* word : {"--scale", "0.001", "--offset", "1", "--clamp", "0,5"})
+        more.emplace_back(word);
+    const ProgramResult followed = convert("ct.raw", "ct.vdb", more);
+    EXPECT_EQ(followed.err.find("Hounsfield"), std::string::npos) << followed.err;
+    expectDone("ct.vdb", "out.raw", {"--bounds", "0,0,0,1,1,1"});
+    const std::string out = readText(file("out.raw"));
+    std::vector<float> values(8);
+    ASSERT_EQ(out.size(), 32u);
+    std::memcpy(values.data(), out.data(), 32);
+    EXPECT_EQ(values[0], 0);
+    EXPECT_EQ(values[1], 0);
+    EXPECT_EQ(values[3], 1);
+    EXPECT_FLOAT_EQ(values[7], 4.071f);
+}
+
+/// A NanoVDB file is a volume wherever a VDB is.
+TEST_F(Convert, NanoVdbIsDrawnAndInspected) {
+    if (!hasNanoVdb()) GTEST_SKIP() << "this build has no NanoVDB";
+    expectDone("a.raw", "a.vdb", layout);
+    expectDone("a.vdb", "a.nvdb", {"--compression", "blosc"});
+    const auto render = [&](const std::string& in, const std::string& out) {
+        const ProgramResult result = runProgram({"render", file(in), "-o", file(out), "--res",
+                                                 "8x8", "--spp", "4", "--seed", "1", "-q"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return readBack(file(out)).values;
+    };
+    EXPECT_EQ(render("a.nvdb", "n.exr"), render("a.vdb", "v.exr"));
+    const ProgramResult info = runProgram({"info", file("a.nvdb")});
+    EXPECT_EQ(info.exitCode, 0) << info.err;
+    EXPECT_NE(info.out.find("NanoVDB 32.4"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("density"), std::string::npos) << info.out;
+    const ProgramResult none = runProgram({"info", file("a.nvdb"), "--grid", "heat"});
+    EXPECT_EQ(none.exitCode, 3);
+    EXPECT_NE(none.err.find("it has: density (float)"), std::string::npos) << none.err;
 }
 
 TEST_F(Convert, MitsubaReadsItsVolumes) {

@@ -8,13 +8,11 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
-#include "woodcock/convert/nanovdb_file.h"
+#include "woodcock/convert/nanovdb_write.h"
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/convert/openvdb_each_type.h"
-#include "woodcock/grid/grid_roles.h"
+#include "woodcock/grid/foreign_format.h"
 #include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
-#include "woodcock/grid/vdb_grids_read.h"
 
 namespace woodcock {
 
@@ -40,193 +38,16 @@ struct Format {
     WriteGrids writeGrids = nullptr;
 };
 
-WorkProgress stage(const ConvertOptions& options, std::string_view name) {
-    if (!options.progress) return {};
-    return [&options, name](double fraction) { options.progress(name, fraction); };
+void sayLoss(const std::string& why, PrecisionLoss loss, const ConvertOptions& options) {
+    say(options.info, fmt::format("{}: values change by {:.3g} at most, relatively by {:.3g}", why,
+                                  loss.absolute, loss.relative));
 }
 
-void place(DenseVolume& volume, const Placement& placement) {
-    auto& columns = volume.worldFromIndex.column;
-    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-        shortest = std::min(shortest, length(columns[a]));
-        longest = std::max(longest, length(columns[a]) * static_cast<double>(volume.dims[a]));
-    }
-    double factor = 1;
-    if (placement.voxel) factor = *placement.voxel / shortest;
-    if (placement.size) factor = *placement.size / longest;
-    // About the first voxel, so that the volume stays where the file has it.
-    if (factor != 1)
-        for (Vec3d& column : columns) column = column * factor;
-    if (placement.origin) volume.worldFromIndex.translation = *placement.origin;
-}
-
-std::string describePlace(const DenseVolume& volume, const Placement& placement) {
-    const auto& m = volume.worldFromIndex;
-    std::string text = fmt::format(
-        "voxels of {:.6g} x {:.6g} x {:.6g}, the first one's centre at ({:.6g}, {:.6g}, {:.6g})",
-        length(m.column[0]), length(m.column[1]), length(m.column[2]), m.translation.x,
-        m.translation.y, m.translation.z);
-    const bool assumed = !volume.placed && !placement.voxel && !placement.size;
-    return assumed ? text + "; assumed, as the file has no sizes: see --voxel, --size, --origin"
-                   : text;
-}
-
-void append(Source& source, DenseVolume volume, const fs::path& in, const ConvertOptions& options) {
-    for (const std::string& note : volume.notes) say(options.warn, note);
-    const std::string contents = volume.describe();
-    if (options.channel) volume = selectChannel(std::move(volume), *options.channel);
-    applyAxisOrder(volume, options.axes);
-    straighten(volume);
-    place(volume, options.placement);
-    ValueSummary found;
-    VdbGrids made = denseToVdb(volume, options.values, found, stage(options, "converting"));
-    say(options.warn, requireSound(found, fmt::format("{}: '{}'", in.string(), volume.name),
-                                   options.values.repair));
-    say(options.info, fmt::format("read '{}' from {}: {}, values {:.6g} to {:.6g}", volume.name,
-                                  in.string(), contents, found.min, found.max));
-    say(options.info,
-        fmt::format("'{}': {}", volume.name, describePlace(volume, options.placement)));
-    if (found.active == 0)
-        say(options.warn, fmt::format("'{}' is empty: all of its {} voxels are zero{}", volume.name,
-                                      volume.voxels(),
-                                      options.values.remap.identity() ? "" : " after remapping"));
-    const Vec3i last{static_cast<int>(volume.dims[0]) - 1, static_cast<int>(volume.dims[1]) - 1,
-                     static_cast<int>(volume.dims[2]) - 1};
-    source.box = Box3i{{0, 0, 0}, last};
-    source.grids.grids.push_back(made.grids.front());
-}
-
-Source fromVolume(DenseVolume volume, const fs::path& in, const ConvertOptions& options) {
-    if (options.name) volume.name = *options.name;
-    Source source;
-    append(source, std::move(volume), in, options);
-    return source;
-}
-
-Source readRawSource(const fs::path& in, const ConvertOptions& options) {
-    if (!options.dims || !options.type)
-        throw usageError(
-            "'{}' is a file of bare numbers: say how many by --dims X,Y,Z and of which kind by "
-            "--type u8|u16|f32|...",
-            in.string());
-    return fromVolume(
-        readRaw(in, {*options.dims, options.channels.value_or(1), *options.type,
-                     options.bigEndian.value_or(false), options.headerBytes.value_or(0)}),
-        in, options);
-}
-
-Source readNpySource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readNpy(in), in, options);
-}
-
-Source readMitsubaSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readMitsubaVolume(in), in, options);
-}
-
-Source readNrrdSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readNrrd(in), in, options);
-}
-
-Source readImagesSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readImageStack(in, stage(options, "reading")), in, options);
-}
-
-Source readPbrtSource(const fs::path& in, const ConvertOptions& options) {
-    std::vector<DenseVolume> volumes = readPbrtGrids(in, options.grid);
-    if (options.name && volumes.size() == 1) volumes.front().name = *options.name;
-    Source source;
-    for (DenseVolume& volume : volumes) {
-        append(source, std::move(volume), in, options);
-        volume = {};
-    }
-    return source;
-}
-
-void turn(openvdb::GridBase& grid, const AxisOrder& axes, const Affine3d& worldFromIndex) {
-    grid.setTransform(openVdbTransform(axes.map() * worldFromIndex));
-}
-
-/// Names, turns and remaps the grids of a file, as the options say.
-void finishGrids(Source& source, const fs::path& in, const ConvertOptions& options) {
-    for (const openvdb::GridBase::Ptr& grid : source.grids.grids)
-        if (!options.axes.identity())
-            turn(*grid, options.axes, affineOf(*grid->transform().baseMap()));
-    if (options.name) {
-        if (source.grids.grids.size() > 1)
-            throw usageError("--name is for one grid, and {} has {}; choose one by --grid",
-                             in.string(), source.grids.grids.size());
-        source.grids.grids.front()->setName(*options.name);
-    }
-    ValueSummary found;
-    if (!options.values.remap.identity() || options.values.tolerance > 0 || options.values.repair) {
-        remapGrids(source.grids, options.values, found);
-        say(options.warn, requireSound(found, in.string(), options.values.repair));
-    }
-}
-
-void requireNoPlacement(const ConvertOptions& options) {
-    const Placement& placement = options.placement;
-    if (placement.voxel || placement.size || placement.origin || options.channel)
-        throw usageError("--voxel, --size, --origin and --channel are for sources that are no VDB");
-}
-
-Source readVdbSource(const fs::path& in, const ConvertOptions& options) {
-    requireNoPlacement(options);
-    const VdbFile file = listGrids(in);
-    std::vector<GridListing> chosen;
-    if (options.grid) chosen.push_back(findGrid(file, *options.grid).grid);
-    for (const GridListing& grid : file.grids) {
-        if (options.grid) break;
-        if (isReadable(grid))
-            chosen.push_back(grid);
-        else
-            say(options.warn, fmt::format("grid '{}' of {} is left out: {}", grid.uniqueName,
-                                          in.string(), grid.unusable));
-    }
-    if (chosen.empty()) throw inputError("{} has no grid of numbers", in.string());
-    std::vector<std::string> names;
-    for (const GridListing& grid : chosen) names.push_back(grid.uniqueName);
-    Source source{readVdbGrids(file, names), {}};
-    fillLevelSets(source.grids, options);
-    useFloatingPoint(source.grids);
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        say(options.info, fmt::format("read '{}' ({}) from {}: {} active voxels",
-                                      chosen[i].uniqueName, chosen[i].valueType, in.string(),
-                                      source.grids.grids[i]->activeVoxelCount()));
-    }
-    finishGrids(source, in, options);
-    return source;
-}
-
-Source readNanoVdbSource(const fs::path& in, const ConvertOptions& options) {
-    requireNoPlacement(options);
-    Source source{readNanoVdb(in), {}};
-    std::vector<std::string> names;
-    for (const auto& grid : source.grids.grids) {
-        names.push_back(grid->getName());
-        say(options.info, fmt::format("read '{}' ({}) from {}: {} active voxels", grid->getName(),
-                                      grid->valueType(), in.string(), grid->activeVoxelCount()));
-    }
-    if (options.grid) {
-        std::erase_if(source.grids.grids,
-                      [&](const auto& grid) { return grid->getName() != *options.grid; });
-        if (source.grids.grids.empty())
-            throw inputError("grid '{}' not found in {}; it has: {}", *options.grid, in.string(),
-                             joinNames(names));
-    }
-    fillLevelSets(source.grids, options);
-    finishGrids(source, in, options);
-    return source;
-}
-
-void applyPrecision(VdbGrids& grids, Precision precision, const ConvertOptions& options) {
-    const PrecisionLoss loss = setPrecision(grids, precision);
-    if (precision == Precision::Half || precision == Precision::Float)
-        say(options.info,
-            fmt::format("--precision {}: values change by {:.3g} at most, relatively by {:.3g}",
-                        precision == Precision::Half ? "half" : "float", loss.absolute,
-                        loss.relative));
+void applyPrecision(VdbGrids& grids, const ConvertOptions& options) {
+    const PrecisionLoss loss = setPrecision(grids, options.precision);
+    if (options.precision == Precision::Half || options.precision == Precision::Float)
+        sayLoss(options.precision == Precision::Half ? "--precision half" : "--precision float",
+                loss, options);
 }
 
 bool allSavedAsHalf(const VdbGrids& grids) {
@@ -245,39 +66,86 @@ void sayWritten(const fs::path& out, const VdbGrids& grids, const ConvertOptions
 
 void writeVdbFile(const fs::path& in, const fs::path& out, VdbGrids& grids,
                   const ConvertOptions& options) {
-    applyPrecision(grids, options.precision, options);
+    applyPrecision(grids, options);
     VdbWriteOptions how;
     // Halves stay halves, as long as nothing has changed them.
     how.half = options.precision == Precision::Half ||
                (options.precision == Precision::Source && options.values.remap.identity() &&
                 allSavedAsHalf(grids));
-    how.compression = options.compression;
+    how.compression = options.compression.value_or(VdbCompression::Blosc);
     how.metadata = {{"generator", fmt::format("woodcock {}", version())},
                     {"source", in.filename().string()}};
     writeVdb(out, grids, how);
     sayWritten(out, grids, options);
 }
 
+/// NanoVDB's own programs know floats, so doubles are kept only where they are asked for.
+void useFloats(VdbGrids& grids, const ConvertOptions& options) {
+    const PrecisionLoss loss = setPrecision(grids, Precision::Float);
+    if (options.precision == Precision::Float)
+        sayLoss("--precision float", loss, options);
+    else if (loss.absolute > 0)
+        sayLoss("doubles are written as floats, unless by --precision double", loss, options);
+}
+
+/// Doubles as they are asked for; NanoVDB's own code cannot write vectors of them.
+void useDoubles(VdbGrids& grids, const ConvertOptions& options) {
+    for (openvdb::GridBase::Ptr& grid : grids.grids) {
+        VdbGrids one{{grid}};
+        const bool vectors =
+            grid->isType<openvdb::Vec3SGrid>() || grid->isType<openvdb::Vec3DGrid>();
+        const PrecisionLoss loss =
+            setPrecision(one, vectors ? Precision::Float : Precision::Double);
+        grid = one.grids.front();
+        if (!vectors) continue;
+        say(options.warn, fmt::format("'{}' is written as vec3s: NanoVDB writes no vectors of "
+                                      "doubles; values change by {:.3g} at most, relatively by "
+                                      "{:.3g}",
+                                      grid->getName(), loss.absolute, loss.relative));
+    }
+}
+
+void warnOfVectors(const VdbGrids& grids, const ConvertOptions& options) {
+    for (const openvdb::GridBase::Ptr& grid : grids.grids)
+        if (grid->isType<openvdb::Vec3SGrid>())
+            say(options.warn,
+                fmt::format("'{}' stays vec3s: NanoVDB has no smaller vectors", grid->getName()));
+}
+
 void writeNanoVdbFile(const fs::path&, const fs::path& out, VdbGrids& grids,
                       const ConvertOptions& options) {
-    applyPrecision(grids, Precision::Float, options);
-    writeNanoVdb(out, grids);
+    NanoVdbWriteOptions how;
+    how.compression = options.compression == VdbCompression::Zip     ? NanoVdbCompression::Zip
+                      : options.compression == VdbCompression::Blosc ? NanoVdbCompression::Blosc
+                                                                     : NanoVdbCompression::None;
+    how.quantise = options.precision == Precision::Half;
+    if (options.precision == Precision::Double)
+        useDoubles(grids, options);
+    else
+        useFloats(grids, options);
+    if (how.quantise) warnOfVectors(grids, options);
+    const NanoVdbLoss loss = writeNanoVdb(out, grids, how);
+    if (how.quantise)
+        sayLoss("--precision half: Fp16, 16 bits between the extremes of each 8x8x8 voxels",
+                {loss.absolute, loss.relative}, options);
     sayWritten(out, grids, options);
 }
 
 const std::vector<Format>& formats() {
     static const std::vector<Format> all{
-        {"vdb", {".vdb"}, "OpenVDB", readVdbSource, nullptr, writeVdbFile},
-        {"nvdb", {".nvdb"}, "NanoVDB", readNanoVdbSource, nullptr, writeNanoVdbFile},
+        {"vdb", {".vdb"}, "OpenVDB", readGridsSource, nullptr, writeVdbFile},
+        {"nvdb", {".nvdb"}, "NanoVDB", readGridsSource, nullptr, writeNanoVdbFile},
         {"raw", {".raw", ".bin", ".dat"}, "bare numbers", readRawSource, writeRaw},
         {"npy", {".npy"}, "NumPy", readNpySource, writeNpy},
+        {"npz", {".npz"}, "NumPy's archive", readNpzSource},
         {"vol", {".vol"}, "Mitsuba", readMitsubaSource, writeMitsubaVolume},
-        {"nrrd", {".nrrd"}, "nearly raw raster data", readNrrdSource, writeNrrd},
+        {"nrrd", {".nrrd", ".nhdr"}, "nearly raw raster data", readNrrdSource, writeNrrd},
         {"pbrt", {".pbrt"}, "pbrt's grid media", readPbrtSource},
         {"mesh", {".obj", ".stl", ".gltf", ".glb"}, "triangles", readMeshSource},
         {"ply", {".ply"}, "triangles or points", readPlySource},
         {"points", {".csv", ".txt", ".xyz"}, "a table of points", readPointsSource},
-        {"images", {}, "slices: names with #### or %04d", readImagesSource}};
+        {"tiff", {".tif", ".tiff"}, "pages of one file", readPagesSource},
+        {"images", {}, "slices: names with #### or %04d, or a list", readImagesSource}};
     return all;
 }
 
@@ -307,6 +175,21 @@ const Format* formatOfName(const fs::path& file) {
     return nullptr;
 }
 
+bool isPicture(const fs::path& file) {
+    static constexpr std::string_view endings[]{".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg",
+                                                ".bmp", ".tga", ".dpx",  ".hdr", ".pgm", ".webp"};
+    const std::string extension = lowerExtension(file);
+    return std::find(std::begin(endings), std::end(endings), extension) != std::end(endings);
+}
+
+/// Formats that are not read are told by their bytes, whatever the name says.
+void refuseForeign(const fs::path& in, const Format* named) {
+    const auto foreign = foreignFormat(in);
+    if (!foreign || foreign->readByConvert) return;
+    if (named && (!foreign->knownByContent || foreign->archive)) return;
+    throw inputError("{} is {}, which is not read; {}", in.string(), foreign->what, foreign->way);
+}
+
 const Format& inputFormat(const fs::path& in, const ConvertOptions& options) {
     if (options.from) {
         std::vector<std::string> names;
@@ -317,17 +200,52 @@ const Format& inputFormat(const fs::path& in, const ConvertOptions& options) {
         throw usageError("--from: unknown format '{}'{}", *options.from,
                          suggestName(*options.from, "known", names));
     }
+    const Format* const named = formatOfName(in);
+    refuseForeign(in, named);
     if (isImagePattern(in)) return formats().back();
-    if (const Format* format = formatOfName(in)) return *format;
+    if (named) return *named;
+    std::error_code ignored;
+    if (fs::is_directory(in, ignored))
+        throw inputError(
+            "'{}' is a folder; of a stack of slices name the files, as {}; of a DICOM series load "
+            "the folder into 3D Slicer and save it as .nrrd, or run `dcm2niix -e y {}`",
+            in.string(), (in / "slice.####.png").string(), in.string());
+    if (isPicture(in))
+        throw inputError(
+            "'{}' is one picture, and a volume needs several: name all of its slices, or their "
+            "pattern, as slice.####{}",
+            in.string(), in.extension().string());
     throw inputError("the name of '{}' tells no format that is known; known: {} (--from names one)",
                      in.string(), listFormats(false));
 }
 
 const Format& outputFormat(const fs::path& out) {
     const Format* format = formatOfName(out);
+    if (lowerExtension(out) == ".nhdr")
+        throw usageError("cannot write '{}': header and values are written in one file, .nrrd",
+                         out.string());
     if (format && (format->writeGrids || format->writeDense)) return *format;
     throw usageError("the name of '{}' tells no format that can be written; these can: {}",
                      out.string(), listFormats(true));
+}
+
+/// What each output can keep of --compression and --precision.
+void checkOutputOptions(const Format& to, const ConvertOptions& options) {
+    const std::string_view name = to.name;
+    if (options.compression && to.writeDense && name != "nrrd")
+        throw usageError("--compression is for vdb, nvdb and nrrd; {} files are not compressed",
+                         name);
+    if (options.compression == VdbCompression::Blosc && name == "nrrd")
+        throw usageError("--compression: a NRRD file has none or zip (gzip), not blosc");
+    if (options.precision == Precision::Source || !to.writeDense) return;
+    if (options.outputType)
+        throw usageError("--precision and --out-type both say which numbers to write; give one");
+    if (options.precision == Precision::Half && (name == "nrrd" || name == "vol"))
+        throw usageError(
+            "--precision half: {}; vdb, nvdb, npy and raw do",
+            name == "vol" ? "a Mitsuba volume holds no halves" : "a NRRD file holds no halves");
+    if (options.precision == Precision::Double && name == "vol")
+        throw usageError("--precision double: a Mitsuba volume holds floats alone");
 }
 
 /// Options that would be ignored are mistakes.
@@ -339,43 +257,82 @@ void checkOptions(const Format& from, const Format& to, const ConvertOptions& op
             "--dims, --type, --channels, --endian and --header are for raw files; this one is {} "
             "(--from raw forces it)",
             from.what);
-    if (options.grid && name != "vdb" && name != "nvdb" && name != "pbrt")
-        throw usageError("--grid is for VDB files and pbrt scenes; this one is {}", from.what);
+    if (options.grid && name != "vdb" && name != "nvdb" && name != "pbrt" && name != "npz")
+        throw usageError("--grid is for VDB files, pbrt scenes and .npz; this one is {}",
+                         from.what);
     const bool shape = name == "mesh" || name == "ply" || name == "points";
     if ((options.band && !shape && name != "vdb" && name != "nvdb") ||
-        ((options.radius || options.shell) && !shape))
+        (options.radius && !shape && name != "vdb") || (options.shell && !shape))
         throw usageError(
             "--band, --shell and --radius are for meshes, points and level sets; this one is {}",
             from.what);
+    if (options.columns && name != "points" && name != "ply")
+        throw usageError("--columns is for tables of points; this one is {}", from.what);
     if (to.writeGrids && (options.outputType || options.bounds))
         throw usageError("--out-type and --bounds are for dense formats, and VDB is none");
-    if (to.writeDense && options.precision == Precision::Half)
-        throw usageError("--precision half is for VDB; dense formats have --out-type");
+    checkOutputOptions(to, options);
 }
 
-std::size_t chooseGrid(const VdbGrids& grids) {
-    if (grids.grids.size() == 1) return 0;
+/// As --grid would choose them.
+std::vector<std::string> namesOf(const Source& source) {
+    if (source.uniqueNames.size() == source.grids.grids.size()) return source.uniqueNames;
     std::vector<std::string> names;
-    for (const auto& grid : grids.grids) names.push_back(grid->getName());
+    for (const auto& grid : source.grids.grids) names.push_back(grid->getName());
+    return names;
+}
+
+std::size_t chooseGrid(const Source& source) {
+    if (source.grids.grids.size() == 1) return 0;
     throw inputError("there are several grids, and a dense file holds one; choose it by --grid: {}",
-                     joinNames(names));
+                     joinNames(namesOf(source)));
+}
+
+std::optional<SampleType> outputTypeOf(const ConvertOptions& options) {
+    return options.precision == Precision::Half ? SampleType::F16 : options.outputType;
 }
 
 void writeDenseFile(const fs::path& out, Source& source, const Format& format,
                     const ConvertOptions& options) {
-    applyPrecision(source.grids, options.precision, options);
+    const std::size_t chosen = chooseGrid(source);
+    applyPrecision(source.grids, options);
     const std::optional<Box3i> box = options.bounds ? options.bounds : source.box;
-    DenseVolume volume = vdbToDense(source.grids, chooseGrid(source.grids), box);
+    DenseVolume volume = vdbToDense(source.grids, chosen, box);
     source.grids.grids.clear();
     straighten(volume);
+    const std::optional<SampleType> type = outputTypeOf(options);
+    const bool packed = options.compression == VdbCompression::Zip;
     const double error =
-        format.writeDense(out, volume, {options.outputType, stage(options, "writing")});
-    volume.type = options.outputType.value_or(volume.type);
+        format.writeDense(out, volume, {type, packed, stageOf(options, "writing")});
+    volume.type =
+        type.value_or(std::string_view(format.name) == "vol" ? SampleType::F32 : volume.type);
     say(options.info,
         fmt::format("wrote {}: {}, {} bytes", out.string(), volume.describe(), fs::file_size(out)));
-    if (error > 0)
+    if (error > 0 && options.outputType)
         say(options.info, fmt::format("--out-type {}: values change by {:.3g} at most",
                                       sampleTypeName(volume.type), error));
+    else if (error > 0 && options.precision == Precision::Source)
+        say(options.info, fmt::format("numbers of {}: values change by {:.3g} at most",
+                                      sampleTypeName(volume.type), error));
+}
+
+void write(const fs::path& in, const fs::path& out, Source& source, const Format& to,
+           const ConvertOptions& options) {
+    if (to.writeGrids)
+        to.writeGrids(in, out, source.grids, options);
+    else
+        writeDenseFile(out, source, to, options);
+}
+
+void requirePictures(const std::vector<fs::path>& in, const ConvertOptions& options) {
+    if (options.from && *options.from != "images")
+        throw usageError("--from {}: of several inputs only pictures make one volume",
+                         *options.from);
+    for (const fs::path& file : in)
+        if (!options.from && !isPicture(file))
+            throw usageError(
+                "several inputs are the slices of one volume, and '{}' is no picture; convert "
+                "other files one by one",
+                file.string());
 }
 
 }  // namespace
@@ -388,10 +345,21 @@ void convert(const fs::path& in, const fs::path& out, const ConvertOptions& opti
     checkWritable(out);
     openvdb::initialize();
     Source source = from.read(in, options);
-    if (to.writeGrids)
-        to.writeGrids(in, out, source.grids, options);
-    else
-        writeDenseFile(out, source, to, options);
+    write(in, out, source, to, options);
+}
+
+void convert(const std::vector<fs::path>& in, const fs::path& out, const ConvertOptions& options) {
+    if (in.size() == 1) return convert(in.front(), out, options);
+    if (in.empty()) throw usageError("there is nothing to convert");
+    requirePictures(in, options);
+    const Format& to = outputFormat(out);
+    checkOptions(formats().back(), to, options);
+    for (const fs::path& file : in)
+        if (sameFile(file, out)) throw usageError("'{}' is an input and the output", file.string());
+    checkWritable(out);
+    openvdb::initialize();
+    Source source = readImageFilesSource(in, options);
+    write(in.front(), out, source, to, options);
 }
 
 std::string describeFormats() {

@@ -18,7 +18,12 @@ namespace woodcock {
 struct Placement {
     std::optional<double> voxel;  ///< the shortest side of a voxel, world units
     std::optional<double> size;   ///< the longest side of the volume, outer faces of its cells
+    /// The three sides of a voxel or of the volume, along the axes of the file.
+    std::optional<Vec3d> voxelSides, sizeSides;
     std::optional<Vec3d> origin;  ///< the centre of the first voxel
+
+    bool sized() const { return voxel || size || voxelSides || sizeSides; }
+    bool any() const { return sized() || origin; }
 };
 
 struct ConvertOptions {
@@ -44,9 +49,9 @@ struct ConvertOptions {
     ValueOptions values;
 
     Precision precision = Precision::Source;
-    VdbCompression compression = VdbCompression::Blosc;
-    std::optional<SampleType> outputType;  ///< of dense formats
-    std::optional<Box3i> bounds;           ///< voxels that are written to dense formats
+    std::optional<VdbCompression> compression;  ///< absent: what is usual in the format
+    std::optional<SampleType> outputType;       ///< of dense formats
+    std::optional<Box3i> bounds;                ///< voxels that are written to dense formats
 
     std::function<void(const std::string&)> info, warn;
     /// The stage in a word, and its share that is done; what it throws ends the work.
@@ -57,6 +62,10 @@ struct ConvertOptions {
 /// anything is wrong. Errors: Usage for unknown formats and options that do not fit them, Input for
 /// what is wrong with the file, Failure where it cannot be written.
 void convert(const std::filesystem::path& in, const std::filesystem::path& out,
+             const ConvertOptions& options);
+
+/// The same of several pictures, which are slices of one volume: their names differ in a number.
+void convert(const std::vector<std::filesystem::path>& in, const std::filesystem::path& out,
              const ConvertOptions& options);
 
 /// A line for each format: name, extensions, read and written.

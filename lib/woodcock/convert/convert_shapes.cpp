@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
+#include "woodcock/base/error.h"
 #include "woodcock/convert/level_set_to_fog.h"
 #include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/convert/openvdb_convert_source.h"
-#include "woodcock/mesh/ply_file.h"
 #include "woodcock/convert/points_to_density.h"
-#include "woodcock/base/error.h"
 #include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/mesh/ply_file.h"
 
 namespace woodcock {
 
@@ -21,8 +21,10 @@ constexpr int usualResolution = 256;
 
 /// The size of voxels that is asked for, else a part of the longest side.
 double voxelFor(const Box3d& bounds, const ConvertOptions& options) {
-    if (options.placement.size || options.placement.origin)
+    if (options.placement.size || options.placement.sizeSides || options.placement.origin)
         throw usageError("--size and --origin are for grids of voxels; shapes lie where they are");
+    if (options.placement.voxelSides)
+        throw usageError("--voxel takes one number for shapes: their voxels are cubes");
     if (options.placement.voxel) return *options.placement.voxel;
     const Vec3d size = bounds.size();
     const double longest = std::max({size.x, size.y, size.z});

@@ -3,9 +3,9 @@
 
 #include <optional>
 
+#include "woodcock/base/vec.h"
 #include "woodcock/convert/dense_volume.h"
 #include "woodcock/convert/value_remap.h"
-#include "woodcock/base/vec.h"
 
 namespace woodcock {
 
@@ -29,8 +29,9 @@ DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional
 void remapGrids(VdbGrids& grids, const ValueOptions& options, ValueSummary& summary);
 
 /// Makes every grid one of floats, doubles, or vectors of these, the first that hold all values:
-/// whole numbers become doubles, booleans and masks floats.
-void useFloatingPoint(VdbGrids& grids);
+/// whole numbers become doubles, booleans and masks floats. Returns by how much a value changes at
+/// most: more than nothing only where whole numbers lie beyond 2^53.
+double useFloatingPoint(VdbGrids& grids);
 
 enum class Precision { Source, Half, Float, Double };
 

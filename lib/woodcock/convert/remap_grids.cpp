@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "woodcock/base/error.h"
 #include "woodcock/convert/dense_to_vdb.h"
 #include "woodcock/convert/openvdb_each_type.h"
-#include "woodcock/base/error.h"
 #include "woodcock/grid/half.h"
 #include "woodcock/grid/openvdb_grids.h"
 
@@ -99,20 +99,69 @@ Loss measureLoss(const GridT& grid, Precision precision) {
     });
 }
 
-template <class NewGrid, class GridT>
-openvdb::GridBase::Ptr converted(const GridT& grid) {
-    auto made = NewGrid::create(
-        typename NewGrid::TreePtrType(new typename NewGrid::TreeType(grid.constTree())));
-    made->insertMeta(static_cast<const openvdb::MetaMap&>(grid));
-    made->setTransform(grid.transform().copy());
+template <class To, class From>
+To toValue(const From& value) {
+    if constexpr (openvdb::VecTraits<To>::IsVec) {
+        using Number = typename openvdb::VecTraits<To>::ElementType;
+        return To(static_cast<Number>(value[0]), static_cast<Number>(value[1]),
+                  static_cast<Number>(value[2]));
+    } else {
+        return static_cast<To>(value);
+    }
+}
+
+/// The same tree of another type of values. OpenVDB's own way does not know all pairs of types:
+/// vec3d to vec3s, and vec3i to anything.
+template <class NewTree, class TreeT>
+typename NewTree::Ptr convertedTree(const TreeT& tree) {
+    using New = typename NewTree::ValueType;
+    auto made =
+        std::make_shared<NewTree>(tree, toValue<New>(tree.background()), openvdb::TopologyCopy());
+    openvdb::tree::LeafManager<NewTree> leaves(*made);
+    leaves.foreach ([&](typename NewTree::LeafNodeType& leaf, std::size_t) {
+        const auto* const source = tree.probeConstLeaf(leaf.origin());
+        for (openvdb::Index n = 0; n < NewTree::LeafNodeType::SIZE; ++n)
+            leaf.setValueOnly(n, toValue<New>(source->getValue(n)));
+    });
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
+    for (; tile; ++tile)
+        if (*tile != tree.background())
+            made->addTile(tile.getLevel(), tile.getCoord(), toValue<New>(*tile), tile.isValueOn());
     return made;
 }
 
 template <class From, class To>
 bool convertIf(openvdb::GridBase::Ptr& grid) {
     if (!grid->isType<From>()) return false;
-    grid = converted<To>(static_cast<const From&>(*grid));
+    const auto& source = static_cast<const From&>(*grid);
+    const auto made = To::create(convertedTree<typename To::TreeType>(source.constTree()));
+    made->insertMeta(static_cast<const openvdb::MetaMap&>(source));
+    made->setTransform(source.transform().copy());
+    grid = made;
     return true;
+}
+
+/// How far a double is from the whole number that it stands for, at most.
+double lossOfInt64(const openvdb::GridBase& grid) {
+    if (!grid.isType<openvdb::Int64Grid>()) return 0;
+    struct Change {
+        double most = 0;
+        void add(const Change& more) { most = std::max(most, more.most); }
+    };
+    const auto& tree = static_cast<const openvdb::Int64Grid&>(grid).constTree();
+    return overActiveValues<const openvdb::Int64Tree, Change>(
+               tree,
+               [](const auto& it, Change& loss) {
+                   // Magnitudes, as the largest may be rounded to 2^63, which is no std::int64_t.
+                   const auto exact = *it < 0 ? 0 - static_cast<std::uint64_t>(*it)
+                                              : static_cast<std::uint64_t>(*it);
+                   const auto rounded =
+                       static_cast<std::uint64_t>(std::abs(static_cast<double>(*it)));
+                   const std::uint64_t error = rounded > exact ? rounded - exact : exact - rounded;
+                   loss.most = std::max(loss.most, static_cast<double>(error));
+               })
+        .most;
 }
 
 /// A mask has no values but whether it is active.
@@ -134,12 +183,16 @@ void remapGrids(VdbGrids& grids, const ValueOptions& options, ValueSummary& summ
         withFloatingGrid(*grid, [&](auto& typed) { remapGrid(typed, options, summary); });
 }
 
-void useFloatingPoint(VdbGrids& grids) {
+double useFloatingPoint(VdbGrids& grids) {
     using namespace openvdb;
-    for (GridBase::Ptr& grid : grids.grids)
+    double loss = 0;
+    for (GridBase::Ptr& grid : grids.grids) {
+        loss = std::max(loss, lossOfInt64(*grid));
         convertIf<Int32Grid, DoubleGrid>(grid) || convertIf<Int64Grid, DoubleGrid>(grid) ||
             convertIf<BoolGrid, FloatGrid>(grid) || convertMask(grid) ||
             convertIf<Vec3IGrid, Vec3DGrid>(grid);
+    }
+    return loss;
 }
 
 PrecisionLoss setPrecision(VdbGrids& grids, Precision precision) {

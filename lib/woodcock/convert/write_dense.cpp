@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <zlib.h>
+
 #include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <span>
 
-#include "woodcock/convert/dense_formats.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/convert/dense_formats.h"
 #include "woodcock/grid/half.h"
 
 namespace woodcock {
@@ -43,12 +47,51 @@ double toDouble(Sample sample) {
         return static_cast<double>(sample);
 }
 
+/// Packs bytes by gzip, piece by piece. The same bytes give the same file: no name, no time.
+class Gzip {
+public:
+    Gzip() {
+        constexpr int gzip = 16 + MAX_WBITS, usualMemory = 8;
+        if (deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip, usualMemory,
+                         Z_DEFAULT_STRATEGY) != Z_OK)
+            throw std::bad_alloc();
+    }
+    ~Gzip() { deflateEnd(&stream_); }
+    Gzip(const Gzip&) = delete;
+    Gzip& operator=(const Gzip&) = delete;
+
+    /// Calls `write` with what is packed so far; `last` ends the stream.
+    template <class Write>
+    void pack(std::span<const char> bytes, bool last, Write write) {
+        while (true) {
+            constexpr std::size_t most = 1u << 30;
+            const std::size_t give = std::min(bytes.size(), most);
+            // Only read.
+            stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+            stream_.avail_in = static_cast<uInt>(give);
+            bytes = bytes.subspan(give);
+            do {
+                stream_.next_out = reinterpret_cast<Bytef*>(out_.data());
+                stream_.avail_out = static_cast<uInt>(out_.size());
+                deflate(&stream_, last && bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
+                write(out_.data(), out_.size() - stream_.avail_out);
+            } while (stream_.avail_out == 0);
+            if (bytes.empty()) return;
+        }
+    }
+
+private:
+    z_stream stream_{};
+    std::array<char, 1 << 16> out_;
+};
+
 /// A file that is written row by row.
 class DenseFile {
 public:
-    DenseFile(const std::filesystem::path& file, const std::string& header)
+    DenseFile(const std::filesystem::path& file, const std::string& header, bool packed)
         : file_(file), making_(file), out_(making_.temporary(), std::ios::binary) {
         write(header.data(), header.size());
+        if (packed) gzip_ = std::make_unique<Gzip>();
     }
 
     /// Rows along axis `along`, the other two in `order` with the last the fastest. Returns the
@@ -74,6 +117,7 @@ public:
     }
 
     void commit() {
+        writePacked({}, true);
         out_.close();
         if (!out_) throwFailure();
         making_.commit();
@@ -91,7 +135,7 @@ private:
                     begin[along] = static_cast<std::int64_t>(i) / channels;
                     throw inputError(
                         "cannot write '{}': the value {} of voxel [{}, {}, {}] is beyond the range "
-                        "of {}; use --scale, --clamp or another --type",
+                        "of {}; use --scale, --clamp or another --out-type",
                         file_.string(), values[i], begin[0], begin[1], begin[2],
                         sampleTypeName(type));
                 }
@@ -101,8 +145,15 @@ private:
                 std::memcpy(row_.data() + i * sizeof(Sample), &*sample, sizeof(Sample));
             }
         });
-        write(row_.data(), row_.size());
+        if (gzip_)
+            writePacked(row_, false);
+        else
+            write(row_.data(), row_.size());
         return most;
+    }
+
+    void writePacked(std::span<const char> bytes, bool last) {
+        if (gzip_) gzip_->pack(bytes, last, [this](const char* b, std::size_t n) { write(b, n); });
     }
 
     void write(const char* bytes, std::size_t size) {
@@ -118,13 +169,14 @@ private:
     std::filesystem::path file_;
     FileInTheMaking making_;
     std::ofstream out_;
+    std::unique_ptr<Gzip> gzip_;
     std::vector<char> row_;
 };
 
 double writeFile(const std::filesystem::path& file, const std::string& header,
                  const DenseVolume& volume, bool xFirst, SampleType type,
-                 const WorkProgress& progress) {
-    DenseFile out(file, header);
+                 const WorkProgress& progress, bool packed = false) {
+    DenseFile out(file, header, packed);
     const double most = out.writeValues(volume, type, xFirst, progress);
     out.commit();
     return most;
@@ -155,7 +207,7 @@ const char* nrrdTypeName(SampleType type) {
         case SampleType::I64:
             return "int64";
         case SampleType::F16:
-            throw usageError("NRRD has no halves; use --type f32");
+            throw usageError("NRRD has no halves; use --out-type f32");
         case SampleType::F64:
             return "double";
         case SampleType::F32:
@@ -194,7 +246,7 @@ double writeNpy(const std::filesystem::path& file, const DenseVolume& volume,
 double writeMitsubaVolume(const std::filesystem::path& file, const DenseVolume& original,
                           const DenseWriteOptions& options) {
     if (options.type.value_or(SampleType::F32) != SampleType::F32)
-        throw usageError("a Mitsuba volume holds f32; --type {} is not possible",
+        throw usageError("a Mitsuba volume holds f32; --out-type {} is not possible",
                          sampleTypeName(*options.type));
     DenseVolume volume = original;
     straighten(volume);
@@ -235,9 +287,9 @@ double writeNrrd(const std::filesystem::path& file, const DenseVolume& volume,
                           vectorText(map.column[0]), vectorText(map.column[1]),
                           vectorText(map.column[2]));
     header += fmt::format("kinds: {}domain domain domain\n", colour ? "vector " : "");
-    header += "endian: little\nencoding: raw\n";
+    header += fmt::format("endian: little\nencoding: {}\n", options.packed ? "gzip" : "raw");
     header += fmt::format("space origin: {}\n\n", vectorText(map.translation));
-    return writeFile(file, header, volume, true, type, options.progress);
+    return writeFile(file, header, volume, true, type, options.progress, options.packed);
 }
 
 }  // namespace woodcock

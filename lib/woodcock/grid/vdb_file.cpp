@@ -3,9 +3,12 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/nanovdb_file.h"
 #include "woodcock/grid/vdb_grid_head.h"
 #include "woodcock/grid/vdb_header.h"
 #include "woodcock/grid/vdb_layout.h"
@@ -84,15 +87,60 @@ GridListing describe(FileBytes& file, const VdbHeader::Entry& entry) {
     return listing;
 }
 
+GridListing describe(const NanoVdbHead& head) {
+    GridListing listing;
+    listing.name = head.name;
+    listing.valueType = head.valueType;
+    listing.channels = head.channels;
+    listing.gridClass = head.gridClass;
+    listing.fileBytes = head.fileBytes;
+    listing.worldFromIndex = head.worldFromIndex;
+    if (!head.fault.empty()) {
+        listing.worldFromIndex.reset();
+        markUnusable(listing, fmt::format("its head cannot be read ({})", head.fault));
+        return listing;
+    }
+    if (head.channels == 0)
+        markUnusable(listing,
+                     fmt::format("a NanoVDB grid of {} holds no numbers to be drawn; those "
+                                 "of float, double, int32, int64, vec3s, vec3d, Fp4, Fp8, "
+                                 "Fp16 and FpN do",
+                                 head.valueType));
+    describeUse(listing);
+    describeTransform(listing);
+    return listing;
+}
+
+/// Tells grids of one name apart as OpenVDB's files do, and those without a name.
+void numberNames(std::vector<GridListing>& grids) {
+    std::map<std::string, int> total, seen;
+    for (const GridListing& grid : grids) ++total[grid.name];
+    for (GridListing& grid : grids) {
+        grid.uniqueName = grid.name;
+        if (total[grid.name] > 1 || grid.name.empty())
+            grid.uniqueName += fmt::format("[{}]", seen[grid.name]++);
+    }
+}
+
+VdbFile listNanoVdb(FileBytes& file) {
+    const NanoVdbHeads heads = readNanoVdbHeads(file);
+    VdbFile listed{file.path(), heads.version, {}, true};
+    for (const NanoVdbHead& head : heads.grids) listed.grids.push_back(describe(head));
+    numberNames(listed.grids);
+    return listed;
+}
+
 }  // namespace
 
 VdbFile listGrids(const std::filesystem::path& path) {
     FileBytes file(path);
+    if (isNanoVdb(file)) return listNanoVdb(file);
     const VdbHeader header = readVdbHeader(file);
     VdbFile listed{path,
                    fmt::format("OpenVDB {}.{}, file format {}", header.libraryMajor,
                                header.libraryMinor, header.fileVersion),
-                   {}};
+                   {},
+                   false};
     for (const VdbHeader::Entry& entry : header.entries)
         listed.grids.push_back(describe(file, entry));
     return listed;
@@ -103,6 +151,16 @@ std::string describeGrids(const VdbFile& file) {
     for (const GridListing& grid : file.grids)
         text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", grid.uniqueName, grid.valueType);
     return text.empty() ? "no grids" : text;
+}
+
+std::size_t indexOf(const VdbFile& file, const std::string& uniqueName) {
+    const auto found =
+        std::find_if(file.grids.begin(), file.grids.end(),
+                     [&](const GridListing& grid) { return grid.uniqueName == uniqueName; });
+    if (found == file.grids.end())
+        throw inputError("grid '{}' not found in {}; it has: {}", uniqueName, file.path.string(),
+                         describeGrids(file));
+    return static_cast<std::size_t>(found - file.grids.begin());
 }
 
 const char* gridClassName(GridClass gridClass) {

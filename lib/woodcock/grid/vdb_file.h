@@ -36,17 +36,22 @@ struct GridListing {
 
 struct VdbFile {
     std::filesystem::path path;
-    std::string version;             ///< "OpenVDB 10.0, file format 224"
+    std::string version;             ///< "OpenVDB 10.0, file format 224", "NanoVDB 32.4"
     std::vector<GridListing> grids;  ///< in the order of the file
+    bool nanoVdb = false;            ///< the file is one of NanoVDB
 };
 
-/// Reads the list of grids and their metadata; no voxels.
+/// Reads the list of grids and their metadata; no voxels. A file of NanoVDB is known by how it
+/// begins, whatever its name.
 /// Errors: Input, naming the file and what is wrong with it. Grids that cannot be used are listed
 /// and marked, they are no error.
 VdbFile listGrids(const std::filesystem::path& path);
 
 /// "density (float), velocity (vec3s)"; "no grids" for an empty file.
 std::string describeGrids(const VdbFile& file);
+
+/// Where in `file.grids` the grid of this unique name is. Errors: Input, listing what there is.
+std::size_t indexOf(const VdbFile& file, const std::string& uniqueName);
 
 const char* gridClassName(GridClass gridClass);  ///< "fog volume", as OpenVDB calls it
 

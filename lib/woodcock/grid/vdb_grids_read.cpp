@@ -9,6 +9,7 @@
 #include <new>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/nanovdb_file.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_stored_tree.h"
 
@@ -48,6 +49,8 @@ openvdb::GridBase::Ptr readOne(const VdbFile& listed, const GridListing& listing
     if (!isReadable(listing))
         throw inputError("grid '{}' in {} cannot be used: {}", listing.uniqueName,
                          listed.path.string(), listing.unusable);
+    if (listed.nanoVdb)
+        return readNanoVdbGrid(listed.path, indexOf(listed, listing.uniqueName)).grids.front();
     FileBytes file(listed.path);
     try {
         const openvdb::GridBase::Ptr grid = readGridWithoutTree(file, listing.uniqueName);
@@ -77,15 +80,8 @@ bool isReadable(const GridListing& grid) {
 
 VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqueNames) {
     VdbGrids read;
-    for (const std::string& name : uniqueNames) {
-        const auto found =
-            std::find_if(file.grids.begin(), file.grids.end(),
-                         [&](const GridListing& grid) { return grid.uniqueName == name; });
-        if (found == file.grids.end())
-            throw inputError("grid '{}' not found in {}; it has: {}", name, file.path.string(),
-                             describeGrids(file));
-        read.grids.push_back(readOne(file, *found));
-    }
+    for (const std::string& name : uniqueNames)
+        read.grids.push_back(readOne(file, file.grids[indexOf(file, name)]));
     return read;
 }
 

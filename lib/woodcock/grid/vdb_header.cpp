@@ -38,7 +38,6 @@ Error notVdb(FileBytes& file) {
         std::string_view start, what;
     };
     constexpr Kind known[]{
-        {"NanoVDB", "a NanoVDB file; convert it with `nanovdb_convert in.nvdb out.vdb`"},
         {"\x89HDF", "an HDF5 file, as Field3D and scientific data use"},
         {"\x76\x2f\x31\x01", "an OpenEXR image"},
         {"\x89PNG", "a PNG image"},

@@ -15,6 +15,8 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/half.h"
+#include "woodcock/grid/nanovdb_file.h"
+#include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_stored_tree.h"
 
 namespace woodcock {
@@ -73,11 +75,17 @@ public:
     using Value = typename TreeT::ValueType;
     static constexpr int channels = channelsOf<Value>;
 
-    TreeReader(const StoredTree& stored, Repair repair) : stored_(stored), repair_(repair) {}
+    /// Of a tree that is stored in a file.
+    TreeReader(const StoredTree& stored, Repair repair) : stored_(&stored), repair_(repair) {}
+    /// Of a tree in memory, whole.
+    TreeReader(std::shared_ptr<TreeT> tree, Repair repair)
+        : repair_(repair), tree_(std::move(tree)) {}
 
     GridSource read() {
-        TreeStream stream(stored_);
-        tree_->readTopology(stream, stored_.savedAsHalf);
+        if (stored_) {
+            TreeStream stream(*stored_);
+            tree_->readTopology(stream, stored_->savedAsHalf);
+        }
         source_.field.channels = channels;
         source_.field.background = source_.statistics.background = converted(tree_->background());
         readLeaves();
@@ -93,21 +101,18 @@ public:
 private:
     void readLeaves() {
         auto leaves = std::make_shared<std::vector<Leaf*>>();
-        leaves->reserve(stored_.layout.leaves.size());
+        leaves->reserve(stored_ ? stored_->layout.leaves.size() : tree_->leafCount());
         tree_->getNodes(*leaves);
-        if (leaves->size() != stored_.layout.leaves.size())
+        if (stored_ && leaves->size() != stored_->layout.leaves.size())
             throw std::runtime_error("its leaves are not where they should be");
         std::vector<LeafKind> kinds(leaves->size());
         // Deterministic, so that the mean of a grid is the same number each time.
         source_.statistics.voxels = tbb::parallel_deterministic_reduce(
             tbb::blocked_range<std::size_t>(0, leaves->size(), 128), VoxelScan{},
             [&](const tbb::blocked_range<std::size_t>& range, VoxelScan scan) {
-                TreeStream stream(stored_);
-                openvdb::io::setGridBackgroundValuePtr(stream, &tree_->background());
-                for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                    readLeafOf(stored_, stream, i, *(*leaves)[i]);
+                if (stored_) readLeavesOf(*leaves, range.begin(), range.end());
+                for (std::size_t i = range.begin(); i != range.end(); ++i)
                     kinds[i] = scanOne(*(*leaves)[i], scan);
-                }
                 return scan;
             },
             [](VoxelScan a, const VoxelScan& b) {
@@ -121,6 +126,12 @@ private:
             copyValues(*(*leaves)[i], values.data());
             if (repair.faulty) repairValues(values, repair.negative);
         };
+    }
+
+    void readLeavesOf(const std::vector<Leaf*>& leaves, std::size_t begin, std::size_t end) const {
+        TreeStream stream(*stored_);
+        openvdb::io::setGridBackgroundValuePtr(stream, &tree_->background());
+        for (std::size_t i = begin; i != end; ++i) readLeafOf(*stored_, stream, i, *leaves[i]);
     }
 
     LeafKind scanOne(const Leaf& leaf, VoxelScan& scan) const {
@@ -201,7 +212,7 @@ private:
         for (float v : source_.statistics.background) exactAsHalf = exactAsHalf && isExactAsHalf(v);
     }
 
-    const StoredTree& stored_;
+    const StoredTree* stored_ = nullptr;
     Repair repair_;
     std::shared_ptr<TreeT> tree_ = std::make_shared<TreeT>();
     GridSource source_;
@@ -219,9 +230,30 @@ bool readAsOneOf(const StoredTree& stored, Repair repair, GridSource& source) {
     return (readAs<TreeT>(stored, repair, source) || ...);
 }
 
+template <class GridT>
+bool readAs(openvdb::GridBase& grid, Repair repair, GridSource& source) {
+    if (!grid.isType<GridT>()) return false;
+    source =
+        TreeReader<typename GridT::TreeType>(static_cast<GridT&>(grid).treePtr(), repair).read();
+    return true;
+}
+
+GridSource readNanoVdbSource(const VdbFile& listed, const GridListing& listing, Repair repair) {
+    using namespace openvdb;
+    const std::size_t index = indexOf(listed, listing.uniqueName);
+    const VdbGrids grids = readNanoVdbGrid(listed.path, index);
+    GridBase& grid = *grids.grids.front();
+    GridSource source;
+    readAs<FloatGrid>(grid, repair, source) || readAs<DoubleGrid>(grid, repair, source) ||
+        readAs<Int32Grid>(grid, repair, source) || readAs<Int64Grid>(grid, repair, source) ||
+        readAs<Vec3SGrid>(grid, repair, source) || readAs<Vec3DGrid>(grid, repair, source);
+    return source;
+}
+
 }  // namespace
 
 GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair repair) {
+    if (listed.nanoVdb) return readNanoVdbSource(listed, grid, repair);
     FileBytes file(listed.path);
     const StoredTree stored = loadStoredTree(file, grid);
     GridSource source;

@@ -24,7 +24,7 @@ void smooth(SurfaceMesh& mesh, double angle) {
 }
 
 SurfaceMesh readShape(const MeshShape& shape, std::optional<double> angle) {
-    const bool levelSet = shape.file.extension() == ".vdb";
+    const bool levelSet = shape.file.extension() == ".vdb" || shape.file.extension() == ".nvdb";
     SurfaceMesh mesh =
         levelSet ? levelSetMesh(shape.file, shape.levelSet, 0) : readSurfaceMesh(shape.file);
     if (angle || levelSet) smooth(mesh, angle.value_or(defaultSmooth));

@@ -19,7 +19,7 @@ MeshShape parseMesh(const TomlTable& surface, Base base) {
     const TomlValue file = *surface.find("file");
     MeshShape shape{file.path(base), {}};
     if (const auto v = surface.find("level_set")) {
-        if (shape.file.extension() != ".vdb")
+        if (shape.file.extension() != ".vdb" && shape.file.extension() != ".nvdb")
             throw v->error("names a grid of a VDB file, but file is '{}'", shape.file.string());
         shape.levelSet = v->text();
     }

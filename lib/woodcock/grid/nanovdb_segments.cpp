@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #ifdef WOODCOCK_WITH_NANOVDB
 
-#include "woodcock/convert/nanovdb_segments.h"
+#include "woodcock/grid/nanovdb_segments.h"
 
 #include <blosc.h>
 #include <zlib.h>
@@ -118,6 +118,41 @@ void unpackZip(FileBytes& file, std::span<std::uint8_t> to) {
         throw file.damaged("compressed values");
 }
 
+/// Inflates no more than is asked for.
+void unpackZipHead(FileBytes& file, std::span<std::uint8_t> to) {
+    const std::span<const char> packed = file.bytes(file.value<std::uint64_t>());
+    z_stream stream{};
+    if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+    // Only read.
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+    stream.avail_in = static_cast<uInt>(std::min<std::size_t>(packed.size(), 1u << 20));
+    stream.next_out = to.data();
+    stream.avail_out = static_cast<uInt>(to.size());
+    const int status = inflate(&stream, Z_SYNC_FLUSH);
+    const bool whole = stream.avail_out == 0;
+    inflateEnd(&stream);
+    if ((status != Z_OK && status != Z_STREAM_END) || !whole)
+        throw file.damaged("compressed values");
+}
+
+/// Unpacks the one block that holds the head.
+void unpackBloscHead(FileBytes& file, std::span<std::uint8_t> to) {
+    const std::span<const char> packed = file.bytes(file.value<std::uint64_t>());
+    std::size_t unpacked = 0, type = 0;
+    int flags = 0;
+    if (blosc_cbuffer_validate(packed.data(), packed.size(), &unpacked) != 0 ||
+        unpacked < to.size())
+        throw file.damaged("compressed values");
+    blosc_cbuffer_metainfo(packed.data(), &type, &flags);
+    if (type == 0 || type > 255) throw file.damaged("compressed values");
+    const std::size_t items = (to.size() + type - 1) / type;
+    std::vector<std::uint8_t> head(items * type);
+    if (head.size() > unpacked || blosc_getitem(packed.data(), 0, static_cast<int>(items),
+                                                head.data()) != static_cast<int>(head.size()))
+        throw file.damaged("compressed values");
+    std::copy_n(head.begin(), to.size(), to.begin());
+}
+
 void copyPlain(FileBytes& file, std::span<std::uint8_t> to) {
     constexpr std::size_t piece = 1 << 20;
     while (!to.empty()) {
@@ -134,8 +169,10 @@ std::vector<NanoListing> listNanoGrids(FileBytes& file) {
     do {
         const SegmentHeader header = readHeader(file);
         const std::size_t first = grids.size();
-        for (unsigned i = 0; i < header.gridCount; ++i)
+        for (unsigned i = 0; i < header.gridCount; ++i) {
             grids.push_back(readEntry(file, header.codec));
+            grids.back().version = header.version;
+        }
         for (std::size_t i = first; i < grids.size(); ++i) {
             grids[i].begin = file.position();
             file.skip(grids[i].stored);
@@ -157,6 +194,19 @@ NanoBuffer unpackNanoGrid(FileBytes& file, const NanoListing& grid) {
         unpackBlosc(file, to);
     else if (grid.codec == NanoCodec::Zip)
         unpackZip(file, to);
+    else
+        copyPlain(file, to);
+    return buffer;
+}
+
+NanoBuffer unpackNanoHead(FileBytes& file, const NanoListing& grid, std::uint64_t bytes) {
+    file.enter(grid.begin, grid.begin + grid.stored, fmt::format("grid '{}'", grid.name));
+    NanoBuffer buffer = NanoBuffer::create(std::min(bytes, grid.size));
+    const std::span<std::uint8_t> to(buffer.data(), buffer.size());
+    if (grid.codec == NanoCodec::Blosc)
+        unpackBloscHead(file, to);
+    else if (grid.codec == NanoCodec::Zip)
+        unpackZipHead(file, to);
     else
         copyPlain(file, to);
     return buffer;

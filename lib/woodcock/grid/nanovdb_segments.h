@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "woodcock/convert/nanovdb_buffer.h"
+#include "woodcock/grid/nanovdb_buffer.h"
 #include "woodcock/grid/vdb_bytes.h"
 
 namespace woodcock {
@@ -17,6 +17,7 @@ struct NanoListing {
     std::string name;
     std::uint64_t begin = 0, stored = 0;  ///< its bytes in the file
     std::uint64_t size = 0;               ///< in memory, unpacked
+    std::uint32_t version = 0;            ///< of its segment
     NanoCodec codec = NanoCodec::None;
 };
 
@@ -26,5 +27,8 @@ std::vector<NanoListing> listNanoGrids(FileBytes& file);
 /// The bytes of a grid as NanoVDB has them in memory; nothing is known of what they are.
 /// Errors: Input; Failure where they do not fit into memory.
 NanoBuffer unpackNanoGrid(FileBytes& file, const NanoListing& grid);
+
+/// The first `bytes` of them, or fewer where there are no more. Errors: Input.
+NanoBuffer unpackNanoHead(FileBytes& file, const NanoListing& grid, std::uint64_t bytes);
 
 }  // namespace woodcock

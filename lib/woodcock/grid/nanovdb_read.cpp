@@ -1,7 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/nanovdb_file.h"
+#include "woodcock/grid/nanovdb_file.h"
+
+#include <algorithm>
+#include <string_view>
+
 #include "woodcock/base/error.h"
 #include "woodcock/grid/openvdb_grids.h"
+
+namespace woodcock {
+
+bool isNanoVdb(FileBytes& file) {
+    constexpr std::string_view name = "NanoVDB";
+    file.enter(0, file.size(), "its header");
+    if (file.left() < 8) return false;
+    const std::span<const char> bytes = file.bytes(8);
+    const std::string_view beginning(bytes.data(), 8);
+    const bool turned = std::equal(name.rbegin(), name.rend(), beginning.begin() + 1);
+    file.seek(0);
+    return beginning.starts_with(name) || turned;
+}
+
+}  // namespace woodcock
 
 #ifdef WOODCOCK_WITH_NANOVDB
 #include <nanovdb/NanoVDB.h>
@@ -15,8 +34,10 @@
 #include <set>
 #include <type_traits>
 
-#include "woodcock/convert/nanovdb_segments.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/base/printable.h"
+#include "woodcock/grid/nanovdb_segments.h"
+#include "woodcock/grid/openvdb_transform.h"
 
 namespace woodcock {
 
@@ -32,8 +53,8 @@ constexpr std::uint32_t noChecksum = 0xffffffff;
 constexpr std::uint64_t headBytes = sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>);
 
 struct GridName {
-    const fs::path& file;
-    const std::string& grid;
+    fs::path file;
+    std::string grid;
 
     Error damaged(const std::string& what) const {
         return inputError("{} is damaged: grid '{}': {}", file.string(), grid, what);
@@ -53,10 +74,13 @@ std::uint32_t hashOfHashes(const std::vector<std::uint32_t>& hashes) {
     return hash({bytes, wide.size() * sizeof(T)});
 }
 
-float toFloat(auto v) { return static_cast<float>(v); }
 template <class T>
-openvdb::Vec3f toFloat(const nanovdb::Vec3<T>& v) {
-    return {toFloat(v[0]), toFloat(v[1]), toFloat(v[2])};
+T toOpen(T v) {
+    return v;
+}
+template <class T>
+openvdb::math::Vec3<T> toOpen(const nanovdb::Vec3<T>& v) {
+    return {v[0], v[1], v[2]};
 }
 
 /// Walks the nodes of a grid in memory. Every offset is checked before it is followed.
@@ -68,8 +92,8 @@ class TreeReader {
     using NanoLeaf = typename nanovdb::NanoLeaf<BuildT>::DataType;
 
 public:
-    using Grid = std::conditional_t<nanovdb::TensorTraits<typename NanoRoot::ValueT>::IsVector,
-                                    openvdb::Vec3SGrid, openvdb::FloatGrid>;
+    using Value = decltype(toOpen(std::declval<typename NanoRoot::ValueT>()));
+    using Grid = openvdb::Grid<typename openvdb::tree::Tree4<Value, 5, 4, 3>::Type>;
 
     /// `bytes`: headBytes at least.
     TreeReader(const GridName& name, std::span<const std::uint8_t> bytes)
@@ -88,7 +112,7 @@ public:
             throw name_.damaged(fmt::format("a root of {} entries", root.mTableSize));
         requireHeadHash(headBytes + sizeof(NanoRoot) + root.mTableSize * sizeof(Tile));
         requireRoom();
-        const auto grid = Grid::create(toFloat(root.mBackground));
+        const auto grid = Grid::create(toOpen(root.mBackground));
         std::set<openvdb::Coord> origins;
         for (std::uint32_t i = 0; i < root.mTableSize; ++i) {
             const auto& tile = at<Tile>(place + sizeof(NanoRoot) + i * sizeof(Tile), "its root");
@@ -101,7 +125,7 @@ public:
                 grid->tree().root().addChild(
                     readUpper(place + static_cast<std::uint64_t>(tile.child), origin).release());
             else
-                grid->tree().root().addTile(origin, toFloat(tile.value), tile.state != 0);
+                grid->tree().root().addTile(origin, toOpen(tile.value), tile.state != 0);
         }
         for (std::size_t level = 0; level < 3; ++level)
             if (hashes_[level].size() != treeHead_.mNodeCount[level])
@@ -133,7 +157,6 @@ private:
             bytes_.size())
             throw name_.damaged(fmt::format("{}, {} and {} nodes in {} bytes", count[2], count[1],
                                             count[0], bytes_.size()));
-        using Value = typename Grid::ValueType;
         const std::size_t needed = bytes_.size() +
                                    count[0] * (sizeof(OpenLeaf) + OpenLeaf::SIZE * sizeof(Value)) +
                                    count[1] * sizeof(OpenLower) + count[2] * sizeof(OpenUpper);
@@ -170,7 +193,7 @@ private:
     template <class Node, class Source, class ReadChild>
     std::unique_ptr<Node> readInternal(const Source& source, std::uint64_t place,
                                        const openvdb::Coord& origin, const ReadChild& readChild) {
-        auto target = std::make_unique<Node>(origin, typename Node::ValueType(0.0f), false);
+        auto target = std::make_unique<Node>(origin, openvdb::zeroVal<Value>(), false);
         for (openvdb::Index n = 0; n < Node::NUM_VALUES; ++n)
             if (source.mChildMask.isOn(n))
                 target->addChild(
@@ -178,7 +201,7 @@ private:
                               target->offsetToGlobalCoord(n))
                         .release());
             else
-                target->addTile(n, toFloat(source.mTable[n].value), source.mValueMask.isOn(n));
+                target->addTile(n, toOpen(source.mTable[n].value), source.mValueMask.isOn(n));
         return target;
     }
 
@@ -192,9 +215,9 @@ private:
             if (bits * OpenLeaf::SIZE / 8 > bytes_.size() - place - sizeof(NanoLeaf))
                 throw name_.damaged("a leaf that reaches beyond the end");
         }
-        auto target = std::make_unique<OpenLeaf>(origin, typename OpenLeaf::ValueType(0.0f), false);
+        auto target = std::make_unique<OpenLeaf>(origin, openvdb::zeroVal<Value>(), false);
         for (openvdb::Index n = 0; n < OpenLeaf::SIZE; ++n)
-            target->setValueOnly(n, toFloat(source.getValue(n)));
+            target->setValueOnly(n, toOpen(source.getValue(n)));
         typename OpenLeaf::NodeMaskType mask;
         for (openvdb::Index n = 0; n < OpenLeaf::SIZE; ++n)
             if (source.mValueMask.isOn(n)) mask.setOn(n);
@@ -236,77 +259,116 @@ private:
     std::array<std::vector<std::pair<std::uint64_t, std::uint32_t>>, 3> hashes_;
 };
 
-openvdb::math::Transform::Ptr readTransform(const GridName& name, const nanovdb::Map& map) {
-    openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+Affine3d affineOf(const nanovdb::Map& map) {
+    Affine3d affine;
     for (int row = 0; row < 3; ++row) {
-        matrix(3, row) = map.mVecD[row];
-        for (int column = 0; column < 3; ++column)  // OpenVDB's multiply from the left
-            matrix(column, row) = map.mMatD[3 * row + column];
+        affine.translation[row] = map.mVecD[row];
+        for (int column = 0; column < 3; ++column)
+            affine.column[static_cast<std::size_t>(column)][row] = map.mMatD[3 * row + column];
     }
-    for (int i = 0; i < 16; ++i)
-        if (!std::isfinite(matrix.asPointer()[i]))
-            throw name.damaged("a transform that is not finite");
+    return affine;
+}
+
+openvdb::math::Transform::Ptr readTransform(const GridName& name, const Affine3d& map) {
+    if (const std::string flaw = flawOf(map); !flaw.empty())
+        throw name.damaged("its transform " + flaw);
     try {
-        return openvdb::math::Transform::createLinearTransform(matrix);
-    } catch (const openvdb::Exception& e) {
-        throw name.damaged(fmt::format("a transform that is none ({})", e.what()));
+        return openVdbTransform(map);
+    } catch (const Error& e) {
+        throw inputError("{}: grid '{}': {}", name.file.string(), name.grid, e.what());
     }
 }
 
-openvdb::GridClass readClass(nanovdb::GridClass gridClass) {
+GridClass classOf(nanovdb::GridClass gridClass) {
     switch (gridClass) {
         case nanovdb::GridClass::LevelSet:
-            return openvdb::GRID_LEVEL_SET;
+            return GridClass::LevelSet;
         case nanovdb::GridClass::FogVolume:
-            return openvdb::GRID_FOG_VOLUME;
+            return GridClass::FogVolume;
         case nanovdb::GridClass::Staggered:
-            return openvdb::GRID_STAGGERED;
+            return GridClass::Staggered;
         default:
-            return openvdb::GRID_UNKNOWN;
+            return GridClass::Unknown;
     }
 }
 
-openvdb::GridBase::Ptr readTree(const GridName& name, std::span<const std::uint8_t> bytes,
-                                nanovdb::GridType type) {
-    switch (type) {
-        case nanovdb::GridType::Float:
-            return TreeReader<float>(name, bytes).read();
-        case nanovdb::GridType::Double:
-            return TreeReader<double>(name, bytes).read();
-        case nanovdb::GridType::Int32:
-            return TreeReader<std::int32_t>(name, bytes).read();
-        case nanovdb::GridType::Int64:
-            return TreeReader<std::int64_t>(name, bytes).read();
-        case nanovdb::GridType::Vec3f:
-            return TreeReader<nanovdb::Vec3f>(name, bytes).read();
-        case nanovdb::GridType::Vec3d:
-            return TreeReader<nanovdb::Vec3d>(name, bytes).read();
-        case nanovdb::GridType::Fp4:
-            return TreeReader<nanovdb::Fp4>(name, bytes).read();
-        case nanovdb::GridType::Fp8:
-            return TreeReader<nanovdb::Fp8>(name, bytes).read();
-        case nanovdb::GridType::Fp16:
-            return TreeReader<nanovdb::Fp16>(name, bytes).read();
-        case nanovdb::GridType::FpN:
-            return TreeReader<nanovdb::FpN>(name, bytes).read();
-        default:
+openvdb::GridClass openClassOf(GridClass gridClass) {
+    switch (gridClass) {
+        case GridClass::LevelSet:
+            return openvdb::GRID_LEVEL_SET;
+        case GridClass::FogVolume:
+            return openvdb::GRID_FOG_VOLUME;
+        case GridClass::Staggered:
+            return openvdb::GRID_STAGGERED;
+        case GridClass::Unknown:
             break;
     }
-    throw inputError(
-        "{}: grid '{}' holds {}, where float, double, int32, int64, Vec3f, Vec3d or quantised "
-        "float "
-        "are expected",
-        name.file.string(), name.grid,
-        type < nanovdb::GridType::End
-            ? nanovdb::toStr(type)
-            : fmt::format("an unknown type {}", static_cast<std::uint32_t>(type)));
+    return openvdb::GRID_UNKNOWN;
 }
 
-openvdb::GridBase::Ptr readGrid(FileBytes& file, const NanoListing& listing) {
-    const GridName name{file.path(), listing.name};
-    const NanoBuffer buffer = unpackNanoGrid(file, listing);
-    if (buffer.size() < headBytes)
-        throw name.damaged(fmt::format("it has {} bytes", buffer.size()));
+using ReadTree = openvdb::GridBase::Ptr (*)(const GridName&, std::span<const std::uint8_t>);
+
+template <class BuildT>
+openvdb::GridBase::Ptr readTree(const GridName& name, std::span<const std::uint8_t> bytes) {
+    return TreeReader<BuildT>(name, bytes).read();
+}
+
+struct ValueType {
+    const char* name;  ///< OpenVDB's where it has one
+    int channels = 0;
+    ReadTree read = nullptr;
+};
+
+/// By NanoVDB's numbers for them; later versions know more than the headers of this build may.
+constexpr std::array<ValueType, 27> valueTypes{{{"nothing that is known"},
+                                                {"float", 1, readTree<float>},
+                                                {"double", 1, readTree<double>},
+                                                {"int16"},
+                                                {"int32", 1, readTree<std::int32_t>},
+                                                {"int64", 1, readTree<std::int64_t>},
+                                                {"vec3s", 3, readTree<nanovdb::Vec3f>},
+                                                {"vec3d", 3, readTree<nanovdb::Vec3d>},
+                                                {"mask"},
+                                                {"half"},
+                                                {"uint32"},
+                                                {"bool"},
+                                                {"RGBA8"},
+                                                {"Fp4", 1, readTree<nanovdb::Fp4>},
+                                                {"Fp8", 1, readTree<nanovdb::Fp8>},
+                                                {"Fp16", 1, readTree<nanovdb::Fp16>},
+                                                {"FpN", 1, readTree<nanovdb::FpN>},
+                                                {"vec4f"},
+                                                {"vec4d"},
+                                                {"index"},
+                                                {"index of active voxels"},
+                                                {"index and mask"},
+                                                {"index of active voxels and mask"},
+                                                {"index of points"},
+                                                {"vec3u8"},
+                                                {"vec3u16"},
+                                                {"uint8"}}};
+constexpr std::uint32_t pointIndex = 4, pointData = 5;  // classes
+
+std::string typeName(const nanovdb::GridData& head) {
+    const auto type = static_cast<std::uint32_t>(head.mGridType);
+    const auto gridClass = static_cast<std::uint32_t>(head.mGridClass);
+    const std::string name = type < valueTypes.size() ? std::string(valueTypes[type].name)
+                                                      : fmt::format("unknown type {}", type);
+    return gridClass == pointIndex || gridClass == pointData ? "points (" + name + ")" : name;
+}
+
+ValueType valueTypeOf(const nanovdb::GridData& head) {
+    const auto type = static_cast<std::uint32_t>(head.mGridType);
+    const auto gridClass = static_cast<std::uint32_t>(head.mGridClass);
+    if (type >= valueTypes.size() || gridClass == pointIndex || gridClass == pointData) return {};
+    return valueTypes[type];
+}
+
+/// The first bytes of a grid as its head, which they are.
+const nanovdb::GridData& requireHead(const GridName& name, const NanoBuffer& buffer,
+                                     std::uint64_t gridBytes) {
+    if (gridBytes < headBytes || buffer.size() < sizeof(nanovdb::GridData))
+        throw name.damaged(fmt::format("it has {} bytes", gridBytes));
     const auto& head = *reinterpret_cast<const nanovdb::GridData*>(buffer.data());
     constexpr std::uint64_t newerMagic = 0x314244566f6e614e;  // "NanoVDB1"
     if (head.mMagic != NANOVDB_MAGIC_NUMBER && head.mMagic != newerMagic)
@@ -314,26 +376,60 @@ openvdb::GridBase::Ptr readGrid(FileBytes& file, const NanoListing& listing) {
     if (const unsigned major = head.mVersion.getMajor(); major != NANOVDB_MAJOR_VERSION_NUMBER)
         throw name.damaged(fmt::format("it is of format {}, where {} is expected", major,
                                        NANOVDB_MAJOR_VERSION_NUMBER));
-    if (head.mGridSize > buffer.size() || head.mGridSize < headBytes)
-        throw name.damaged(
-            fmt::format("it has {} bytes and says {}", buffer.size(), head.mGridSize));
-    const openvdb::GridBase::Ptr grid =
-        readTree(name, {buffer.data(), static_cast<std::size_t>(head.mGridSize)}, head.mGridType);
-    grid->setTransform(readTransform(name, head.mMap));
-    grid->setName(listing.name);
-    grid->setGridClass(readClass(head.mGridClass));
-    return grid;
+    if (head.mGridSize > gridBytes || head.mGridSize < headBytes)
+        throw name.damaged(fmt::format("it has {} bytes and says {}", gridBytes, head.mGridSize));
+    return head;
+}
+
+NanoVdbHead readHead(FileBytes& file, const NanoListing& listing) {
+    NanoVdbHead head;
+    head.name = printable(listing.name);
+    head.fileBytes = listing.stored;
+    const GridName name{file.path(), head.name};
+    try {
+        const NanoBuffer buffer = unpackNanoHead(file, listing, headBytes);
+        const nanovdb::GridData& data = requireHead(name, buffer, listing.size);
+        head.valueType = typeName(data);
+        head.channels = valueTypeOf(data).channels;
+        head.gridClass = classOf(data.mGridClass);
+        head.worldFromIndex = affineOf(data.mMap);
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::Input) throw;
+        head.valueType = "unknown";
+        head.fault = e.what();
+    }
+    return head;
 }
 
 }  // namespace
 
-VdbGrids readNanoVdb(const fs::path& path) {
+bool hasNanoVdb() { return true; }
+
+NanoVdbHeads readNanoVdbHeads(FileBytes& file) {
+    const std::vector<NanoListing> listings = listNanoGrids(file);
+    const unsigned version = listings.front().version;
+    NanoVdbHeads heads{fmt::format("NanoVDB {}.{}", version >> 21, version >> 10 & 0x7ff), {}};
+    for (const NanoListing& listing : listings) heads.grids.push_back(readHead(file, listing));
+    return heads;
+}
+
+VdbGrids readNanoVdbGrid(const fs::path& path, std::size_t index) {
     openvdb::initialize();
     FileBytes file(path);
-    const std::vector<NanoListing> listings = listNanoGrids(file);
-    VdbGrids grids;
-    for (const NanoListing& listing : listings) grids.grids.push_back(readGrid(file, listing));
-    return grids;
+    const NanoListing listing = listNanoGrids(file).at(index);
+    const GridName name{file.path(), printable(listing.name)};
+    const NanoBuffer buffer = unpackNanoGrid(file, listing);
+    const nanovdb::GridData& head = requireHead(name, buffer, buffer.size());
+    const ValueType type = valueTypeOf(head);
+    if (!type.read)
+        throw inputError("{}: grid '{}' holds {}, which are no numbers to be read", path.string(),
+                         name.grid, typeName(head));
+    const openvdb::GridBase::Ptr grid =
+        type.read(name, {buffer.data(), static_cast<std::size_t>(head.mGridSize)});
+    grid->setTransform(readTransform(name, affineOf(head.mMap)));
+    grid->setName(listing.name);
+    grid->setGridClass(openClassOf(classOf(head.mGridClass)));
+    return {{grid}};
 }
 
 }  // namespace woodcock
@@ -342,11 +438,19 @@ VdbGrids readNanoVdb(const fs::path& path) {
 
 namespace woodcock {
 
-VdbGrids readNanoVdb(const std::filesystem::path& file) {
-    throw failure(
+bool hasNanoVdb() { return false; }
+
+namespace {
+Error noNanoVdb(const std::filesystem::path& file) {
+    return failure(
         "cannot read '{}': this build has no NanoVDB; install libnanovdb-dev and configure again",
         file.string());
 }
+}  // namespace
+
+NanoVdbHeads readNanoVdbHeads(FileBytes& file) { throw noNanoVdb(file.path()); }
+
+VdbGrids readNanoVdbGrid(const std::filesystem::path& file, std::size_t) { throw noNanoVdb(file); }
 
 }  // namespace woodcock
 

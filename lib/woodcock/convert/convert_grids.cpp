@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/base/error.h"
+#include "woodcock/convert/openvdb_convert_source.h"
+#include "woodcock/grid/grid_roles.h"
+#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb_grids_read.h"
+
+namespace woodcock {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void turn(openvdb::GridBase& grid, const AxisOrder& axes, const Affine3d& worldFromIndex) {
+    grid.setTransform(openVdbTransform(axes.map() * worldFromIndex));
+}
+
+/// Names, turns and remaps the grids of a file, as the options say.
+void finishGrids(Source& source, const fs::path& in, const ConvertOptions& options) {
+    for (const openvdb::GridBase::Ptr& grid : source.grids.grids)
+        if (!options.axes.identity())
+            turn(*grid, options.axes, affineOf(*grid->transform().baseMap()));
+    if (options.name) {
+        if (source.grids.grids.size() > 1)
+            throw usageError("--name is for one grid, and {} has {}; choose one by --grid",
+                             in.string(), source.grids.grids.size());
+        source.grids.grids.front()->setName(*options.name);
+    }
+    ValueSummary found;
+    if (!options.values.remap.identity() || options.values.tolerance > 0 || options.values.repair) {
+        remapGrids(source.grids, options.values, found);
+        say(options.warn, requireSound(found, in.string(), options.values.repair));
+    }
+}
+
+void requireNoPlacement(const ConvertOptions& options) {
+    const Placement& placement = options.placement;
+    if (placement.any() || options.channel)
+        throw usageError("--voxel, --size, --origin and --channel are for sources that are no VDB");
+}
+
+/// The grids that are asked for, or all that hold numbers; a warning names each of the others.
+std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& options) {
+    if (options.grid) {
+        FoundGrid found = findGrid(file, *options.grid);
+        say(options.warn, found.note);
+        return {std::move(found.grid)};
+    }
+    std::vector<GridListing> chosen;
+    for (const GridListing& grid : file.grids) {
+        if (isReadable(grid))
+            chosen.push_back(grid);
+        else
+            say(options.warn, fmt::format("grid '{}' of {} is left out: {}", grid.uniqueName,
+                                          file.path.string(), grid.unusable));
+    }
+    if (chosen.empty())
+        throw inputError("{} has no grid of numbers; it has: {}", file.path.string(),
+                         describeGrids(file));
+    return chosen;
+}
+
+}  // namespace
+
+Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
+    requireNoPlacement(options);
+    const VdbFile file = listGrids(in);
+    const std::vector<GridListing> chosen = chooseGrids(file, options);
+    std::vector<std::string> names;
+    for (const GridListing& grid : chosen) names.push_back(grid.uniqueName);
+    Source source{readVdbGrids(file, names), {}, names};
+    fillLevelSets(source.grids, options);
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        say(options.info,
+            fmt::format("read '{}' ({}) from {}: {} active voxels", names[i], chosen[i].valueType,
+                        in.string(), source.grids.grids[i]->activeVoxelCount()));
+    const double loss = useFloatingPoint(source.grids);
+    if (loss > 0)
+        say(options.warn,
+            fmt::format(
+                "{}: whole numbers beyond 2^53 become doubles, which changes them by {:.3g} "
+                "at most",
+                in.string(), loss));
+    finishGrids(source, in, options);
+    return source;
+}
+
+}  // namespace woodcock
