@@ -228,7 +228,8 @@ TEST_F(Cli, WrongUsage) {
     expectFailure({"rendr", "a.vdb"}, 2, {"'rendr'", "did you mean 'render'?"});
     expectFailure({"--verison"}, 2, {"unknown option '--verison'; did you mean '--version'?"});
     expectFailure({"render"}, 2, {"woodcock render: no INPUT is given: A scene (.toml)"});
-    expectFailure({"info"}, 2, {"woodcock info: no INPUT is given: One or more volumes (.vdb)"});
+    expectFailure({"info"}, 2,
+                  {"woodcock info: no INPUT is given: One or more volumes (.vdb, .nvdb)"});
     expectFailure({"info", file("smoke.vdb"), "--grid"}, 2, {"--grid has no value", "--grid NAME"});
     expectFailure({"render", "", "-o", file("out.exr")}, 2, {"an input is empty"});
     expectFailure({"render", file("smoke.vdb")}, 2, {"no output", "-o"});
