@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/plain_grid.h"
 #include "woodcock/base/random.h"
 
@@ -75,6 +77,33 @@ TEST(BlockRanges, OfAHugeTileCostLittle) {
     EXPECT_LT(ranges.bytes(), 4u << 20);
     EXPECT_EQ(*ranges.find({-1, 256, 768}).value, (Range{1, 1}));
     EXPECT_EQ(*ranges.find({511, 256, 768}).value, (Range{0, 1}));
+}
+
+/// 17 bytes of a file each: what they take must not grow with the 32768 regions of each.
+TEST(BlockRanges, OfThousandsOfHugeTilesCostLittleEach) {
+    FieldSource source;
+    constexpr int side = 20;
+    for (int i = 0; i < side * side * side; ++i)
+        source.tiles.push_back({Vec3i{i % side, i / side % side, i / side / side} * 4096,
+                                4096,
+                                {1 + static_cast<float>(i % 7)}});
+    const Field field = buildField(source, Storage::Float);
+    EXPECT_LT(field.bytes(), 1000 * 17 * source.tiles.size());
+    const BlockTable<Range> ranges = blockRanges(field);
+    EXPECT_LT(ranges.bytes(), 400 * 17 * source.tiles.size());
+    RandomStream random(3);
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3d u{random.uniform(), random.uniform(), random.uniform()};
+        Vec3d p = u * (4096.0 * (side + 2)) - Vec3d{1, 1, 1} * 4096;
+        for (int a = 0; a < 3; ++a)  // half of the coordinates next to a tile's face
+            if (random.uniform() < 0.5)
+                p[a] = 4096 * std::round(p[a] / 4096) + random.uniform() - 1;
+        const Vec3i v = floorToInt(p);
+        const Range r = *ranges.find({v.x >> 3, v.y >> 3, v.z >> 3}).value;
+        const float value = field.trilinear(p);
+        ASSERT_LE(r.min, value * (1 + 1e-6f));
+        ASSERT_GE(r.max, value * (1 - 1e-6f));
+    }
 }
 
 }  // namespace
