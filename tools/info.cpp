@@ -30,6 +30,7 @@ FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridN
     try {
         const VdbFile file = listGrids(path);
         info.version = file.version;
+        info.warning = file.warning;
         info.bytes = std::filesystem::file_size(path);
         if (!gridName.empty()) {
             info.grids.push_back(inspectGrid(file, findGrid(file, gridName).grid));

@@ -99,6 +99,7 @@ nlohmann::ordered_json infoJson(const std::vector<FileInfo>& files) {
             j["error"] = file.error;
         } else {
             j["version"] = file.version;
+            if (!file.warning.empty()) j["warning"] = file.warning;
             j["bytes"] = file.bytes;
             j["grids"] = Json::array();
             for (const GridInfo& grid : file.grids) j["grids"].push_back(json(grid));

@@ -15,6 +15,7 @@ struct FileInfo {
     std::filesystem::path path;
     std::string error;  ///< why the file cannot be used; empty when it can
     std::string version;
+    std::string warning;  ///< of a format newer than any that is known; usually empty
     std::uintmax_t bytes = 0;
     std::vector<GridInfo> grids;
 

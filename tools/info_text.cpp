@@ -151,6 +151,8 @@ bool FileInfo::sound() const {
 std::string infoText(const FileInfo& file) {
     std::string text = fmt::format("{}  {}, {}, {}\n", file.path.string(), file.version,
                                    memory(file.bytes), counted(file.grids.size(), "grid"));
+    if (!file.warning.empty()) text += fmt::format("    ! {}\n", file.warning);
+    if (file.grids.empty()) text += "    ! it holds nothing to be drawn\n";
     for (const GridInfo& grid : file.grids) text += GridText(grid).take();
     return text + "\n";
 }

@@ -138,6 +138,38 @@ TEST_F(VdbFileTest, FormatsBeforeOpenVdb3AreNamed) {
     expectBad(name() + " has VDB file format 221, older than the 222 of OpenVDB 3");
 }
 
+TEST_F(VdbFileTest, TheFormatOfOpenVdb13IsKnown) {
+    writeVdb(file_, {{.voxels = {{{1, 2, 3}, {4}}}}});
+    setVdbFormat(file_, 225);
+    const VdbFile file = listGrids(file_);
+    EXPECT_NE(file.version.find("file format 225"), std::string::npos) << file.version;
+    EXPECT_EQ(file.warning, "");
+    EXPECT_EQ(loadGrid(file_, "density").field.voxel({1, 2, 3}), 4);
+}
+
+TEST_F(VdbFileTest, NewerFormatsAreTried) {
+    for (const std::uint32_t number : {226u, 300u, 0xffffffffu}) {
+        GridSpec spec{.box = {{0, 0, 0}, {9, 9, 9}}};
+        spec.value = [](Vec3i v) { return 1.0 + v.x; };
+        writeVdb(file_, {spec}, VdbCompression::None);
+        setVdbFormat(file_, number);
+        const std::string doubt = "its VDB file format, " + std::to_string(number) +
+                                  ", is newer than 225, the newest that is known (of OpenVDB 13)";
+        EXPECT_EQ(listGrids(file_).warning,
+                  name() + ": " + doubt + "; it is read as if nothing had changed since");
+        EXPECT_EQ(loadGrid(file_, "density").field.voxel({3, 0, 0}), 4);
+
+        // Two more bytes than are expected, or fewer: the walk through the file ends elsewhere.
+        const std::string sound = readText(file_);
+        const std::string way =
+            "; " + doubt + ": save it with a program that uses OpenVDB 13 or an older one";
+        writeText(file_, sound.substr(0, sound.size() - 2));
+        expectBad(way);
+        writeText(file_, sound.substr(0, 70) + "??" + sound.substr(70));
+        expectBad(way);
+    }
+}
+
 TEST_F(VdbFileTest, NamesAreFoundInAnyCase) {
     const VdbFile file = list({{.name = "Density", .voxels = one}, {.name = "Cd", .voxels = one}});
     EXPECT_EQ(findGrid(file, "Cd").note, "");

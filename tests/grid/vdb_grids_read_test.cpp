@@ -45,6 +45,7 @@ TEST(VdbGridsRead, GivesWhatOpenVdbGives) {
         const std::vector<std::string> names = readableNames(listed);
         const VdbGrids read = readVdbGrids(listed, names);
         if (sample.name.find("stream") != std::string::npos) continue;  // no io::File reads it
+        if (sample.name == "native half") continue;                     // but since OpenVDB 13
         openvdb::io::File file((dir / "a.vdb").string());
         file.open(false);
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -62,6 +63,37 @@ TEST(VdbGridsRead, GivesWhatOpenVdbGives) {
         }
     }
     EXPECT_GT(compared, 10u);
+}
+
+/// Every half is a float, so nothing is lost.
+TEST(VdbGridsRead, NativeHalvesBecomeFloatsToBeSavedAsHalf) {
+    GridSpec spec{.name = "smoke",
+                  .type = VdbType::Half,
+                  .background = {0.25},
+                  .tiles = {{{128, 0, 0}, 128, {3}, false}, {{-8, 0, 0}, 8, {2}}},
+                  .box = {{0, 0, 0}, {20, 9, 11}},
+                  .worldFromIndex = Affine3d::scale({0.5, 0.5, 0.5}),
+                  .metadata = {{"author", "somebody"}}};
+    spec.value = [](Vec3i v) { return v.x * 0.5 + v.y * 64 - v.z; };
+    spec.voxels = {{{40, 0, 0}, {65504}}, {{41, 0, 0}, {0x1p-24}, false}};
+    GridSpec floats = spec;
+    floats.type = VdbType::Float;
+    const TempDir dir;
+    writeVdb(dir / "float.vdb", {floats});
+    const VdbGrids truth = readVdbGrids(listGrids(dir / "float.vdb"), {"smoke"});
+    for (const VdbCompression compression :
+         {VdbCompression::None, VdbCompression::Zip, VdbCompression::Blosc}) {
+        writeVdb(dir / "half.vdb", {spec}, compression);
+        const VdbFile listed = listGrids(dir / "half.vdb");
+        EXPECT_EQ(describeGrids(listed), "smoke (half)");
+        const VdbGrids read = readVdbGrids(listed, {"smoke"});
+        const openvdb::GridBase& grid = *read.grids.at(0);
+        EXPECT_TRUE(sameTree<openvdb::FloatGrid>(grid, *truth.grids.at(0)));
+        EXPECT_EQ(grid.transform(), truth.grids[0]->transform());
+        EXPECT_EQ(grid.getName(), "smoke");
+        EXPECT_EQ(grid.metaValue<std::string>("author"), "somebody");
+        EXPECT_TRUE(grid.saveFloatAsHalf());
+    }
 }
 
 TEST(VdbGridsRead, LevelSetsAreReadThoughTheyCannotBeRendered) {

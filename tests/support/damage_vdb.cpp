@@ -329,6 +329,7 @@ std::vector<VdbSample> healthyVdbs() {
     add("float, zip", {plain}, Zip);
     add("half, blosc", {half(cloud())}, Blosc);
     add("half, zip", {half(plain)}, Zip);
+    add("native half", {cloud(VdbType::Half)}, Blosc);
     add("double", {cloud(VdbType::Double)}, Blosc);
     add("int32", {cloud(VdbType::Int32)}, None);
     add("int64", {cloud(VdbType::Int64)}, Blosc);

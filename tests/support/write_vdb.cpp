@@ -5,6 +5,8 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
+#include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 
@@ -14,6 +16,8 @@ namespace woodcock::test {
 
 namespace {
 
+using HalfTree = openvdb::tree::Tree4<openvdb::math::half, 5, 4, 3>::Type;
+
 template <class V>
 V as(const VdbValue& v) {
     if constexpr (openvdb::VecTraits<V>::IsVec) {
@@ -21,6 +25,8 @@ V as(const VdbValue& v) {
         return V(static_cast<E>(v[0]), static_cast<E>(v[1]), static_cast<E>(v[2]));
     } else if constexpr (std::is_same_v<V, bool>) {
         return v[0] != 0;
+    } else if constexpr (std::is_same_v<V, openvdb::math::half>) {
+        return V(static_cast<float>(v[0]));
     } else {
         return static_cast<V>(v[0]);
     }
@@ -72,6 +78,8 @@ openvdb::GridBase::Ptr makeValues(const GridSpec& spec) {
     switch (spec.type) {
         case VdbType::Float:
             return makeGrid<openvdb::FloatTree>(spec);
+        case VdbType::Half:
+            return makeGrid<HalfTree>(spec);
         case VdbType::Double:
             return makeGrid<openvdb::DoubleTree>(spec);
         case VdbType::Int32:
@@ -139,12 +147,21 @@ void writeVdb(const std::filesystem::path& file, const std::vector<GridSpec>& gr
     if (compression == VdbCompression::Blosc) flags |= openvdb::io::COMPRESS_BLOSC;
     out.setCompression(flags);
     out.write(makeGrids(grids));
+    if (std::any_of(grids.begin(), grids.end(),
+                    [](const GridSpec& g) { return g.type == VdbType::Half; }))
+        setVdbFormat(file, 225);
 }
 
 void streamVdb(const std::filesystem::path& file, const std::vector<GridSpec>& grids) {
     const openvdb::GridPtrVec made = makeGrids(grids);
     std::ofstream stream(file, std::ios::binary);
     openvdb::io::Stream(stream).write(made);
+}
+
+void setVdbFormat(const std::filesystem::path& file, std::uint32_t number) {
+    std::string bytes = readText(file);
+    std::memcpy(&bytes.at(8), &number, sizeof number);
+    writeText(file, bytes);
 }
 
 void truncateFile(const std::filesystem::path& file, std::uintmax_t bytes) {

@@ -14,8 +14,8 @@
 
 namespace woodcock::test {
 
-/// Points makes an empty point grid: a type that holds no voxel values.
-enum class VdbType { Float, Double, Int32, Int64, Bool, Mask, Vec3s, Vec3d, Vec3i, Points };
+/// Points makes an empty point grid: a type that holds no voxel values. Half is OpenVDB 13's.
+enum class VdbType { Float, Half, Double, Int32, Int64, Bool, Mask, Vec3s, Vec3d, Vec3i, Points };
 
 /// Scalars use the first of three components.
 using VdbValue = std::array<double, 3>;
@@ -54,12 +54,15 @@ struct GridSpec {
 
 enum class VdbCompression { None, Zip, Blosc };
 
-/// Writes the grids in the given order (names may repeat).
+/// Writes the grids in the given order (names may repeat); as format 225 where one is of halves.
 void writeVdb(const std::filesystem::path& file, const std::vector<GridSpec>& grids,
               VdbCompression compression = VdbCompression::Blosc);
 
 /// As a pipe would be fed: without the table of offsets that lets a reader skip grids.
 void streamVdb(const std::filesystem::path& file, const std::vector<GridSpec>& grids);
+
+/// Changes the number of the file's format.
+void setVdbFormat(const std::filesystem::path& file, std::uint32_t number);
 
 /// Cuts the file after `bytes` bytes.
 void truncateFile(const std::filesystem::path& file, std::uintmax_t bytes);

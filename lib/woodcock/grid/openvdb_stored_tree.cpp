@@ -66,9 +66,12 @@ openvdb::GridBase::Ptr readGridWithoutTree(FileBytes& file, const std::string& u
     std::istream stream(&buffer);
     throwOnFailure(stream);
     openvdb::io::setVersion(stream, {header.libraryMajor, header.libraryMinor}, header.fileVersion);
-    const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(entry.treeType);
+    const bool half = entry.treeType == HalfTree::treeType();
+    const openvdb::GridBase::Ptr grid =
+        openvdb::GridBase::createGrid(half ? openvdb::FloatTree::treeType() : entry.treeType);
     grid->readMeta(stream);
     grid->readTransform(stream);
+    if (half) grid->setSaveFloatAsHalf(true);
     grid->removeMeta(openvdb::GridBase::META_FILE_DELAYED_LOAD);
     return grid;
 }

@@ -13,6 +13,10 @@
 
 namespace woodcock {
 
+/// The trees of OpenVDB 13's grids of half values, which older versions can hold as well, although
+/// they know no such grids.
+using HalfTree = openvdb::tree::Tree4<openvdb::math::half, 5, 4, 3>::Type;
+
 /// The bytes of a tree in memory, and what is needed to read them. They have been walked: OpenVDB
 /// can read them in bounds.
 struct StoredTree {
@@ -29,7 +33,7 @@ struct StoredTree {
 StoredTree loadStoredTree(FileBytes& file, const GridListing& grid);
 
 /// The metadata and transform of a grid, as OpenVDB has them, on a grid of the right type with an
-/// empty tree. Errors: Input.
+/// empty tree; of floats where the file has halves, and then to be saved as half. Errors: Input.
 openvdb::GridBase::Ptr readGridWithoutTree(FileBytes& file, const std::string& uniqueName);
 
 /// Set up as OpenVDB's own archives set theirs up; reading beyond its end throws.

@@ -67,8 +67,13 @@ std::span<const char> FileBytes::loaded(std::uint64_t begin, std::uint64_t end) 
 }
 
 Error FileBytes::damaged(const std::string& what) const {
-    return inputError("{} is cut short or damaged: {}: {} at byte {}", path_.string(), place_, what,
-                      position_);
+    return inputError("{} is cut short or damaged: {}: {} at byte {}{}", path_.string(), place_,
+                      what, position_, wayOut());
+}
+
+std::string FileBytes::wayOut() const {
+    if (doubt_.empty()) return {};
+    return fmt::format("; {}: save it with a program that uses OpenVDB 13 or an older one", doubt_);
 }
 
 Error FileBytes::reachesBeyond(std::uint64_t n) const {

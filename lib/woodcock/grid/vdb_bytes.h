@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "woodcock/base/error.h"
 
@@ -61,7 +62,13 @@ public:
     /// All bytes of [begin, end), which must be in memory after loadAll().
     std::span<const char> loaded(std::uint64_t begin, std::uint64_t end) const;
 
-    /// "<file> is cut short or damaged: <place>: <what> at byte <position>"
+    /// Why the file may be sound and still not be understood; empty: it is of a known kind.
+    void setDoubt(std::string doubt) { doubt_ = std::move(doubt); }
+    const std::string& doubt() const { return doubt_; }
+    /// What an error says of that: "; <doubt>: save it ...", or nothing.
+    std::string wayOut() const;
+
+    /// "<file> is cut short or damaged: <place>: <what> at byte <position>", and the way out
     Error damaged(const std::string& what) const;
     const std::filesystem::path& path() const { return path_; }
 
@@ -73,7 +80,7 @@ private:
     void refill(std::uint64_t n);
 
     std::filesystem::path path_;
-    std::string place_ = "its header";
+    std::string place_ = "its header", doubt_;
     int descriptor_ = -1;
     std::uint64_t size_ = 0, position_ = 0, end_ = 0;
     std::unique_ptr<char[]> window_;  // bytes of the file from windowBegin_ on

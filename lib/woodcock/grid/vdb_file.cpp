@@ -49,16 +49,22 @@ void describeTransform(GridListing& listing) {
 }
 
 void describeUse(GridListing& listing) {
-    if (listing.channels == 0) {
+    if (listing.valueType == "points") {
+        markUnusable(listing,
+                     "it holds points, no values; `woodcock convert IN OUT.vdb` makes a "
+                     "density of them");
+    } else if (listing.channels == 0) {
         markUnusable(
             listing,
-            fmt::format("grids of {} are not supported; those of float, double, int32, int64, "
-                        "bool, mask, vec3s, vec3d and vec3i are",
-                        listing.valueType));
+            fmt::format(
+                "grids of {} are not supported; those of float, half, double, int32, int64, "
+                "bool, mask, vec3s, vec3d and vec3i are",
+                listing.valueType));
     } else if (listing.gridClass == GridClass::LevelSet) {
         markUnusable(listing,
                      "it is a level set (distances, no density); convert it to a fog volume first "
-                     "(Houdini: Convert VDB to 'Fog VDB'; Blender: Mesh to Volume; OpenVDB: "
+                     "(`woodcock convert IN OUT.vdb`; Houdini: Convert VDB to 'Fog VDB'; Blender: "
+                     "Mesh to Volume; OpenVDB: "
                      "tools::sdfToFogVolume)");
     }
 }
@@ -67,7 +73,7 @@ GridListing describe(FileBytes& file, const VdbHeader::Entry& entry) {
     GridListing listing;
     listing.name = listing.uniqueName = entry.uniqueName;
     const VdbValueType type = valueTypeOf(entry.treeType);
-    listing.valueType = (entry.savedAsHalf ? "half-saved " : "") + type.name;
+    listing.valueType = (entry.savedAsHalf && type.halfBytes > 0 ? "half-saved " : "") + type.name;
     listing.channels = type.channels;
     listing.fileBytes = entry.end - entry.begin;
     try {
@@ -124,7 +130,7 @@ void numberNames(std::vector<GridListing>& grids) {
 
 VdbFile listNanoVdb(FileBytes& file) {
     const NanoVdbHeads heads = readNanoVdbHeads(file);
-    VdbFile listed{file.path(), heads.version, {}, true};
+    VdbFile listed{file.path(), heads.version, {}, {}, true};
     for (const NanoVdbHead& head : heads.grids) listed.grids.push_back(describe(head));
     numberNames(listed.grids);
     return listed;
@@ -140,7 +146,11 @@ VdbFile listGrids(const std::filesystem::path& path) {
                    fmt::format("OpenVDB {}.{}, file format {}", header.libraryMajor,
                                header.libraryMinor, header.fileVersion),
                    {},
+                   {},
                    false};
+    if (!file.doubt().empty())
+        listed.warning = fmt::format("{}: {}; it is read as if nothing had changed since",
+                                     path.string(), file.doubt());
     for (const VdbHeader::Entry& entry : header.entries)
         listed.grids.push_back(describe(file, entry));
     return listed;

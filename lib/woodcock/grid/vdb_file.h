@@ -37,6 +37,7 @@ struct GridListing {
 struct VdbFile {
     std::filesystem::path path;
     std::string version;             ///< "OpenVDB 10.0, file format 224", "NanoVDB 32.4"
+    std::string warning = {};        ///< of a format newer than any that is known; usually empty
     std::vector<GridListing> grids;  ///< in the order of the file
     bool nanoVdb = false;            ///< the file is one of NanoVDB
 };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <type_traits>
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/nanovdb_file.h"
@@ -36,13 +37,16 @@ bool readAs(const StoredTree& stored, openvdb::GridBase& grid) {
                           for (std::size_t i = range.begin(); i != range.end(); ++i)
                               readLeafOf(stored, stream, i, *leaves[i]);
                       });
-    grid.setTree(tree);
+    if constexpr (std::is_same_v<TreeT, HalfTree>)
+        grid.setTree(std::make_shared<openvdb::FloatTree>(*tree));
+    else
+        grid.setTree(tree);
     return true;
 }
 
 template <class... TreeT>
-void readAsOneOf(const StoredTree& stored, openvdb::GridBase& grid) {
-    (readAs<TreeT>(stored, grid) || ...);
+bool readAsOneOf(const StoredTree& stored, openvdb::GridBase& grid) {
+    return (readAs<TreeT>(stored, grid) || ...);
 }
 
 openvdb::GridBase::Ptr readOne(const VdbFile& listed, const GridListing& listing) {
@@ -56,16 +60,17 @@ openvdb::GridBase::Ptr readOne(const VdbFile& listed, const GridListing& listing
         const openvdb::GridBase::Ptr grid = readGridWithoutTree(file, listing.uniqueName);
         const StoredTree stored = loadStoredTree(file, listing);
         using namespace openvdb;
-        readAsOneOf<FloatTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree, Vec3STree,
-                    Vec3DTree, Vec3ITree>(stored, *grid);
+        if (!readAsOneOf<FloatTree, HalfTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree,
+                         Vec3STree, Vec3DTree, Vec3ITree>(stored, *grid))
+            throw std::runtime_error("no reader for values of " + stored.treeType);
         return grid;
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
         throw failure("out of memory while reading {}", listed.path.string());
     } catch (const std::exception& e) {
-        throw inputError("{} is damaged: grid '{}': {}", listed.path.string(), listing.uniqueName,
-                         e.what());
+        throw inputError("{} is damaged: grid '{}': {}{}", listed.path.string(), listing.uniqueName,
+                         e.what(), file.wayOut());
     }
 }
 

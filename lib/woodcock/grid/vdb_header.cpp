@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t magic = 0x56444220;    // "VDB ", as a number
 constexpr std::uint32_t oldestVersion = 222;  // OpenVDB 3 writes 222 or 223
-constexpr std::uint32_t newestVersion = 224;  // OpenVDB 5 to 12
+constexpr std::uint32_t newestVersion = 225;  // OpenVDB 5 to 12 write 224, OpenVDB 13 writes 225
 constexpr std::string_view halfSuffix = "_HalfFloat";
 
 /// The unique names of a file mark their number by a control character: "density\x1e1".
@@ -79,8 +79,9 @@ void followOffsets(FileBytes& file, const VdbHeader::Entry& entry) {
         throw file.damaged(
             fmt::format("grid '{}' from byte {} to {}", entry.uniqueName, entry.begin, entry.end));
     if (entry.end > file.size())
-        throw inputError("{} is cut short: grid '{}' ends at byte {}, the file at byte {}",
-                         file.path().string(), entry.uniqueName, entry.end, file.size());
+        throw inputError("{} is cut short: grid '{}' ends at byte {}, the file at byte {}{}",
+                         file.path().string(), entry.uniqueName, entry.end, file.size(),
+                         file.wayOut());
     file.seek(entry.end);
 }
 
@@ -113,8 +114,10 @@ VdbHeader readVdbHeader(FileBytes& file) {
             "with a newer program",
             file.path().string(), header.fileVersion, oldestVersion);
     if (header.fileVersion > newestVersion)
-        throw inputError("{} has VDB file format {}; known are {} to {}", file.path().string(),
-                         header.fileVersion, oldestVersion, newestVersion);
+        file.setDoubt(
+            fmt::format("its VDB file format, {}, is newer than {}, the newest that is "
+                        "known (of OpenVDB 13)",
+                        header.fileVersion, newestVersion));
     header.libraryMajor = file.value<std::uint32_t>();
     header.libraryMinor = file.value<std::uint32_t>();
     header.hasOffsets = file.value<char>() != 0;

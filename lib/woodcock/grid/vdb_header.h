@@ -23,8 +23,9 @@ struct VdbHeader {
     std::vector<Entry> entries;  ///< in the order of the file
 };
 
-/// Errors: Input when it is no VDB file, of an unknown version, cut short, or written as a stream
-/// with a grid that cannot be skipped.
+/// Of a format newer than any that is known it reads what it can; file.doubt() says so then.
+/// Errors: Input when it is no VDB file, of a version that is too old, cut short, or written as a
+/// stream with a grid that cannot be skipped.
 VdbHeader readVdbHeader(FileBytes& file);
 
 }  // namespace woodcock

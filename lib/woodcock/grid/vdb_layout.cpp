@@ -190,10 +190,11 @@ VdbValueType valueTypeOf(const std::string& treeType) {
     if (usualNodes) name.resize(name.size() - nodes.size());
     if (name == "ptdataidx32" || name == "ptidx32") return {"points", 0};
     using enum VdbValueType::Leaf;
-    static const VdbValueType known[]{
-        {"float", 1, 4, 2, Values},  {"double", 1, 8, 2, Values},    {"int32", 1, 4, 0, Values},
-        {"int64", 1, 8, 0, Values},  {"bool", 1, 1, 0, BitsAndMask}, {"mask", 1, 1, 0, Bits},
-        {"vec3s", 3, 12, 6, Values}, {"vec3d", 3, 24, 6, Values},    {"vec3i", 3, 12, 0, Values}};
+    static const VdbValueType known[]{{"float", 1, 4, 2, Values},  {"half", 1, 2, 0, Values},
+                                      {"double", 1, 8, 2, Values}, {"int32", 1, 4, 0, Values},
+                                      {"int64", 1, 8, 0, Values},  {"bool", 1, 1, 0, BitsAndMask},
+                                      {"mask", 1, 1, 0, Bits},     {"vec3s", 3, 12, 6, Values},
+                                      {"vec3d", 3, 24, 6, Values}, {"vec3i", 3, 12, 0, Values}};
     for (const VdbValueType& type : known)
         if (usualNodes && name == type.name) return type;
     return {name, 0};

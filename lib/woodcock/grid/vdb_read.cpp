@@ -37,7 +37,7 @@ template <class V>
 void convert(const V& value, float* to) {
     if constexpr (channelsOf<V> == 3) {
         for (int c = 0; c < 3; ++c) to[c] = toFloat(static_cast<double>(value[c]));
-    } else if constexpr (std::is_same_v<V, float>) {
+    } else if constexpr (std::is_same_v<V, float> || std::is_same_v<V, openvdb::math::half>) {
         *to = value;
     } else {
         *to = toFloat(static_cast<double>(value));
@@ -259,13 +259,14 @@ GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair
     GridSource source;
     try {
         using namespace openvdb;
-        readAsOneOf<FloatTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree, Vec3STree,
-                    Vec3DTree, Vec3ITree>(stored, repair, source);
+        if (!readAsOneOf<FloatTree, HalfTree, DoubleTree, Int32Tree, Int64Tree, BoolTree, MaskTree,
+                         Vec3STree, Vec3DTree, Vec3ITree>(stored, repair, source))
+            throw std::runtime_error("no reader for values of " + stored.treeType);
     } catch (const std::bad_alloc&) {
         throw failure("out of memory while reading {}", listed.path.string());
     } catch (const std::exception& e) {
-        throw inputError("{} is damaged: grid '{}': {}", listed.path.string(), grid.uniqueName,
-                         e.what());
+        throw inputError("{} is damaged: grid '{}': {}{}", listed.path.string(), grid.uniqueName,
+                         e.what(), file.wayOut());
     }
     return source;
 }
