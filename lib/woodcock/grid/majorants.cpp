@@ -219,7 +219,9 @@ MajorantStatistics majorantStatistics(const Field& field, const MajorantGrid& ma
         const double r = std::sqrt(std::max(0.0, 1 - z * z));
         return Vec3d{r * std::cos(phi), r * std::sin(phi), z};
     };
-    for (int i = 0; i < rays; ++i) {
+    constexpr double mostWork = 1 << 25;  // of segments and look-ups: a second
+    double work = 0;
+    for (int i = 0; i < rays && work < mostWork; ++i) {
         const Vec3d a = centre + onSphere() * radius, b = centre + onSphere() * radius;
         if (a == b) continue;
         const IndexRay ray{a, normalize(b - a)};
@@ -230,10 +232,15 @@ MajorantStatistics majorantStatistics(const Field& field, const MajorantGrid& ma
         int count = 0;
         double upper = 0, mean = 0;
         while (walk.next(s)) {
-            ++count;
+            ++count, ++work;
             const double l = s.t1 - s.t0;
             upper += l * s.range.max;
-            const int samples = 1 + static_cast<int>(std::min(l, 4096.0));
+            if (s.range.min == s.range.max) {
+                mean += l * s.range.min;
+                continue;
+            }
+            const int samples = 1 + static_cast<int>(std::min(l, 512.0));
+            work += samples;
             for (int k = 0; k < samples; ++k)
                 mean += l / samples *
                         field.stochastic(ray.at(s.t0 + l * (k + random.uniform()) / samples),
