@@ -101,7 +101,7 @@ void refuseReplacement(const SceneDescription& scene, const LoadedScene& loaded,
              {&v.density, &v.sigmaA, &v.sigmaS, &v.emission, &v.blackbody})
             if (*field) {
                 const Box3d part =
-                    (volume.worldFromObject * field->objectFromIndex).box(field->field->support());
+                    (volume.worldFromObject * field->objectFromIndex).box(field->field->extent());
                 all.add(part.lower), all.add(part.upper);
             }
         return all;

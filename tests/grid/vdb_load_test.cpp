@@ -37,7 +37,8 @@ protected:
 };
 
 TEST_F(VdbLoad, EveryScalarTypeKeepsItsValues) {
-    for (VdbType type : {VdbType::Float, VdbType::Double, VdbType::Int32, VdbType::Int64}) {
+    for (VdbType type :
+         {VdbType::Float, VdbType::Half, VdbType::Double, VdbType::Int32, VdbType::Int64}) {
         GridSpec spec{.type = type, .box = {{-9, -3, 2}, {12, 9, 19}}, .value = pattern};
         const LoadedGrid grid = load(spec);
         ASSERT_EQ(grid.field.channels(), 1);
@@ -205,12 +206,66 @@ TEST_F(VdbLoad, NegativeValuesAreFineWhereTheyMeanSomething) {
     expectRefused(spec, "1 negative voxel (first at [0, 0, 0])", {.use = GridUse::Colour});
 }
 
-TEST_F(VdbLoad, EmptyAndAllInactiveGridsAreRefused) {
-    expectRefused({}, "grid 'density' in " + name() + " is empty: it has no active voxels");
-    expectRefused({.voxels = {{{0, 0, 0}, {2}, false}, {{9, 0, 0}, {3}, false}}},
-                  "grid 'density' in " + name() +
-                      " has no active voxels, but 2 inactive ones with values other than the "
-                      "background; activate them");
+TEST_F(VdbLoad, GridsWithoutActiveVoxelsAreNoted) {
+    const LoadedGrid empty = load({.background = {0.5}});
+    EXPECT_TRUE(empty.empty);
+    EXPECT_EQ(empty.notes,
+              std::vector{"grid 'density' in " + name() + " is empty: it has no active voxels"});
+    EXPECT_EQ(empty.field.range(), (Range{0.5f, 0.5f}));
+    const GridSpec inactive{.voxels = {{{0, 0, 0}, {2}, false}, {{9, 0, 0}, {3}, false}}};
+    const LoadedGrid off = load(inactive);
+    EXPECT_TRUE(off.empty);
+    EXPECT_EQ(off.notes, std::vector{"grid 'density' in " + name() +
+                                     " has no active voxels, but 2 inactive ones with values other "
+                                     "than the background; activate them if they are meant to be "
+                                     "seen (Houdini: VDB Activate)"});
+    EXPECT_EQ(off.field.voxel({9, 0, 0}), 3);
+    EXPECT_FALSE(load({.voxels = {{{0, 0, 0}, {0}}}}).empty);  // an active zero
+}
+
+TEST_F(VdbLoad, NothingIsLeftOfAMediumWithoutActiveVoxels) {
+    for (const GridSpec& spec :
+         {GridSpec{.background = {0.5}}, GridSpec{.voxels = {{{0, 0, 0}, {2}, false}}},
+          GridSpec{.tiles = {{{0, 0, 0}, 128, {2}, false}}}}) {
+        const LoadedGrid grid = load(spec, {.reach = GridReach::ActiveVoxels});
+        EXPECT_TRUE(grid.empty);
+        EXPECT_EQ(grid.notes.size(), 1u);
+        EXPECT_EQ(grid.field.range(), (Range{0, 0}));
+        EXPECT_TRUE(grid.field.extent().empty());
+    }
+}
+
+TEST_F(VdbLoad, ABackgroundReachesOneVoxelBeyondTheActiveOnes) {
+    const GridSpec spec{.background = {0.25},
+                        .tiles = {{{8, 0, -8}, 8, {0.25}}, {{128, 0, 0}, 128, {3}, false}},
+                        .voxels = {{{0, 0, 0}, {1}}, {{-3, 5, 20}, {2}}, {{40, 0, 0}, {9}, false}}};
+    const LoadOptions within{.reach = GridReach::ActiveVoxels};
+    const LoadedGrid grid = load(spec, within);
+    ASSERT_TRUE(grid.field.limits());
+    EXPECT_EQ(grid.field.limits()->lower, (Vec3d{-4, -1, -9}));
+    EXPECT_EQ(grid.field.limits()->upper, (Vec3d{16, 8, 21}));
+    EXPECT_EQ(grid.field.extent().upper, (Vec3d{16, 8, 21}));
+    EXPECT_EQ(grid.field.background(), 0.25f);  // between the voxels
+    EXPECT_EQ(grid.notes, std::vector{"grid 'density' in " + name() +
+                                      " has a background of 0.25: only what lies within the bounds "
+                                      "of its active voxels is drawn"});
+    const LoadedGrid everywhere = load(spec);
+    EXPECT_FALSE(everywhere.field.limits());
+    EXPECT_TRUE(everywhere.notes.empty());
+    const LoadedGrid zero = load({.voxels = {{{0, 0, 0}, {1}}}}, within);
+    EXPECT_FALSE(zero.field.limits());
+    EXPECT_TRUE(zero.notes.empty());
+    const LoadedGrid colour = load(
+        {.type = VdbType::Vec3s, .background = {0, 0.5, 0}, .voxels = {{{0, 0, 0}, {1, 1, 1}}}},
+        {.use = GridUse::Colour, .reach = GridReach::ActiveVoxels});
+    EXPECT_TRUE(colour.field.limits());
+    EXPECT_EQ(colour.notes.at(0), "grid 'density' in " + name() +
+                                      " has a background of [0, 0.5, 0]: only what lies within the "
+                                      "bounds of its active voxels is drawn");
+    // What is repaired is not there.
+    const LoadedGrid repaired = load({.background = {-1}, .voxels = {{{0, 0, 0}, {1}}}},
+                                     {.reach = GridReach::ActiveVoxels, .repair = true});
+    EXPECT_FALSE(repaired.field.limits());
 }
 
 TEST_F(VdbLoad, KindsThatCannotBeRenderedSayWhatToDo) {

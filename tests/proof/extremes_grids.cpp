@@ -162,7 +162,7 @@ void background(Lab& lab) {
             const std::string name =
                 fmt::format("a background of {:g} up to a lamp, offset {}", 0.025 * sigma, offset);
             const Scene scene = sceneIn(
-                lab, volumeOf("haze.vdb", 0.1 * sigma) +
+                lab, volumeOf("haze.vdb", 0.1 * sigma, "background = \"endless\"\n") +
                          fmt::format("[[light]]\ntype = \"sphere\"\nradius = 1\nradiance = 1\n"
                                      "position = [{}, {}, 0]\n",
                                      digits(end + 1), offset) +
@@ -173,10 +173,34 @@ void background(Lab& lab) {
     }
     lab.add(caseOf("light from behind a background without end", 0,
                    watch(lab, "light from behind a background without end",
-                         sceneIn(lab, volumeOf("haze.vdb", 1e-9) + evenLight +
-                                          test::pencilCamera({-5, 0, 0}, {1, 0, 0})),
+                         sceneIn(lab, volumeOf("haze.vdb", 1e-9, "background = \"endless\"\n") +
+                                          evenLight + test::pencilCamera({-5, 0, 0}, {1, 0, 0})),
                          precision)[0],
                    precision));
+}
+
+/// A background that ends one voxel around the active ones: ever fainter ones make no difference in
+/// the end.
+void backgroundWithin(Lab& lab) {
+    for (const double haze : {0.25, 1e-6, 1e-38}) {
+        GridSpec spec;
+        spec.background = {haze};
+        spec.voxels = {{{0, 0, 0}, {2}}, {{3, 0, 0}, {0}}, {{9, 1, 0}, {haze}}};
+        const std::string file = fmt::format("haze_{:g}.vdb", haze);
+        writeVdb(lab.file(file), {spec});
+        const KnownGrid grid{[=](Vec3i v) {
+                                 return v == Vec3i{0, 0, 0}   ? 2
+                                        : v == Vec3i{3, 0, 0} ? 0
+                                                              : double{static_cast<float>(haze)};
+                             },
+                             {{0, 0, 0}, {9, 1, 0}},
+                             {},
+                             0.3};
+        addTransmittance(lab, fmt::format("a background of {:g} around the active voxels", haze),
+                         volumeOf(file.c_str(), 0.3), grid, {-5, 0.4, -0.3}, {1, 0, 0});
+        addFurnace(lab, fmt::format("a background of {:g}", haze), furnaceOf(file.c_str(), 30),
+                   test::pencilCamera({-5, 0.4, -0.3}, {1, 0, 0}));
+    }
 }
 
 /// The largest and the smallest numbers of a half.
@@ -242,6 +266,7 @@ std::vector<Check> extremeGrids() {
             {Kind::Extreme, "a single voxel", singleVoxel},
             {Kind::Extreme, "only tiles", onlyTiles},
             {Kind::Extreme, "background not zero", background},
+            {Kind::Extreme, "background within bounds", backgroundWithin},
             {Kind::Extreme, "half-float extremes", halves},
             {Kind::Extreme, "twelve decades in a leaf", decades}};
 }

@@ -105,7 +105,8 @@ TEST(VolumeEmission, MistakesNameTheirPlace) {
     };
     const std::string file = "file = \"fire.vdb\"\nscale = 1\n";
     expect(file + "emission = -1", "scene.toml:4:12: volume[0].emission is -1");
-    expect(file + "emission = { grid = \"glow\" }", "scene.toml:4:12: grid 'glow' in ");
+    expect(file + "background = \"endless\"\nemission = { grid = \"glow\" }",
+           "scene.toml:5:12: grid 'glow' in ");
     expect(file + "emission = { grid = \"flam\" }", "grid 'flam' not found in ");
     expect(file + "blackbody = { temp = \"t\" }", "temp");
     expect(file + "blackbody = { scale = 1e14 }", "is too hot: up to 1e+14 kelvins");

@@ -352,18 +352,34 @@ TEST_F(Cli, BadVolumes) {
     bad("vector.vdb", {"velocity", "vec3s", "scalar", "smoke"},
         {"--set", "volume[0].density=velocity"});
 
-    GridSpec empty;
-    writeVdb(file("empty.vdb"), {empty});
-    bad("empty.vdb", {"density", "no active voxels"});
-    GridSpec inactive;
-    inactive.voxels = {{{0, 0, 0}, {1}, false}, {{1, 0, 0}, {2}, false}};
-    writeVdb(file("inactive.vdb"), {inactive});
-    bad("inactive.vdb", {"density", "no active voxels", "2 inactive"});
-
     withVoxel("nan.vdb", std::numeric_limits<double>::quiet_NaN(), "NaN");
     withVoxel("infinite.vdb", std::numeric_limits<double>::infinity(), "infinite");
     withVoxel("negative.vdb", -0.25, "negative");
     EXPECT_EQ(runProgram(render("nan.vdb", {"--repair", "--spp", "1"})).exitCode, 0);
+}
+
+TEST_F(Cli, EmptyFramesShowWhatIsBehind) {
+    GridSpec inactive;
+    inactive.voxels = {{{0, 0, 0}, {1}, false}, {{1, 0, 0}, {2}, false}};
+    writeVdb(file("inactive.vdb"), {inactive});
+    writeVdb(file("empty.vdb"), {GridSpec{}});
+    writeVdb(file("none.vdb"), {});
+    for (const auto& [name, said] : std::vector<std::pair<std::string, std::string>>{
+             {"empty.vdb", "is empty: it has no active voxels"},
+             {"inactive.vdb", "has no active voxels, but 2 inactive ones"},
+             {"none.vdb", "holds no grids"}}) {
+        const ProgramResult run = runProgram(render(name, {"--spp", "1"}));
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        EXPECT_NE(run.err.find(file(name)), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+        const ProgramResult info = runProgram({"info", file(name)});
+        EXPECT_EQ(info.exitCode, 0) << info.err;
+        EXPECT_NE(info.out.find(name == "none.vdb" ? "nothing to be drawn" : "no active voxels"),
+                  std::string::npos)
+            << info.out;
+    }
+    // A name that is not there is no empty frame.
+    expectFailure(render("empty.vdb", {"--set", "volume[0].density=smoke"}), 3, {"'smoke'"});
 }
 
 TEST_F(Cli, BadScenes) {

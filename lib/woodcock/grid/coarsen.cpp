@@ -17,6 +17,9 @@ public:
         source_.channels = field.channels();
         for (int c = 0; c < field.channels(); ++c)
             source_.background[static_cast<std::size_t>(c)] = field.background(c);
+        if (const auto& limits = field.limits())  // one voxel around those within
+            source_.within = Box3i{floorToInt((limits->lower + Vec3d{1, 1, 1}) / 2),
+                                   floorToInt((limits->upper - Vec3d{1, 1, 1}) / 2)};
         field.blocks().forEach([&](Vec3i b, int log2Size, std::uint32_t ref) {
             if (ref == field.blocks().outside()) return;
             if (log2Size == blockLog2)

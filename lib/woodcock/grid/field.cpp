@@ -55,6 +55,9 @@ public:
     FieldBuilder(const FieldSource& source, Storage storage) : source_(source) {
         field_.channels_ = source.channels;
         field_.background_ = source.background;
+        if (source.within)
+            field_.limits_ = Box3d{source.within->lower.as<double>() - Vec3d{1, 1, 1},
+                                   source.within->upper.as<double>() + Vec3d{1, 1, 1}};
         field_.brickRanges_.resize(source.leafOrigins.size());
         if (storage == Storage::Auto) storage = survivesHalf() ? Storage::Half : Storage::Float;
         field_.storage_ = storage;

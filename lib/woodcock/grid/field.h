@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "woodcock/base/vec.h"
@@ -35,6 +36,13 @@ public:
     /// Index-space box outside which the reconstruction is the background: one voxel around all
     /// voxels of a leaf or tile that differ from it. Empty when there are none.
     const Box3d& support() const { return support_; }
+
+    /// Index-space box outside of which a medium made of the field is 0, although the field itself
+    /// says background there; absent: it is the background everywhere.
+    const std::optional<Box3d>& limits() const { return limits_; }
+
+    /// What a medium made of the field takes up, but for a background without limits.
+    const Box3d& extent() const { return limits_ ? *limits_ : support_; }
 
     /// The point of the support next to `p`, or `p` inside it: the reconstruction there is the
     /// same, and voxel numbers fit an int.
@@ -135,6 +143,7 @@ private:
     double jitterUnit_ = 0x1p-21, firstJitter_ = 0x1p-22;  // of stochasticVoxel()
     std::array<float, 3> background_{};
     Box3d support_;
+    std::optional<Box3d> limits_;
     Range range_;
     BlockTable<std::uint32_t> table_;  // bricks, or constantBit | constant
     std::vector<float> constants_;

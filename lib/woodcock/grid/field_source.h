@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,6 +43,9 @@ struct FieldSource {
     std::array<float, 3> background{};
     std::vector<Vec3i> leafOrigins;  ///< multiples of 8
     std::vector<FieldTile> tiles;    ///< overlapping neither each other nor a leaf
+    /// Beyond these voxels, and the one around them that interpolation reaches, the field is 0,
+    /// whatever the background; absent: the background goes on for ever.
+    std::optional<Box3i> within = {};
     /// Writes the 512 x channels values of leaf `i`: x slowest, z fastest, channels innermost.
     /// Called from many threads.
     std::function<void(size_t i, std::span<float> values)> copyLeaf;

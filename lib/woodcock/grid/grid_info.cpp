@@ -70,7 +70,9 @@ void remarkOnValues(const GridListing& grid, const GridStatistics& statistics,
                         "rendered as well",
                         voxels.inactiveValues));
     if (statistics.background != std::array<float, 3>{} && grid.gridClass != GridClass::LevelSet)
-        remarks.push_back("its background is not zero: that value fills all of space around it");
+        remarks.push_back(
+            "its background is not zero: as a medium it is drawn within the bounds of its active "
+            "voxels, unless a scene asks for more (background = \"endless\")");
 }
 
 void remarkOnShape(const GridListing& grid, const GridStatistics& statistics,

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/grid/vdb_load.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
@@ -26,16 +30,40 @@ void requireUse(const VdbFile& file, const GridListing& grid, GridUse use) {
         place(file, grid), grid.valueType, joinNames(scalars));
 }
 
-void requireContent(const VdbFile& file, const GridListing& grid,
-                    const GridStatistics& statistics) {
-    const VoxelScan& voxels = statistics.voxels;
-    if (voxels.active > 0) return;
+std::string text(std::span<const float> value) {
+    return value.size() == 1 ? fmt::format("{}", value[0])
+                             : fmt::format("[{}]", fmt::join(value, ", "));
+}
+
+/// "grid 'density' in x.vdb is empty: ...", where no voxel is active.
+std::string emptyNote(const VdbFile& file, const GridListing& grid, const VoxelScan& voxels) {
     if (voxels.inactiveValues == 0)
-        throw inputError("{} is empty: it has no active voxels", place(file, grid));
-    throw inputError(
-        "{} has no active voxels, but {} inactive ones with values other than the "
-        "background; activate them if they are meant to be seen (Houdini: VDB Activate)",
+        return fmt::format("{} is empty: it has no active voxels", place(file, grid));
+    return fmt::format(
+        "{} has no active voxels, but {} inactive ones with values other than the background; "
+        "activate them if they are meant to be seen (Houdini: VDB Activate)",
         place(file, grid), voxels.inactiveValues);
+}
+
+/// Ends the source where its active voxels do. Returns the note about what that leaves out, if it
+/// is anything.
+std::string limitReach(const VdbFile& file, const GridListing& grid, const Box3i& active,
+                       FieldSource& source) {
+    if (active.empty()) {  // inactive values too are left out then
+        const int channels = source.channels;
+        source = {};
+        source.channels = channels;
+        return {};
+    }
+    const auto channels = static_cast<std::size_t>(source.channels);
+    const std::span<const float> background(source.background.data(), channels);
+    if (std::all_of(background.begin(), background.end(), [](float v) { return v == 0; }))
+        return {};
+    source.within = active;
+    return fmt::format(
+        "{} has a background of {}: only what lies within the bounds of its active "
+        "voxels is drawn",
+        place(file, grid), text(background));
 }
 
 /// Returns the note about what was repaired, if anything was.
@@ -76,9 +104,10 @@ LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOpti
     requireUse(file, grid, options.use);
     GridSource source =
         readGridSource(file, grid, {.faulty = options.repair, .negative = options.nonNegative});
-    requireContent(file, grid, source.statistics);
 
     LoadedGrid loaded;
+    loaded.empty = source.statistics.voxels.active == 0;
+    if (loaded.empty) loaded.notes.push_back(emptyNote(file, grid, source.statistics.voxels));
     if (std::string note = requireSoundValues(file, grid, source.statistics, options);
         !note.empty())
         loaded.notes.push_back(std::move(note));
@@ -92,6 +121,10 @@ LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOpti
         source.field = options.convert(std::move(source.field));
     else if (storage == Storage::Auto)
         storage = source.statistics.voxels.exactAsHalf ? Storage::Half : Storage::Float;
+    if (options.reach == GridReach::ActiveVoxels)
+        if (std::string note = limitReach(file, grid, source.statistics.activeBounds, source.field);
+            !note.empty())
+            loaded.notes.push_back(std::move(note));
     try {
         loaded.field = buildField(source.field, storage);
     } catch (const Error& e) {

@@ -17,8 +17,14 @@ namespace woodcock {
 /// channel then.
 enum class GridUse { Scalar, Colour };
 
+/// What a grid means outside of its active voxels' box (and of the one voxel around it that
+/// interpolation reaches), where its background is not 0: that background, or nothing, as for
+/// media in pbrt-v4 and Cycles. A grid without active voxels is nothing then.
+enum class GridReach { Everywhere, ActiveVoxels };
+
 struct LoadOptions {
     GridUse use = GridUse::Scalar;
+    GridReach reach = GridReach::Everywhere;
     Storage storage = Storage::Auto;
     bool nonNegative =
         true;             ///< a coefficient: values below zero are faults, as NaN and infinity are
@@ -32,10 +38,11 @@ struct LoadedGrid {
     Affine3d worldFromIndex;
     GridStatistics statistics;       ///< of the values as they stand in the file
     std::vector<std::string> notes;  ///< what a user should know: repairs, unusual classes
+    bool empty = false;              ///< it has no active voxels, which is noted
 };
 
 /// Loads a grid of a listed file. Errors: Input when the grid is of a kind that cannot be rendered,
-/// empty, of the wrong use, or holds faulty values; naming file and grid.
+/// of the wrong use, or holds faulty values; naming file and grid.
 LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOptions& options);
 
 /// The same, from the names of a file and a grid.

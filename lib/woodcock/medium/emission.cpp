@@ -15,17 +15,20 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
     indexFromWorld_ = d_.worldFromIndex.inverse();
     largestScale_ = d_.scale.maximum();
     if (!d_.field) {
-        support_ = d_.box;
+        support_ = extent_ = d_.box;
         return;
     }
     const Field& field = *d_.field;
     for (int c = 0; c < field.channels(); ++c)
-        if (field.background(c) != 0)
+        if (field.background(c) != 0) {
+            background_ = std::max(background_, std::abs(double{field.background(c)}));
+            if (field.limits()) continue;
             throw inputError(
                 "an emission grid's background is {}; expected 0, as what glows everywhere is "
                 "infinitely bright",
                 field.background(c));
-    support_ = field.support();
+        }
+    support_ = field.support(), extent_ = field.extent();
     // As if the brightest voxel were one collision wide: cells that tell bright from dark, and not
     // many more.
     const double largest = std::max(std::abs(field.range().min), std::abs(field.range().max));
@@ -35,7 +38,7 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
 Rgb EmissionPart::value(Vec3d world) const {
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? d_.scale : Rgb(0.0f);
-    if (support_.empty()) return Rgb(0.0f);
+    if (extent_.empty() || (d_.field->limits() && !extent_.contains(p))) return Rgb(0.0f);
     const Vec3d near = d_.field->nearSupport(p);
     if (d_.field->channels() == 1) return d_.scale * d_.field->trilinear(near);
     return Rgb::map([&](int c) { return d_.scale[c] * d_.field->trilinear(near, c); });

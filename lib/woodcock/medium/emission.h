@@ -15,7 +15,8 @@
 namespace woodcock {
 
 /// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It is
-/// found whether or not there is anything that absorbs. Outside of its field's support it is zero.
+/// found whether or not there is anything that absorbs. It is zero outside of its field's support
+/// or, where that has a background, outside of the field's limits.
 class EmissionPart {
 public:
     struct Description {
@@ -25,11 +26,11 @@ public:
         Rgb scale{1.0f};                     ///< q where f is 1
     };
     /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
-    /// field's background not zero: what glows everywhere is infinitely bright.
+    /// field has a background without limits: what glows everywhere is infinitely bright.
     explicit EmissionPart(Description description);
 
     const Description& description() const { return d_; }
-    Box3d worldBounds() const { return d_.worldFromIndex.box(support_); }
+    Box3d worldBounds() const { return d_.worldFromIndex.box(extent_); }
     /// q at a world position, by full trilinear interpolation.
     Rgb value(Vec3d world) const;
     /// Calls visit(t0, t1, bound) for the pieces of a ray before tMax where q may differ from 0;
@@ -37,23 +38,30 @@ public:
     template <class F>
     void walk(Vec3d origin, Vec3d direction, double tMax, F&& visit) const {
         const IndexRay ray{indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
-        double t0 = 0, t1 = tMax;
-        if (support_.empty() || !clip(ray, support_, t0, t1)) return;
+        double begin = 0, end = tMax;
+        if (extent_.empty() || !clip(ray, extent_, begin, end)) return;
         if (!d_.field) {
-            visit(t0, t1, largestScale_);
+            visit(begin, end, largestScale_);
             return;
         }
+        double t0 = begin, t1 = end;
+        if (support_.empty() || !clip(ray, support_, t0, t1)) t0 = t1 = end;
+        const auto piece = [&](double from, double to, double bound) {
+            if (bound > 0 && to > from) visit(from, to, bound * largestScale_);
+        };
+        piece(begin, t0, background_);
+        if (!(t0 < t1)) return;
         CellWalk cells(majorants_, support_, ray, t0, t1);
-        for (Segment s; cells.next(s);) {
-            const double bound = std::max(std::abs(s.range.min), std::abs(s.range.max));
-            if (bound > 0 && s.t1 > s.t0) visit(s.t0, s.t1, bound * largestScale_);
-        }
+        for (Segment s; cells.next(s);)
+            piece(s.t0, s.t1, std::max(std::abs(s.range.min), std::abs(s.range.max)));
+        piece(t1, end, background_);
     }
 
 private:
     Description d_;
     Affine3d indexFromWorld_;
-    Box3d support_;
+    Box3d support_, extent_;
+    double background_ = 0;  // its largest channel, within the extent and outside of the support
     double largestScale_ = 0;
     MajorantGrid majorants_;
 };

@@ -16,7 +16,10 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
     takeCoefficients();
     support_ = d_.field ? d_.field->support() : d_.box;
-    if (d_.field) background_ = d_.field->storedRange(d_.field->blocks().outside());
+    if (d_.field) {
+        limits_ = d_.field->limits();
+        background_ = d_.field->storedRange(d_.field->blocks().outside());
+    }
     reach_ = findReach();
     if (!d_.field) {
         meanExtinction_ = largestExtinction_;
@@ -26,14 +29,14 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     majorants_ = std::make_shared<MajorantGrid>(
         *d_.field, MajorantGrid::Options{largestExtinction_ * voxelWidth, d_.majorantScale,
                                          d_.majorantSmallestLog2});
-    if (support_.empty()) return;
+    const Box3d& box = extent();
+    if (box.empty()) return;
     RandomStream random(hashOf(0x6d65616e));
     constexpr int samples = 4096;
     for (int i = 0; i < samples; ++i) {
         const Vec3d u{random.uniform(), random.uniform(), random.uniform()};
-        meanExtinction_ +=
-            d_.field->stochastic(support_.lower + support_.size() * u, random.bits()) *
-            double{largestExtinction_} / samples;
+        meanExtinction_ += d_.field->stochastic(box.lower + box.size() * u, random.bits()) *
+                           double{largestExtinction_} / samples;
     }
 }
 
@@ -76,7 +79,7 @@ MediumPart MediumPart::with(const Coefficients& coefficients) const {
 Box3d MediumPart::findReach() const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const Vec3d everywhere{infinity, infinity, infinity};
-    if (unbounded() || support_.empty()) return {-everywhere, everywhere};
+    if (unbounded() || extent().empty()) return {-everywhere, everywhere};
     const Box3d box = worldBounds();
     const Vec3d far = max(max(box.lower, -box.lower), max(box.upper, -box.upper));
     const double margin = 1e-9 * std::max({far.x, far.y, far.z});
@@ -87,6 +90,7 @@ Box3d MediumPart::findReach() const {
 float MediumPart::value(Vec3d world, int channel) const {
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? 1.0f : 0.0f;
+    if (limits_ && !limits_->contains(p)) return 0.0f;
     return d_.field->trilinear(d_.field->nearSupport(p), d_.field->channels() == 1 ? 0 : channel);
 }
 
@@ -120,7 +124,7 @@ bool MediumPart::chromatic() const {
 Box3d Medium::worldBounds() const {
     Box3d box;
     for (const MediumPart& p : parts)
-        if (!p.support().empty()) box.add(p.worldBounds());
+        if (!p.extent().empty()) box.add(p.worldBounds());
     return box;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "woodcock/base/affine.h"
@@ -82,8 +83,12 @@ public:
     /// Index-space box outside which f is the background.
     const Box3d& support() const { return support_; }
     Range background() const { return background_; }
-    bool unbounded() const { return background_.max > 0; }
-    Box3d worldBounds() const { return d_.worldFromIndex.box(support_); }
+    /// Index-space box outside which f is 0, where that is not the background's doing; else null.
+    const Box3d* limits() const { return limits_ ? &*limits_ : nullptr; }
+    /// What the part takes up, but for a background without limits.
+    const Box3d& extent() const { return limits_ ? *limits_ : support_; }
+    bool unbounded() const { return background_.max > 0 && !limits_; }
+    Box3d worldBounds() const { return d_.worldFromIndex.box(extent()); }
 
     /// f at a world position, by full trilinear interpolation.
     float value(Vec3d world, int channel = 0) const;
@@ -107,6 +112,7 @@ private:
     Rgb extinction_;
     Affine3d indexFromWorld_, albedoIndexFromWorld_;
     Box3d support_;
+    std::optional<Box3d> limits_;
     Box3d reach_;  // of world space: a little more than all that is not 0
     Range background_;
     float largestExtinction_ = 0;
@@ -125,13 +131,13 @@ struct Medium {
     std::vector<MediumPart> parts;
     std::vector<EmissionPart> emission = {};
 
-    /// World box of all parts' supports (the background, where not zero, reaches beyond it).
+    /// World box of all parts' extents (a background without limits reaches beyond it).
     Box3d worldBounds() const;
 };
 
 /// Walks the part of a ray that a medium part fills, as segments of world ray parameter in order:
 /// the cells of its field, one segment for a homogeneous box, and the background before and after
-/// where that is not zero.
+/// where that is not zero, as far as the part's limits.
 class PartWalk {
 public:
     PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
@@ -140,8 +146,6 @@ public:
         : background_(part.background()),
           homogeneous_(!part.field()),
           end_(tMax),
-          enter_(0),
-          leave_(tMax),
           cells_(enters(part, ray) && !homogeneous_
                      ? CellWalk(cells, part.support(), ray, enter_, leave_)
                      : CellWalk()) {}
@@ -152,8 +156,8 @@ public:
     bool next(Segment& segment) {
         if (stage_ == Stage::Before) {
             stage_ = Stage::Inside;
-            if (background_.max > 0 && enter_ > 0) {
-                segment = {0, enter_, background_};
+            if (background_.max > 0 && enter_ > begin_) {
+                segment = {begin_, enter_, background_};
                 return true;
             }
         }
@@ -179,6 +183,8 @@ private:
     enum class Stage { Before, Inside, After, Done };
 
     bool enters(const MediumPart& part, const IndexRay& ray) {
+        if (part.limits() && !clip(ray, *part.limits(), begin_, end_)) begin_ = end_;
+        enter_ = begin_, leave_ = end_;
         if (!part.support().empty() && clip(ray, part.support(), enter_, leave_)) return true;
         enter_ = leave_ = end_;  // all background
         return false;
@@ -187,7 +193,7 @@ private:
     Range background_;
     bool homogeneous_;
     Stage stage_ = Stage::Before;
-    double end_, enter_, leave_;
+    double begin_ = 0, end_, enter_, leave_;
     CellWalk cells_;
 };
 

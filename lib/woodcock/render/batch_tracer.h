@@ -340,6 +340,12 @@ private:
         else
             return {p.origin, p.direction, infinity, &media_[p.standIn]};
     }
+    /// Outside of all surfaces, in a medium that fills all of space.
+    bool inEndlessMedium(const Path& p) const {
+        if (!flightOf(p).medium->unbounded) return false;
+        if constexpr (Surfaces) return interiors_->medium(p.surfaces.place.inside) == 0;
+        return true;
+    }
     static Rgb tint(const Path& p) {
         if constexpr (Surfaces)
             return p.surfaces.tint;

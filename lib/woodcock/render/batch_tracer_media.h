@@ -26,6 +26,12 @@ template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::scatter(std::size_t i, double t, double g) {
     Path& p = paths_[i];
     ++counters_.scatterings;
+    const bool endless = inEndlessMedium(p);
+    if (!Surfaces && endless && !needs_.emission && scene_.lights.local().empty()) {
+        ++p.scatterings;
+        p.alive = false;  // nothing shines in there, and from infinity no light arrives
+        return;
+    }
     const Vec3d position = p.origin + p.direction * t;
     const EventNumbers u = numbers(p);
     // What equiangular sampling of this flight leaves to this event; see addEquiangular.
@@ -45,13 +51,13 @@ void BatchTracer<N, Surfaces>::scatter(std::size_t i, double t, double g) {
     p.flight = u.flight;
     ++p.scatterings;
     addSphereHits(i, &share);
-    if (p.scatterings >= firstOrderRoulette &&
+    if (p.scatterings >= (endless ? firstEndlessRoulette : firstOrderRoulette) &&
         std::has_single_bit(static_cast<std::uint64_t>(p.scatterings))) {
-        if (p.random.uniform() >= 0.70710678118654752) {
+        if (p.random.uniform() >= (endless ? double{endlessSurvival} : 0.70710678118654752)) {
             p.alive = false;
             return;
         }
-        p.throughput *= 1.41421356f;
+        p.throughput *= endless ? 1 / endlessSurvival : 1.41421356f;
     }
     p.equiangular = u.equiangular, p.lamp = u.pick;
     if (octavesEnd_) p.alive = false;

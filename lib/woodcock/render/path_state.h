@@ -26,6 +26,10 @@ inline constexpr std::int64_t quasiRandomOrders = 4;
 /// conservative medium the number of scatterings has a tail like n^(-1/2), for which both cost and
 /// variance then grow like log n.
 inline constexpr int firstOrderRoulette = 4096;
+/// The same where the outside has no end, and no path leaves it: there the number of scatterings
+/// needs a finite mean, which a survival below 1/2 gives.
+inline constexpr int firstEndlessRoulette = 256;
+inline constexpr float endlessSurvival = 0.45f;
 /// From this bounce off surfaces on, each is survived with this probability: light that total
 /// reflection keeps in a crystal never leaves it.
 inline constexpr int firstBounceRoulette = 256;

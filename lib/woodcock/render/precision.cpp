@@ -59,7 +59,7 @@ private:
                 name, value, part.largestExtinction(), largestFloat);
             return;
         }
-        if (part.support().empty() || !(sigma > 0)) return;
+        if (part.extent().empty() || !(sigma > 0)) return;
         const Box3d box = part.worldBounds();
         const double far = largestCoordinate(box), rounding = far * epsilon;
         const std::string where = fmt::format("{}, at coordinates up to {:g}", name, far);

@@ -36,7 +36,7 @@ Vec3d withUp(Vec3d v, UpAxis up) { return up == UpAxis::Z ? Vec3d{v.x, 0 - v.z, 
 /// along its three index axes, of those that meet more than wisps. By sums at unit steps or
 /// coarser: a choice needs no more. Zero for an empty field.
 double typicalIntegral(const Field& field, const Affine3d& worldFromIndex) {
-    const Box3d box = field.support();
+    const Box3d box = field.extent();
     if (box.empty()) return 0;
     constexpr int raysPerSide = 24, mostSteps = 512;
     std::vector<double> integrals;

@@ -73,6 +73,12 @@ struct BlackbodyDescription {
     bool operator==(const BlackbodyDescription&) const = default;
 };
 
+/// How far a grid's background reaches, where it is not 0: as far as the grid's active voxels, or
+/// through all of space (inside of a surface, through all that it holds).
+enum class Background { Clip, Endless };
+/// Their names in scene files, in the same order.
+inline const std::array<std::string, 2> backgroundNames{"clip", "endless"};
+
 struct VolumeDescription {
     std::filesystem::path file;  ///< empty for a HomogeneousBox
     std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
@@ -84,6 +90,8 @@ struct VolumeDescription {
     Affine3d worldFromObject;  ///< applied after the grid's own transform
     std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all
     Storage storage = Storage::Auto;
+    /// Absent: Clip, and Endless inside of a surface.
+    std::optional<Background> background = {};
     bool repair = false;  ///< NaN, infinite and negative voxels become zero instead of an error
     bool operator==(const VolumeDescription&) const = default;
 };

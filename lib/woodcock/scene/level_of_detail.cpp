@@ -62,10 +62,10 @@ std::vector<std::string> coarsenForCamera(const SceneDescription& description, c
         LoadedVolume& fields = loaded.volumes[i];
         const LoadedField density = fields.density;
         const auto coarsen = [&](LoadedField& grid, const FieldPointer& weights) {
-            if (!grid || grid.field->support().empty()) return;
+            if (!grid || grid.field->extent().empty()) return;
             const Affine3d worldFromIndex = volume.worldFromObject * grid.objectFromIndex;
             const double pixel =
-                pixelWidth(camera, render.height, worldFromIndex.box(grid.field->support()));
+                pixelWidth(camera, render.height, worldFromIndex.box(grid.field->extent()));
             double pixels = voxelWidth(worldFromIndex) / pixel;
             int levels = 0;
             for (; 2 * pixels <= render.levelOfDetail && levels < mostLevels; ++levels)

@@ -19,6 +19,13 @@ namespace {
 /// What a grid is read for.
 enum class Purpose { Density, Coefficient, Albedo };
 
+/// Of the volume's media: an albedo is no medium, and reaches everywhere.
+GridReach reachOf(const VolumeDescription& volume) {
+    const Background usual = volume.inside.empty() ? Background::Clip : Background::Endless;
+    return volume.background.value_or(usual) == Background::Clip ? GridReach::ActiveVoxels
+                                                                 : GridReach::Everywhere;
+}
+
 /// Reads files and grids, each once.
 class Loader {
 public:
@@ -26,22 +33,28 @@ public:
     Loader(Storage usual, Lookup lookup) : usual_(usual), lookup_(lookup) {}
 
     const VdbFile& file(const std::filesystem::path& path) {
-        const auto found = files_.find(path);
-        return found != files_.end() ? found->second : files_[path] = listGrids(path);
+        if (const auto found = files_.find(path); found != files_.end()) return found->second;
+        const VdbFile& listed = files_[path] = listGrids(path);
+        note(listed.warning);
+        return listed;
     }
 
-    LoadedField field(const VolumeDescription& volume, const std::string& name, Purpose purpose) {
+    LoadedField field(const VolumeDescription& volume, const std::string& name, Purpose purpose,
+                      GridReach reach) {
         const VdbFile& vdb = file(volume.file);
+        if (vdb.grids.empty()) return nothingOf(vdb, name);
         FoundGrid found = name.empty() ? findGrid(vdb, GridRole::Density) : findGrid(vdb, name);
         const bool albedo = purpose == Purpose::Albedo;
+        if (albedo) reach = GridReach::Everywhere;
         const auto key = std::tuple(volume.file, found.grid.uniqueName, storageOf(volume),
-                                    volume.repair, purpose);
+                                    volume.repair, purpose, reach);
         if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
         note(std::move(found.note));
         // A velocity that happens to be nowhere negative is no density.
         const bool velocity =
             purpose == Purpose::Density && isNamedFor(found.grid, GridRole::Velocity);
         const LoadOptions options{.use = velocity ? GridUse::Scalar : GridUse::Colour,
+                                  .reach = reach,
                                   .storage = storageOf(volume),
                                   .repair = volume.repair};
         LoadedGrid grid = loadGrid(vdb, found.grid, options);
@@ -51,6 +64,7 @@ public:
                 fmt::format("grid '{}' in {} is a vector grid ({}): its three numbers are the "
                             "densities of red, green and blue",
                             found.grid.uniqueName, vdb.path.string(), found.grid.valueType));
+        if (!albedo && volume.inside.empty()) noteBackground(vdb, found.grid, grid.field);
         if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
         grid.field.setLookup(lookup_);
         const LoadedField loaded{std::make_shared<Field>(std::move(grid.field)),
@@ -62,11 +76,14 @@ public:
     LoadedField blackbody(const VolumeDescription& volume, float& ambient) {
         const BlackbodyDescription& b = *volume.blackbody;
         const VdbFile& vdb = file(volume.file);
+        if (vdb.grids.empty()) return nothingOf(vdb, b.temperature);
         FoundGrid found = b.temperature.empty() ? findGrid(vdb, GridRole::Temperature)
                                                 : findGrid(vdb, b.temperature);
         note(std::move(found.note));
-        LoadOptions options{
-            .storage = storageOf(volume), .nonNegative = false, .repair = volume.repair};
+        LoadOptions options{.reach = GridReach::ActiveVoxels,
+                            .storage = storageOf(volume),
+                            .nonNegative = false,
+                            .repair = volume.repair};
         options.convert = [&](FieldSource source) {
             ambient = source.background[0];
             return blackbodySource(std::move(source), b.scale, b.offset);
@@ -85,11 +102,45 @@ public:
                 found.grid.uniqueName};
     }
 
+    /// The largest value of a grid that is only spoken of; 0 where that is not known, or would take
+    /// long.
+    float largest(const VolumeDescription& volume, const std::string& name) {
+        constexpr std::uint64_t long_ = std::uint64_t{64} << 20;
+        const VdbFile& vdb = file(volume.file);
+        const FoundGrid found = findGrid(vdb, name);
+        if (found.grid.fileBytes > long_) return 0;
+        try {
+            const LoadOptions options{.nonNegative = false, .repair = true};
+            return loadGrid(vdb, found.grid, options).statistics.voxels.max[0];
+        } catch (const Error&) {
+            return 0;  // what is wrong with it is told where it is used
+        }
+    }
+
     std::vector<std::string> takeNotes() { return std::move(notes_); }
 
 private:
     Storage storageOf(const VolumeDescription& volume) const {
         return volume.storage == Storage::Auto ? usual_ : volume.storage;
+    }
+    /// Of a file without grids, as some programs write frames that hold nothing.
+    LoadedField nothingOf(const VdbFile& vdb, const std::string& name) {
+        note(fmt::format("{} holds no grids: there is nothing in it to be drawn",
+                         vdb.path.string()));
+        return {std::make_shared<Field>(buildField({}, Storage::Float)),
+                {},
+                name.empty() ? "density" : name};
+    }
+    void noteBackground(const VdbFile& vdb, const GridListing& grid, const Field& field) {
+        if (field.limits())
+            note(
+                "background = \"endless\" in a scene's [[volume]] fills all of space with what a "
+                "grid has around its active voxels");
+        else if (field.storedRange(field.blocks().outside()).max > 0)
+            note(
+                fmt::format("grid '{}' in {} fills all of space with its background, as the scene "
+                            "asks: no light of a sky or a sun comes through it",
+                            grid.uniqueName, vdb.path.string()));
     }
     void note(std::string text) {
         const bool known = std::find(notes_.begin(), notes_.end(), text) != notes_.end();
@@ -99,7 +150,8 @@ private:
     Storage usual_;
     Lookup lookup_;
     std::map<std::filesystem::path, VdbFile> files_;
-    std::map<std::tuple<std::filesystem::path, std::string, Storage, bool, Purpose>, LoadedField>
+    std::map<std::tuple<std::filesystem::path, std::string, Storage, bool, Purpose, GridReach>,
+             LoadedField>
         fields_;
     std::vector<std::string> notes_;
 };
@@ -114,13 +166,27 @@ bool writtenByBlender(const VdbFile& file) {
     return false;
 }
 
+/// The first grid of velocities, unless it is one of those that are used.
+std::string unusedVelocities(const VdbFile& file, const LoadedVolume& loaded) {
+    const auto isUsed = [&](const std::string& name) {
+        for (const LoadedField* field : {&loaded.density, &loaded.albedo, &loaded.emission,
+                                         &loaded.blackbody, &loaded.sigmaA, &loaded.sigmaS})
+            if (field->grid == name) return true;
+        return false;
+    };
+    for (const GridListing& grid : file.grids)
+        if (meansVelocity(grid) && !isUsed(grid.uniqueName)) return grid.uniqueName;
+    return {};
+}
+
 /// What glows everywhere is infinitely bright.
 void requireDarkBackground(const VdbFile& file, const LoadedField& emission) {
+    if (emission.field->limits()) return;
     for (int c = 0; c < emission.field->channels(); ++c)
         if (emission.field->background(c) != 0)
             throw inputError(
-                "grid '{}' in {} has a background of {}; one that emits needs 0, or all "
-                "of space would glow",
+                "grid '{}' in {} has a background of {}; one that emits needs 0 where background = "
+                "\"endless\" is asked for, or all of space would glow",
                 emission.grid, file.path.string(), emission.field->background(c));
 }
 
@@ -135,31 +201,34 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
         inPlace(placeOf("file"), [&]() -> const VdbFile& { return loader.file(volume.file); });
     // The first of these keys that was written is to blame.
     const auto load = [&](const std::string& grid, Purpose purpose,
-                          std::initializer_list<std::string_view> keys) {
+                          std::initializer_list<std::string_view> keys, GridReach reach) {
         std::string place;
         for (const std::string_view key : keys)
             if (place.empty()) place = placeOf(key);
-        return inPlace(place, [&] { return loader.field(volume, grid, purpose); });
+        return inPlace(place, [&] { return loader.field(volume, grid, purpose, reach); });
     };
+    const GridReach reach = reachOf(volume);
     if (const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients)) {
-        loaded.density = load(c->density, Purpose::Density, {"density", "file"});
+        loaded.density = load(c->density, Purpose::Density, {"density", "file"}, reach);
         if (!c->albedoGrid.empty())
-            loaded.albedo = load(c->albedoGrid, Purpose::Albedo, {"albedo_grid"});
+            loaded.albedo = load(c->albedoGrid, Purpose::Albedo, {"albedo_grid"}, reach);
     } else {
         const auto& separate = std::get<SeparateCoefficients>(volume.coefficients);
         if (const auto& sigma = separate.sigmaA)
             loaded.sigmaA =
-                load(sigma->grid, Purpose::Coefficient, {"sigma_a.grid", "density", "file"});
+                load(sigma->grid, Purpose::Coefficient, {"sigma_a.grid", "density", "file"}, reach);
         if (const auto& sigma = separate.sigmaS)
             loaded.sigmaS =
-                load(sigma->grid, Purpose::Coefficient, {"sigma_s.grid", "density", "file"});
+                load(sigma->grid, Purpose::Coefficient, {"sigma_s.grid", "density", "file"}, reach);
     }
     if (const auto& emission = volume.emission) {
         const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
         const bool density = c && c->density == emission->grid;
         const std::initializer_list<std::string_view> keys{"emission.grid", "emission"};
+        // No surface ends what emits: without being asked, it ends with its active voxels.
         loaded.emission =
-            load(emission->grid, density ? Purpose::Density : Purpose::Coefficient, keys);
+            load(emission->grid, density ? Purpose::Density : Purpose::Coefficient, keys,
+                 volume.background == Background::Endless ? reach : GridReach::ActiveVoxels);
         inPlace(placeOf("emission"), [&] { requireDarkBackground(file, loaded.emission); });
     }
     if (volume.blackbody)
@@ -170,6 +239,10 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     };
     loaded.temperatures = nameOf(GridRole::Temperature);
     loaded.flames = nameOf(GridRole::Emission);
+    if (!loaded.temperatures.empty() && !volume.blackbody && !volume.emission &&
+        placeOf("file").empty())
+        loaded.hottest = loader.largest(volume, loaded.temperatures);
+    loaded.velocities = unusedVelocities(file, loaded);
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
 }
@@ -181,6 +254,14 @@ EnvironmentMap loadMap(const LightDescription& light) {
     return {image.width, image.height, std::move(image.rgb)};
 }
 
+void loadMaps(const SceneDescription& scene, LoadedScene& loaded) {
+    loaded.environmentMaps.clear();
+    for (size_t i = 0; i < scene.lights.size(); ++i)
+        loaded.environmentMaps.push_back(
+            inPlace(findPlace(scene.places, fmt::format("light[{}].image", i)),
+                    [&] { return loadMap(scene.lights[i]); }));
+}
+
 }  // namespace
 
 LoadedScene loadScene(const SceneDescription& scene) {
@@ -188,14 +269,15 @@ LoadedScene loadScene(const SceneDescription& scene) {
     Loader loader(scene.render.storage, scene.render.lookup);
     for (size_t i = 0; i < scene.volumes.size(); ++i)
         loaded.volumes.push_back(loadVolume(scene, i, loader));
-    for (size_t i = 0; i < scene.lights.size(); ++i)
-        loaded.environmentMaps.push_back(
-            inPlace(findPlace(scene.places, fmt::format("light[{}].image", i)),
-                    [&] { return loadMap(scene.lights[i]); }));
+    loadMaps(scene, loaded);
     loaded.notes = loader.takeNotes();
     loaded.surfaces = loadSurfaces(scene, loaded.notes);
     loaded.textures = loadTextures(scene);
     return loaded;
+}
+
+void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded) {
+    if (loaded.environmentMaps.size() != scene.lights.size()) loadMaps(scene, loaded);
 }
 
 }  // namespace woodcock

@@ -35,17 +35,17 @@ Box3d occupiedPart(const Field& field, Vec3i first, Vec3i last) {
 }
 
 void addField(const Field& field, const Affine3d& worldFromIndex, std::vector<Vec3d>& points) {
-    const Box3d support = field.support();
-    if (support.empty()) return;
-    const Vec3d size = support.size() / 8 + Vec3d{1, 1, 1};
-    if (size.x * size.y * size.z > mostBlocks) return addCorners(support, worldFromIndex, points);
-    const Vec3i first = blockOf(support.lower), last = blockOf(support.upper);
+    const Box3d extent = field.extent();
+    if (extent.empty()) return;
+    const Vec3d size = extent.size() / 8 + Vec3d{1, 1, 1};
+    if (size.x * size.y * size.z > mostBlocks) return addCorners(extent, worldFromIndex, points);
+    const Vec3i first = blockOf(extent.lower), last = blockOf(extent.upper);
     // A row of blocks is as convex as its two ends.
     for (int z = first.z; z <= last.z; ++z)
         for (int y = first.y; y <= last.y; ++y) {
             Box3d part = occupiedPart(field, {first.x, y, z}, {last.x, y, z});
-            part.lower = max(part.lower, support.lower);
-            part.upper = min(part.upper, support.upper);
+            part.lower = max(part.lower, extent.lower);
+            part.upper = min(part.upper, extent.upper);
             if (!part.empty()) addCorners(part, worldFromIndex, points);
         }
 }

@@ -51,7 +51,8 @@ BlackbodyDescription parseBlackbody(const TomlValue& value) {
 }
 
 HomogeneousBox parseBox(const TomlTable& table, const TomlValue& box) {
-    for (const char* key : {"density", "albedo_grid", "blackbody", "storage", "repair"})
+    for (const char* key :
+         {"density", "albedo_grid", "blackbody", "storage", "background", "repair"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
     HomogeneousBox c;
@@ -67,10 +68,10 @@ HomogeneousBox parseBox(const TomlTable& table, const TomlValue& box) {
 }  // namespace
 
 VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::path& base) {
-    table.allowOnly(
-        {"file", "box", "density", "scale", "albedo", "albedo_grid", "sigma_a", "sigma_s",
-         "emission", "blackbody", "g", "transform", "matrix", "inside", "storage", "repair"},
-        "[[volume]]");
+    table.allowOnly({"file", "box", "density", "scale", "albedo", "albedo_grid", "sigma_a",
+                     "sigma_s", "emission", "blackbody", "g", "transform", "matrix", "inside",
+                     "storage", "background", "repair"},
+                    "[[volume]]");
     checkCoefficientKeys(table);
     table.exclude("box", "file", "a volume is either read from a file or a homogeneous box");
 
@@ -98,6 +99,8 @@ VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::pat
     volume.worldFromObject = parsePlacement(table, "volume");
     if (const auto v = table.find("inside")) volume.inside = v->text();
     if (const auto v = table.find("storage")) volume.storage = parseStorage(*v);
+    if (const auto v = table.find("background"))
+        volume.background = static_cast<Background>(v->choice("background", backgroundNames));
     if (const auto v = table.find("repair")) volume.repair = v->flag();
     return volume;
 }

@@ -68,6 +68,8 @@ void write(SceneWriter& out, const VolumeDescription& volume) {
     if (!volume.inside.empty()) out.line("inside", tomlText(volume.inside));
     if (volume.storage != defaults.storage)
         out.line("storage", tomlText(storageName(volume.storage)));
+    if (volume.background)
+        out.line("background", tomlText(backgroundNames[static_cast<size_t>(*volume.background)]));
     if (volume.repair) out.line("repair", "true");
 }
 
