@@ -49,7 +49,7 @@ protected:
             exactOpticalDepth(build(keys).scene.medium, origin, direction, 0, endless)[0]};
     }
     /// From the middle of one side to the other, and what is drawn along it.
-    RgbEstimate picture(const std::string& keys, const std::string& more = "", int samples = 64) {
+    RgbEstimate picture(const std::string& keys, const std::string& more = "", int samples = 512) {
         const std::string light = more.find("[[light]]") == std::string::npos
                                       ? "[[light]]\ntype = \"environment\"\n"
                                       : "";
@@ -214,7 +214,7 @@ TEST(EmptyVolumes, LeaveTheOthersAsTheyAre) {
                       full = "[[volume]]\nfile = \"smoke.vdb\"\nscale = 0.05\nalbedo = 0\n";
     const auto draw = [&](const std::string& text) {
         return evenRadiance(
-            renderScene(sceneFrom(text + light + camera, dir.path()), {.samples = 64}).film);
+            renderScene(sceneFrom(text + light + camera, dir.path()), {.samples = 512}).film);
     };
     const double alone = std::exp(-0.05 * 20);
     for (const char* file : {"empty.vdb", "none.vdb"}) {
