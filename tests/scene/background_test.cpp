@@ -146,8 +146,8 @@ TEST_F(VolumeBackground, PathsInEndlessFogEndWithoutBias) {
         "[[material]]\nname = \"glow\"\ntype = \"emissive\"\nradiance = 1\nboth_sides = true\n"
         "[[surface]]\nbox = { min = [-30, -30, -30], max = [40, 40, 40] }\nmaterial = \"glow\"\n"
         "[[light]]\ntype = \"environment\"\nradiance = 0\n";
-    expectAgrees(picture("scale = 2\nalbedo = 1\nbackground = \"endless\"", room, 256), {1, 1, 1},
-                 0.02);
+    expectAgrees(picture("scale = 2\nalbedo = 1\nbackground = \"endless\"", room, 128), {1, 1, 1},
+                 0.03);
 }
 
 TEST_F(VolumeBackground, FillsTheSurfaceThatTheVolumeIsInsideOf) {
