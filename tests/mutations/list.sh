@@ -137,7 +137,7 @@ defect "numbers used twice" 'Slab.*:Furnace.*' "table of slabs" \
 
 defect "roulette of high orders without factor" 'Furnace*' "furnace at any depth" \
     $media \
-    'p.throughput *= 1.41421356f;' ''
+    'p.throughput *= endless ? 1 / endlessSurvival : 1.41421356f;' ''
 
 defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
     $tracer \
