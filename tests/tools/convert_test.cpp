@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <tuple>
 
 #include "tests/support/paths.h"
 #include "tests/support/read_back.h"
@@ -11,6 +13,7 @@
 #include "tests/support/write_vdb.h"
 #include "woodcock/grid/nanovdb_file.h"
 #include "woodcock/grid/vdb_file.h"
+#include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock::test {
 namespace {
@@ -365,6 +368,94 @@ TEST_F(Convert, NanoVdbIsDrawnAndInspected) {
     const ProgramResult none = runProgram({"info", file("a.nvdb"), "--grid", "heat"});
     EXPECT_EQ(none.exitCode, 3);
     EXPECT_NE(none.err.find("it has: density (float)"), std::string::npos) << none.err;
+}
+
+/// The distance to a ball about voxel (8, 8, 8), known up to 3 voxels.
+GridSpec ball(const std::string& name, double radius) {
+    GridSpec spec;
+    spec.name = name;
+    spec.gridClass = "level set";
+    spec.background = {3};
+    spec.box = {{0, 0, 0}, {16, 16, 16}};
+    spec.value = [radius](Vec3i v) {
+        return std::clamp(length((v - Vec3i{8, 8, 8}).as<double>()) - radius, -3.0, 3.0);
+    };
+    return spec;
+}
+
+std::vector<std::string> namesIn(const std::string& file) {
+    std::vector<std::string> names;
+    for (const GridListing& grid : listGrids(file).grids) names.push_back(grid.uniqueName);
+    return names;
+}
+
+TEST_F(Convert, FogOfALevelSetTakesNoOthersName) {
+    GridSpec density, heat;
+    density.voxels = {{{1, 2, 3}, {5}}};
+    heat = density;
+    heat.name = "temperature";
+    using Names = std::vector<std::string>;
+    const std::tuple<std::vector<GridSpec>, std::vector<std::string>, Names> conversions[]{
+        {{ball("surface", 5)}, {}, {"density"}},
+        {{ball("surface", 5)}, {"--name", "ball"}, {"ball"}},
+        {{ball("surface", 5), heat}, {}, {"density", "temperature"}},
+        {{ball("surface", 5), density}, {}, {"surface", "density"}},
+        {{density, ball("surface", 5)}, {}, {"density", "surface"}},
+        {{ball("density", 5), density}, {}, {"density_fog", "density"}},
+        {{ball("a", 5), ball("b", 4)}, {}, {"a", "b"}},
+        {{ball("a", 5), ball("a", 4)}, {}, {"a_fog", "a"}},
+        {{ball("", 5), density}, {}, {"fog", "density"}},
+        {{ball("surface", 5), density}, {"--grid", "surface"}, {"density"}},
+        {{ball("surface", 5), density}, {"--grid", "density"}, {"density"}}};
+    for (const auto& [grids, options, names] : conversions) {
+        writeVdb(dir / "in.vdb", grids);
+        expectDone("in.vdb", "out.vdb", options);
+        EXPECT_EQ(namesIn(file("out.vdb")), names);
+    }
+    expectDone("in.vdb", "density.raw", {"--grid", "density", "--out-type", "u8"});
+    EXPECT_EQ(readText(file("density.raw")), "\x05");
+    expectRefused(2, "--name is for one grid", "in.vdb", "none.vdb", {"--name", "x"});
+}
+
+const std::string box =
+    "v -1 -1 -1\nv -1 -1 1\nv -1 1 -1\nv -1 1 1\nv 1 -1 -1\nv 1 -1 1\nv 1 1 -1\nv 1 1 1\n"
+    "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\n";
+
+TEST_F(Convert, OpenMeshesAreRefusedAndToldOfTheShell) {
+    if (!canReadMeshes()) GTEST_SKIP() << "this build has no Assimp";
+    writeText(file("open.obj"), box);
+    expectRefused(3, "open.obj: the mesh is open: 4 edges", "open.obj", "a.vdb",
+                  {"--voxel", "0.1"});
+    expectRefused(3, "--shell", "open.obj", "a.vdb");
+    expectDone("open.obj", "shell.vdb", {"--voxel", "0.1", "--shell"});
+    writeText(file("closed.obj"), box + "f 2 6 8 4\n");
+    expectDone("closed.obj", "closed.vdb", {"--voxel", "0.1"});
+}
+
+TEST_F(Convert, WhatIsNotReadIsNamedWithAWayOn) {
+    std::string dicom(200, '\0');
+    dicom.replace(128, 4, "DICM");
+    writeText(file("slice.raw"), dicom);
+    writeText(file("slice.txt"), dicom);
+    expectRefused(3, "slice.raw is a DICOM file, which is not read; load the whole series",
+                  "slice.raw", "a.vdb", {"--dims", "10,10,2", "--type", "u8"});
+    expectRefused(3, "is a DICOM file", "slice.txt", "a.vdb");
+    expectDone("slice.raw", "forced.vdb", {"--from", "raw", "--dims", "10,10,2", "--type", "u8"});
+    writeText(file("scan.las"), "LASF");
+    expectRefused(3, "a LAS or LAZ point cloud, which is not read; run `pdal", "scan.las", "a.vdb");
+    expectRefused(3, "load the whole series", "slice.####.dcm", "a.vdb");
+    expectRefused(3, "is a folder", ".", "a.vdb");
+}
+
+TEST_F(Convert, ColumnsOfPointsAreSaidAndChosen) {
+    writeText(file("a.xyz"), "0 0 0 3\n1 1 1 4\n");
+    const ProgramResult result = convert("a.xyz", "a.vdb", {"--voxel", "0.1"});
+    EXPECT_EQ(result.exitCode, 0);
+    for (const char* said : {"column 4 is not used", "--columns x,y,z,radius"})
+        EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+    expectDone("a.xyz", "b.vdb", {"--voxel", "0.5", "--columns", "x,y,z,radius"});
+    expectRefused(2, "--columns is for tables of points", "a.raw", "c.vdb",
+                  {"--dims", "12,10,9", "--type", "f32", "--columns", "x,y,z"});
 }
 
 TEST_F(Convert, MitsubaReadsItsVolumes) {

@@ -7,6 +7,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/printable.h"
+#include "woodcock/grid/foreign_format.h"
 #include "woodcock/grid/vdb_grid_head.h"
 #include "woodcock/grid/vdb_layout.h"
 
@@ -31,25 +32,12 @@ std::string readableName(std::string name) {
 Error notVdb(FileBytes& file) {
     const std::string name = file.path().string();
     file.seek(0);
-    const std::span<const char> bytes = file.bytes(std::min<std::uint64_t>(file.size(), 16));
-    const std::string_view beginning(bytes.data(), bytes.size());
+    const std::span<const char> bytes =
+        file.bytes(std::min<std::uint64_t>(file.size(), foreignBytes));
+    const std::string_view beginning(bytes.data(), std::min<std::size_t>(bytes.size(), 16));
     if (beginning.empty()) return inputError("{} is not a VDB file: it is empty", name);
-    struct Kind {
-        std::string_view start, what;
-    };
-    constexpr Kind known[]{
-        {"\x89HDF", "an HDF5 file, as Field3D and scientific data use"},
-        {"\x76\x2f\x31\x01", "an OpenEXR image"},
-        {"\x89PNG", "a PNG image"},
-        {"PK\x03\x04", "a zip archive"},
-        {"\x1f\x8b", "a gzip archive"},
-        {"PXR-USDC", "a USD file; name the .vdb file that it refers to"},
-        {"#usda", "a USD file; name the .vdb file that it refers to"},
-        {"version https://", "a Git LFS pointer; fetch the file itself with `git lfs pull`"},
-    };
-    for (const Kind& kind : known)
-        if (beginning.starts_with(kind.start))
-            return inputError("{} is not a VDB file but {}", name, kind.what);
+    if (const auto foreign = foreignFormat(bytes, file.path()))
+        return inputError("{} is not a VDB file but {}; {}", name, foreign->what, foreign->way);
     std::string shown;
     for (char c : beginning) {
         const auto u = static_cast<unsigned char>(c);
