@@ -4,9 +4,9 @@
 #include <map>
 
 #include "woodcock/bake/grid_node.h"
-#include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/bake/openvdb_field.h"
+#include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_transform.h"
@@ -110,8 +110,13 @@ Graph::Entry mesh(NodeReader& r) {
     options.voxel = r.number("voxel", longest / 128, positive);
     options.band = r.number("band", 0.1 * longest, positive);
     std::vector<std::string> notes;
-    const VdbGrids grids = meshToLevelSet(triangles, options, notes);
-    if (!notes.empty()) throw r.table().error("{}: {}", file.string(), notes.front());
+    const VdbGrids grids = [&] {
+        try {
+            return meshToLevelSet(triangles, options, notes);
+        } catch (const Error& e) {
+            throw r.table().error("{}: {}", file.string(), e.what());
+        }
+    }();
     const openvdb::GridBase& grid = *grids.grids.front();
     return {.node = gridNode(fieldOf(grid), affineOf(*grid.transform().baseMap()))};
 }

@@ -5,79 +5,134 @@
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
+#include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
-#include "woodcock/convert/limits.h"
-#include "woodcock/convert/openvdb_fog.h"
 #include "woodcock/base/error.h"
+#include "woodcock/convert/limits.h"
+#include "woodcock/convert/mesh_inside.h"
+#include "woodcock/convert/openvdb_fog.h"
+#include "woodcock/convert/openvdb_lattice.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/openvdb_transform.h"
 
 namespace woodcock {
 
 namespace {
 
-/// A mesh in index space, as OpenVDB's converter asks for it.
-class MeshInVoxels {
-public:
-    MeshInVoxels(const TriangleMesh& mesh, double voxel) : mesh_(mesh), voxel_(voxel) {}
+using Corners = MeshInside::Corners;
 
-    std::size_t polygonCount() const { return mesh_.triangles.size(); }
-    std::size_t pointCount() const { return mesh_.points.size(); }
+/// The lattice of a mesh's voxels.
+struct MeshLattice : Lattice {
+    MeshLattice(const TriangleMesh& mesh, double size)
+        : Lattice(mesh.origin, size), shift(mesh.origin - first) {}
+    Vec3d index(const Vec3f& p) const { return (p.as<double>() + shift) / voxel; }
+    std::vector<Vec3d> indices(const TriangleMesh& mesh) const {
+        std::vector<Vec3d> all;
+        all.reserve(mesh.points.size());
+        for (const Vec3f& p : mesh.points) all.push_back(index(p));
+        return all;
+    }
+    Corners corners(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) const {
+        return {index(mesh.points[triangle[0]]), index(mesh.points[triangle[1]]),
+                index(mesh.points[triangle[2]])};
+    }
+    Vec3d shift;  ///< from the first voxel to the mesh's origin
+};
+
+/// Triangles in index space, as OpenVDB's converter asks for them.
+class TrianglesInVoxels {
+public:
+    explicit TrianglesInVoxels(const std::vector<Corners>& triangles) : triangles_(triangles) {}
+
+    std::size_t polygonCount() const { return triangles_.size(); }
+    std::size_t pointCount() const { return 3 * triangles_.size(); }
     std::size_t vertexCount(std::size_t) const { return 3; }
     void getIndexSpacePoint(std::size_t triangle, std::size_t corner, openvdb::Vec3d& p) const {
-        const Vec3d q = mesh_.points[mesh_.triangles[triangle][corner]].as<double>() / voxel_;
+        const Vec3d& q = triangles_[triangle][corner];
         p = {q.x, q.y, q.z};
     }
 
 private:
-    const TriangleMesh& mesh_;
-    double voxel_;
+    const std::vector<Corners>& triangles_;
 };
 
-/// Voxels within `reach` voxels of the triangles: of their faces, and around their edges where
-/// those are long. Neighbours are counted apart, so that it is rather too many.
-double estimateVoxels(const TriangleMesh& mesh, double voxel, double reach) {
-    double voxels = 0;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3d p = mesh.points[a].as<double>() / voxel,
-                    q = mesh.points[b].as<double>() / voxel,
-                    r = mesh.points[c].as<double>() / voxel;
-        const double area = length(cross(q - p, r - p)) / 2;
-        const double edge = std::max({length(q - p), length(r - q), length(p - r)});
-        voxels += 2 * reach * area;
-        if (edge > 2 * reach) voxels += edge * pi * reach * reach / 2;
-    }
-    return voxels;
+/// Voxels within `reach` voxels of a triangle: of its face, and around its edges where those are
+/// long. Neighbours are counted apart, so that it is rather too many.
+double estimateVoxels(const Corners& triangle, double reach) {
+    const auto& [p, q, r] = triangle;
+    const double area = length(cross(q - p, r - p)) / 2;
+    const double edge = std::max({length(q - p), length(r - q), length(p - r)});
+    return 2 * reach * area + (edge > 2 * reach ? edge * pi * reach * reach / 2 : 0);
 }
 
-/// Distances in voxels' own world units up to the bands, which are in voxels.
-openvdb::FloatGrid::Ptr distances(const TriangleMesh& mesh, double voxel, double outside,
-                                  double inside, bool withSign, std::uint64_t mostVoxels) {
-    requireVoxel(voxel);
+/// The limits of what is asked for, before anything is made.
+void requireRoom(const TriangleMesh& mesh, const MeshLattice& lattice, double reach,
+                 std::uint64_t mostVoxels) {
     if (mesh.triangles.empty()) throw inputError("the mesh has no triangles");
-    const Box3d box = boundsOf(mesh);
-    const double reach = std::max(outside, inside) + 8;
-    requireIndices(box.lower / voxel - Vec3d{reach, reach, reach},
-                   box.upper / voxel + Vec3d{reach, reach, reach}, voxel);
-    requireVoxels(estimateVoxels(mesh, voxel, (outside + inside) / 2 + 0.5), voxel, mostVoxels);
-    const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-    return openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        MeshInVoxels(mesh, voxel), *transform, static_cast<float>(outside),
-        static_cast<float>(inside), withSign ? 0 : openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+    Box3d box;
+    double voxels = 0;
+    for (const auto& triangle : mesh.triangles) {
+        const Corners corners = lattice.corners(mesh, triangle);
+        for (const Vec3d& p : corners) box.add(p);
+        voxels += estimateVoxels(corners, reach);
+    }
+    const double margin = reach + 8;
+    requireIndices(box.lower - Vec3d{margin, margin, margin},
+                   box.upper + Vec3d{margin, margin, margin}, lattice.voxel);
+    requireVoxels(voxels, lattice.voxel, mostVoxels);
 }
 
-std::string describe(const OpenEdges& open) {
-    return fmt::format(
-        "the mesh is open: {} edge{} belong{} to one triangle only (first at {}, {}, {})",
-        open.count, open.count == 1 ? "" : "s", open.count == 1 ? "s" : "", open.first.x,
-        open.first.y, open.first.z);
+/// Distances (world units) up to `reach` voxels on both sides, without a sign.
+openvdb::FloatGrid::Ptr distances(const std::vector<Corners>& triangles, const MeshLattice& lattice,
+                                  double reach) {
+    const auto uniform = openvdb::math::Transform::createLinearTransform(lattice.voxel);
+    const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+        TrianglesInVoxels(triangles), *uniform, static_cast<float>(reach), 0,
+        openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+    grid->setTransform(lattice.transform());
+    return grid;
 }
 
-void noteOpenEdges(const TriangleMesh& mesh, std::vector<std::string>& notes) {
-    if (const OpenEdges open = findOpenEdges(mesh); open.count > 0)
-        notes.push_back(describe(open) + ", so that it may enclose less than it seems to");
+/// Distances get the sign of the side: below zero within. What lies beyond the band follows.
+void sign(openvdb::FloatGrid& grid, const MeshInside& inside) {
+    openvdb::tools::foreach (grid.beginValueOn(),
+                             [&](const openvdb::FloatGrid::ValueOnIter& value) {
+                                 const openvdb::Coord c = value.getCoord();
+                                 if (inside.contains({c.x(), c.y(), c.z()}))
+                                     value.setValue(-*value);
+                             });
+    openvdb::tools::signedFloodFill(grid.tree());
+}
+
+std::string share(double part) { return fmt::format("{:.2g} %", 100 * part); }
+
+/// What of a mesh its voxels do not show.
+void noteInside(const MeshInside& inside, double voxel, std::vector<std::string>& notes) {
+    if (inside.nestedSolids() > 0)
+        notes.push_back(fmt::format(
+            "{} closed part{} of the mesh within others face{} the same way as the outermost, and "
+            "{} solid; for a cavity, turn the faces inwards",
+            inside.nestedSolids(), inside.nestedSolids() == 1 ? "" : "s",
+            inside.nestedSolids() == 1 ? "s" : "", inside.nestedSolids() == 1 ? "is" : "are"));
+    constexpr double few = 0.05, much = 0.3;
+    const auto voxels = static_cast<double>(inside.voxels());
+    if (inside.missedShare() > few)
+        notes.push_back(
+            fmt::format("the mesh is thinner than a voxel at {} of its places, and has holes "
+                        "there; take voxels "
+                        "smaller than {:.6g}, or --shell",
+                        share(inside.missedShare()), voxel));
+    else if (!inside.hasInnerSurfaces() &&
+             std::abs(voxels - inside.volume()) > much * inside.volume())
+        notes.push_back(fmt::format(
+            "the mesh is about as thin as a voxel: it encloses a volume of {:.4g}, and its voxels "
+            "one of {:.4g}; take voxels smaller than {:.6g}",
+            inside.volume() * std::pow(voxel, 3), voxels * std::pow(voxel, 3), voxel));
 }
 
 /// One at the surface, zero at `band` (world units) from it.
@@ -110,14 +165,32 @@ double requireBand(double band, double voxel) {
 
 }  // namespace
 
+namespace {
+
+ClosedMesh closedOrShell(const TriangleMesh& mesh) {
+    try {
+        return closedMesh(mesh);
+    } catch (const Error& e) {
+        throw Error(e.kind(), fmt::format("{}; so nothing is inside: close it, or take --shell for "
+                                          "fog around its surface",
+                                          e.what()));
+    }
+}
+
+}  // namespace
+
 VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
                    std::vector<std::string>& notes) {
     requireVoxel(options.voxel);
     const double band = requireBand(options.band, options.voxel);
-    const double bandVoxels = band / options.voxel;
+    const MeshLattice lattice(mesh, options.voxel);
     if (options.shell) {
-        const auto grid =
-            distances(mesh, options.voxel, bandVoxels + 1, 0, false, options.mostVoxels);
+        const double reach = band / options.voxel + 1;
+        requireRoom(mesh, lattice, reach, options.mostVoxels);
+        std::vector<Corners> triangles;
+        for (const auto& triangle : mesh.triangles)
+            triangles.push_back(lattice.corners(mesh, triangle));
+        const auto grid = distances(triangles, lattice, reach);
         distanceToShell(*grid, band);
         if (grid->empty())
             throw inputError(
@@ -125,26 +198,46 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
                 band, options.voxel);
         return named(grid, openvdb::GRID_FOG_VOLUME, options.name);
     }
-    // The sign is found outside: one voxel there would do, three are OpenVDB's usual width.
-    const auto grid = distances(mesh, options.voxel, 3, bandVoxels + 1, true, options.mostVoxels);
+    // Nothing is deeper than half of the shortest side.
+    const Vec3d size = boundsOf(mesh).size();
+    const double deepest = std::min({size.x, size.y, size.z}) / 2;
+    const double reach = std::min(band, deepest) / options.voxel + 1;
+    requireRoom(mesh, lattice, reach, options.mostVoxels);
+    const ClosedMesh closed = closedOrShell(mesh);
+    notes.insert(notes.end(), closed.notes.begin(), closed.notes.end());
+    const MeshInside inside(closed, lattice.indices(closed.mesh));
+    if (inside.voxels() == 0)
+        throw inputError(
+            "nothing is inside: the mesh is thinner than its voxels; take voxels smaller than {}",
+            options.voxel);
+    const auto grid = distances(inside.border(), lattice, reach);
+    sign(*grid, inside);
     distancesToFog(*grid, band);
-    const OpenEdges open = findOpenEdges(mesh);
-    if (grid->empty() && open.count > 0)
-        throw inputError("nothing is inside: {}; a shell needs no inside", describe(open));
     if (grid->empty())
         throw inputError(
             "nothing is inside: the mesh is thinner than its voxels; take voxels smaller than {}",
             options.voxel);
-    noteOpenEdges(mesh, notes);
+    noteInside(inside, options.voxel, notes);
+    if (const double most = largestValue(*grid); most < 0.999)
+        notes.push_back(fmt::format(
+            "the density is {:.3g} at most: no voxel lies deeper than {:.4g} in the mesh, and it "
+            "is one from a depth of {:.4g} on (--band)",
+            most, most * band, band));
     return named(grid, openvdb::GRID_FOG_VOLUME, options.name);
 }
 
 VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& options,
                         std::vector<std::string>& notes) {
     requireVoxel(options.voxel);
-    const double voxels = requireBand(options.band, options.voxel) / options.voxel + 1;
-    const auto grid = distances(mesh, options.voxel, voxels, voxels, true, options.mostVoxels);
-    noteOpenEdges(mesh, notes);
+    const double reach = requireBand(options.band, options.voxel) / options.voxel + 1;
+    const MeshLattice lattice(mesh, options.voxel);
+    requireRoom(mesh, lattice, reach, options.mostVoxels);
+    const ClosedMesh closed = closedMesh(mesh);
+    notes.insert(notes.end(), closed.notes.begin(), closed.notes.end());
+    const MeshInside inside(closed, lattice.indices(closed.mesh));
+    const auto grid = distances(inside.border(), lattice, reach);
+    sign(*grid, inside);
+    noteInside(inside, options.voxel, notes);
     return named(grid, openvdb::GRID_LEVEL_SET, options.name);
 }
 

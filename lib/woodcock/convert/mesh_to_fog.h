@@ -21,8 +21,11 @@ struct MeshToFogOptions {
     std::uint64_t mostVoxels = 500'000'000;
 };
 
-/// Fog inside a mesh: zero at the surface, one from `band` below it on. Which way triangles face
-/// does not matter. `notes` says where the mesh is open. Errors: Input, where nothing is inside.
+/// Fog inside a mesh: zero at the surface, one from `band` below it on; where nothing is as deep,
+/// no voxel is one. What is inside is said by MeshInside: cavities stay empty, parts that overlap
+/// are a union. `notes` says what was mended, what is thinner than voxels, and the largest density
+/// where that is below one. Errors: Input, where nothing is inside, as of an open mesh
+/// (closedMesh()).
 VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
                    std::vector<std::string>& notes);
 
@@ -34,7 +37,7 @@ struct MeshToLevelSetOptions {
 };
 
 /// Signed distance to a mesh in world units, negative inside; beyond the band plus or minus a
-/// little more than the band. `notes` as above.
+/// little more than the band. `notes` and errors as above.
 VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& options,
                         std::vector<std::string>& notes);
 

@@ -2,22 +2,38 @@
 #pragma once
 
 #include <openvdb/Grid.h>
-#include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tools/ValueTransformer.h>
 
+#include <algorithm>
+
 namespace woodcock {
 
-/// Signed distances (world units) to fog: zero at the surface, one from `band` below it on, where
-/// OpenVDB's own function goes a little beyond one.
+/// Signed distances (world units) to fog: zero at the surface, one from `band` below it on, also
+/// where nothing is as deep: then no voxel is one. (OpenVDB's own function would end the band at
+/// the deepest voxel.) Distances beyond the grid's narrow band must not be less than `band`.
 template <class GridT>
 void distancesToFog(GridT& grid, double band) {
     using V = typename GridT::ValueType;
-    openvdb::tools::sdfToFogVolume(grid, static_cast<V>(band));
-    openvdb::tools::foreach (grid.beginValueOn(), [](const typename GridT::ValueOnIter& value) {
-        if (*value > V(1)) value.setValue(V(1));
+    const auto scale = static_cast<V>(-1 / band);
+    openvdb::tools::foreach (grid.beginValueAll(), [=](const typename GridT::ValueAllIter& value) {
+        const V density = std::min(*value * scale, V(1));
+        const bool inside = density > 0;
+        value.setValue(inside ? density : V(0));
+        value.setActiveState(inside);
     });
+    grid.tree().root().setBackground(V(0), false);
+    grid.setGridClass(openvdb::GRID_FOG_VOLUME);
     openvdb::tools::prune(grid.tree());
+}
+
+/// Of the active values.
+template <class GridT>
+double largestValue(const GridT& grid) {
+    double largest = 0;
+    for (auto it = grid.cbeginValueOn(); it; ++it)
+        largest = std::max(largest, static_cast<double>(*it));
+    return largest;
 }
 
 }  // namespace woodcock

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <unordered_map>
 #include <utility>
 
@@ -44,7 +45,7 @@ OpenEdges findOpenEdges(const TriangleMesh& mesh) {
 }
 
 TriangleMesh weld(const TriangleMesh& mesh) {
-    TriangleMesh welded;
+    TriangleMesh welded{{}, {}, mesh.origin};
     std::unordered_map<Vec3f, std::uint32_t, HashOfPoint> indexOf;
     indexOf.reserve(mesh.points.size());
     const auto index = [&](const Vec3f& p) {
@@ -66,6 +67,18 @@ Box3d boundsOf(const TriangleMesh& mesh) {
     Box3d box;
     for (const Vec3f& p : mesh.points) box.add(p.as<double>());
     return box;
+}
+
+Vec3d originFor(const Box3d& bounds) {
+    if (bounds.empty()) return {};
+    const auto largest = [](Vec3d v) { return std::max({v.x, v.y, v.z}); };
+    const double away = largest(max(-bounds.lower, bounds.upper)), extent = largest(bounds.size());
+    constexpr double mostTimes = 16;  // floats then move points by 1e-6 of the extent
+    if (!(away > mostTimes * extent) || !std::isfinite(away)) return {};
+    // A short number, so that taking it off costs no digit: a power of two's multiple.
+    const double unit = std::exp2(std::ceil(std::log2(std::max(extent, away * 1e-9))));
+    const Vec3d middle = bounds.centre() / unit;
+    return Vec3d{std::round(middle.x), std::round(middle.y), std::round(middle.z)} * unit;
 }
 
 }  // namespace woodcock

@@ -15,6 +15,9 @@ namespace woodcock {
 struct TriangleMesh {
     std::vector<Vec3f> points;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of three different points each
+    /// Where points are (0, 0, 0): other than zero where a mesh lies so far from there that floats
+    /// would lose its digits. It is off before anything is rounded.
+    Vec3d origin{};
 };
 
 /// Whether this build can read meshes of all formats: it was made with Assimp. PLY needs none.
@@ -29,13 +32,18 @@ TriangleMesh readMesh(const std::filesystem::path& file);
 /// Edges that belong to one triangle only: a mesh that has them encloses nothing.
 struct OpenEdges {
     std::size_t count = 0;
-    Vec3f first;  ///< the middle of the first one
+    Vec3f first;  ///< the middle of the first one, without the mesh's origin
 };
 OpenEdges findOpenEdges(const TriangleMesh& mesh);
 
 /// Makes points of one position one, and drops triangles that lose a corner by it.
 TriangleMesh weld(const TriangleMesh& mesh);
 
+/// Of the points, without their origin.
 Box3d boundsOf(const TriangleMesh& mesh);
+
+/// The origin of points in `bounds`: zero, or their rounded middle where they lie so far away that
+/// floats would move them by more than a 100,000th of their extent.
+Vec3d originFor(const Box3d& bounds);
 
 }  // namespace woodcock

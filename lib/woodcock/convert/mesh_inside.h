@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "woodcock/mesh/closed_mesh.h"
+
+namespace woodcock {
+
+/// Which voxels lie inside a mesh, whose points are given in index space.
+///
+/// A part that lies in no other is solid, whichever way it faces. One within others is a cavity
+/// where what is around it is solid and it faces the other way than the outermost, else it is solid
+/// too. Parts that overlap are a union. So a place is inside where, over the parts around it of one
+/// outermost part, solids are more than cavities.
+class MeshInside {
+public:
+    using Corners = std::array<Vec3d, 3>;
+
+    /// `points` in voxels, one for each point of the mesh, within the range of indices.
+    MeshInside(const ClosedMesh& mesh, std::vector<Vec3d> points);
+
+    bool contains(Vec3i voxel) const;
+
+    /// The triangles that are the border of what is inside. Where surfaces lie within, as those of
+    /// parts that overlap, they are cut to pieces of an eighth of a voxel at their ends.
+    std::vector<Corners> border() const;
+
+    std::size_t voxels() const { return voxels_; }              ///< that are inside
+    std::size_t cavities() const { return cavities_; }          ///< parts that are cavities
+    std::size_t nestedSolids() const { return nestedSolids_; }  ///< parts within what is solid
+    /// Whether parts overlap, or one crosses itself.
+    bool hasInnerSurfaces() const { return innerSurfaces_; }
+    /// Of what lines along z have inside, the share of pieces that hold no voxel's centre.
+    double missedShare() const;
+    /// In voxels, where there are no inner surfaces.
+    double volume() const { return volume_; }
+
+private:
+    /// A triangle that reaches into a slab of width one, by its lower bound in y.
+    struct Entry {
+        double lower, upper, highest;  ///< its bounds in y; highest: upper bound of all up to here
+        std::uint32_t triangle;
+    };
+    /// Voxels of a column, both included.
+    struct Run {
+        int y, lower, upper;
+    };
+    struct Slab {
+        int x;
+        std::vector<Entry> entries;
+        std::vector<Run> runs;  ///< in the order of y and z
+    };
+    /// Where a line along z meets a triangle; `into` adds to the winding number above.
+    struct Crossing {
+        int y;
+        double z;
+        std::uint32_t triangle;
+        int into;
+        bool operator<(const Crossing& b) const {
+            return std::tie(y, z, triangle) < std::tie(b.y, b.z, b.triangle);
+        }
+    };
+    class Around;
+
+    void makeSlabs();
+    const Slab* slabAt(int x) const;
+    /// How often a triangle winds around the line at x, y, and where it meets it.
+    int windsAround(std::uint32_t triangle, double x, double y, double& z) const;
+    std::vector<Crossing> crossingsOf(const Slab& slab) const;
+    template <class Visit>
+    void sweep(const Slab& slab, Visit visit) const;
+    void nest();
+    template <class Nested>
+    bool partsMeet(Nested nested) const;
+    void findRuns();
+    Around aroundPlace(Vec3d place) const;
+    bool isInside(const Around& around) const;
+    bool isBorder(const Corners& piece) const;
+    /// 1 where all of it is border, 0 where nothing is; -1 for parts, which are added to `kept`.
+    int cut(const Corners& piece, std::vector<Corners>& kept) const;
+
+    const ClosedMesh& mesh_;
+    std::vector<Vec3d> points_;
+    std::vector<Slab> slabs_;
+    std::vector<signed char> adds_;     ///< of each part: 1 a solid, -1 a cavity
+    std::vector<std::uint32_t> group_;  ///< of each part: the outermost part around it
+    std::size_t voxels_ = 0, cavities_ = 0, nestedSolids_ = 0, pieces_ = 0, missed_ = 0;
+    double volume_ = 0;
+    bool innerSurfaces_ = false;
+};
+
+}  // namespace woodcock

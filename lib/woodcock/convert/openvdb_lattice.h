@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "woodcock/base/vec.h"
+#include "woodcock/grid/openvdb_transform.h"
+
+namespace woodcock {
+
+/// Where voxels lie: their lattice goes through the world's origin, and is counted from a voxel
+/// near to what is made, so that indices are small wherever that stands. The transform carries the
+/// place, in double.
+struct Lattice {
+    double voxel;
+    Vec3d first;  ///< the centre of voxel (0, 0, 0)
+
+    /// `near`: zero, or a place near to what is made (originFor()).
+    Lattice(Vec3d near, double size) : voxel(size) {
+        const Vec3d steps = near / voxel;
+        first = Vec3d{std::round(steps.x), std::round(steps.y), std::round(steps.z)} * voxel;
+    }
+    Vec3d index(Vec3d place) const { return (place - first) / voxel; }
+    openvdb::math::Transform::Ptr transform() const {
+        return openVdbTransform(Affine3d::translate(first) *
+                                Affine3d::scale({voxel, voxel, voxel}));
+    }
+};
+
+}  // namespace woodcock
