@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "info_report.h"
 #include "woodcock/base/printable.h"
@@ -30,6 +31,14 @@ std::string memory(std::uintmax_t bytes) {
 }
 
 std::string vec(Vec3d v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+/// Coordinates that are far from the origin as voxels count have the digits that tell these apart.
+std::string place(Vec3d v, Vec3d voxel) {
+    const double away = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    const double side = std::min({voxel.x, voxel.y, voxel.z});
+    const int digits =
+        away > 1e4 * side && side > 0 ? std::min(17, 3 + int(std::log10(away / side))) : 6;
+    return fmt::format("[{:.{}g}, {:.{}g}, {:.{}g}]", v.x, digits, v.y, digits, v.z, digits);
+}
 std::string vec(Vec3i v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
 template <class T>
@@ -67,7 +76,7 @@ private:
         if (m.column == Affine3d::scale(size).column) {
             line("voxel size",
                  size.x == size.y && size.y == size.z ? fmt::format("{:.6g}", size.x) : vec(size));
-            line("origin", vec(m.translation));
+            line("origin", place(m.translation, size));
             return;
         }
         line("voxel size", vec(size));
@@ -93,7 +102,8 @@ private:
         if (contents.worldBounds)
             line("in world",
                  fmt::format("{} to {}, {:.6g} x {:.6g} x {:.6g} units",
-                             vec(contents.worldBounds->lower), vec(contents.worldBounds->upper),
+                             place(contents.worldBounds->lower, grid_.voxelSize),
+                             place(contents.worldBounds->upper, grid_.voxelSize),
                              contents.worldBounds->size().x, contents.worldBounds->size().y,
                              contents.worldBounds->size().z));
         line("active",

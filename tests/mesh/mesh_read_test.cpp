@@ -173,6 +173,62 @@ TEST(MeshRead, WeldDropsWhatLosesACorner) {
               (std::vector<std::array<std::uint32_t, 3>>{{{0, 1, 2}}, {{0, 2, 1}}}));
 }
 
+/// Coordinates of a map, with millimetres: floats are half a metre apart there.
+TEST(MeshRead, FarMeshesKeepTheirDigits) {
+    NEEDS_ASSIMP();
+    const Vec3d far{512345.125, -5412345.25, 6371000.375};
+    const TriangleMesh near = cube();
+    const auto place = [&](std::uint32_t i) { return far + near.points[i].as<double>() * 0.125; };
+    const TempDir dir;
+    std::string obj = "o far\n", stl = "solid far\n";
+    for (std::uint32_t i = 0; i < near.points.size(); ++i)
+        obj += fmt::format("v {:.3f} {:.3f} +{:.3f}{}\r\n", place(i).x, place(i).y, place(i).z,
+                           i % 2 ? " 1.0" : "");
+    std::string ply = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
+        "property double z\nelement face {}\n{}end_header\n",
+        near.points.size(), near.triangles.size(), plyFaces);
+    for (std::uint32_t i = 0; i < near.points.size(); ++i)
+        ply += fmt::format("{:.3f} {:.3f} {:.3f}\n", place(i).x, place(i).y, place(i).z);
+    for (const auto& [a, b, c] : near.triangles) {
+        obj += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+        ply += fmt::format("3 {} {} {}\n", a, b, c);
+        stl += " facet normal 0 0 0\n  outer loop\n";
+        for (const std::uint32_t i : {a, b, c})
+            stl +=
+                fmt::format("   vertex {:.3f} {:.3f} {:.3f}\n", place(i).x, place(i).y, place(i).z);
+        stl += "  endloop\n endfacet\n";
+    }
+    writeText(dir / "far.obj", obj);
+    writeText(dir / "far.stl", stl + "endsolid far\n");
+    writeText(dir / "far.ply", ply);
+    for (const char* name : {"far.obj", "far.stl", "far.ply"}) {
+        const TriangleMesh mesh = readMesh(dir / name);
+        EXPECT_EQ(mesh.points.size(), 8u) << name;
+        EXPECT_EQ(mesh.triangles.size(), 12u) << name;
+        const Box3d box = boundsOf(mesh);
+        EXPECT_EQ(mesh.origin + box.lower, far) << name;
+        EXPECT_EQ(mesh.origin + box.upper, (far + Vec3d{0.125, 0.125, 0.125})) << name;
+        EXPECT_NEAR(volume(mesh), 0.125 * 0.125 * 0.125, 1e-9) << name;
+    }
+    EXPECT_EQ(near.origin, Vec3d{});
+}
+
+/// A node far away: the shape keeps its digits, and its place those of a float.
+TEST(MeshRead, FarNodesKeepTheShapeOfTheirParts) {
+    NEEDS_ASSIMP();
+    const TempDir dir;
+    std::string text = gltf("a.bin");
+    text.replace(text.find("[10,0,0]"), 8, "[4194304.5,0,-5412345.5]");
+    writeText(dir / "a.gltf", text);
+    writeText(dir / "a.bin", gltfBuffer());
+    const TriangleMesh mesh = readMesh(dir / "a.gltf");
+    ASSERT_EQ(mesh.points.size(), 6u);
+    EXPECT_EQ(mesh.origin + mesh.points[0].as<double>(), (Vec3d{4194304.5, 0, -5412345.5}));
+    EXPECT_EQ((mesh.points[1] - mesh.points[0]), (Vec3f{1, 0, 0}));
+    EXPECT_EQ((mesh.points[4] - mesh.points[3]), (Vec3f{2, 0, 0}));
+}
+
 TEST(MeshRead, BadFilesAreErrorsThatNameThem) {
     NEEDS_ASSIMP();
     const TempDir dir;

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "woodcock/convert/openvdb_fog.h"
 #include "woodcock/base/error.h"
+#include "woodcock/convert/openvdb_fog.h"
+#include "woodcock/grid/openvdb_exact_copy.h"
 #include "woodcock/grid/openvdb_grids.h"
 
 namespace woodcock {
@@ -18,6 +19,7 @@ template <class GridT>
 openvdb::GridBase::Ptr convert(const openvdb::GridBase& source, const LevelSetToFogOptions& options,
                                std::vector<std::string>& notes) {
     const auto grid = openvdb::gridPtrCast<GridT>(source.deepCopyGrid());
+    grid->setTransform(exactCopy(source.transform()));
     for (auto it = grid->cbeginValueAll(); it; ++it)
         if (std::isnan(*it))
             throw inputError("level set '{}' holds a NaN at [{}, {}, {}]", source.getName(),

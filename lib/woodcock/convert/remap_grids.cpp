@@ -9,6 +9,7 @@
 #include "woodcock/convert/dense_to_vdb.h"
 #include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/grid/half.h"
+#include "woodcock/grid/openvdb_exact_copy.h"
 #include "woodcock/grid/openvdb_grids.h"
 
 namespace woodcock {
@@ -137,7 +138,7 @@ bool convertIf(openvdb::GridBase::Ptr& grid) {
     const auto& source = static_cast<const From&>(*grid);
     const auto made = To::create(convertedTree<typename To::TreeType>(source.constTree()));
     made->insertMeta(static_cast<const openvdb::MetaMap&>(source));
-    made->setTransform(source.transform().copy());
+    made->setTransform(exactCopy(source.transform()));
     grid = made;
     return true;
 }
@@ -171,7 +172,7 @@ bool convertMask(openvdb::GridBase::Ptr& grid) {
     auto made = openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(
         mask.constTree(), 0.0f, 1.0f, openvdb::TopologyCopy()));
     made->insertMeta(static_cast<const openvdb::MetaMap&>(mask));
-    made->setTransform(mask.transform().copy());
+    made->setTransform(exactCopy(mask.transform()));
     grid = made;
     return true;
 }

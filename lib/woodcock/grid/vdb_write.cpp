@@ -78,6 +78,7 @@ void writeVdb(const std::filesystem::path& file, const VdbGrids& grids,
     openvdb::GridCPtrVec views;
     for (const openvdb::GridBase::Ptr& grid : grids.grids) {
         const openvdb::GridBase::Ptr view = grid->copyGrid();  // the tree is shared
+        view->setTransform(grid->transformPtr());              // its copy has lost digits
         view->setSaveFloatAsHalf(options.half);
         views.push_back(view);
     }

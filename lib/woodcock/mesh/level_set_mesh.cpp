@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/openvdb_exact_copy.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_transform.h"
 #include "woodcock/grid/vdb_file.h"
@@ -51,9 +52,19 @@ SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& plac
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(grid, points, triangles, quads, 0.0, adaptivity);
     SurfaceMesh surface;
     TriangleMesh mesh;
+    // Of the same voxels, but placed where floats have digits.
+    const openvdb::CoordBBox active = grid.evalActiveVoxelBoundingBox();
+    const openvdb::BBoxd world = grid.transform().indexToWorld(
+        openvdb::BBoxd(active.min().asVec3d(), active.max().asVec3d()));
+    const auto vec = [](const openvdb::Vec3d& v) { return Vec3d{v[0], v[1], v[2]}; };
+    mesh.origin = originFor({vec(world.min()), vec(world.max())});
+    const auto transform = exactCopy(grid.transform());
+    if (!(mesh.origin == Vec3d{}))
+        transform->postTranslate({-mesh.origin.x, -mesh.origin.y, -mesh.origin.z});
+    const auto local = grid.copyReplacingTransform(transform);
+    openvdb::tools::volumeToMesh(*local, points, triangles, quads, 0.0, adaptivity);
     for (const openvdb::Vec3s& p : points) mesh.points.push_back({p[0], p[1], p[2]});
     for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[1], t[2]});
     for (const openvdb::Vec4I& q : quads) {

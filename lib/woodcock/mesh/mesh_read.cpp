@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/mesh/far_text.h"
 #include "woodcock/mesh/gltf_check.h"
 #include "woodcock/mesh/ply_mesh.h"
 #include "woodcock/mesh/polygon.h"
@@ -31,7 +33,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A mesh takes up to about this many times its file's size while it is read.
-constexpr double memoryPerByte = 12;
+constexpr double memoryPerByte = 14;
 
 /// The extension, of a file that may be read.
 std::string requireReadable(const fs::path& file) {
@@ -84,19 +86,58 @@ private:
     int emptyReads_ = 0;
 };
 
+/// A text in memory as a file.
+class TextStream : public Assimp::IOStream {
+public:
+    explicit TextStream(std::string text) : text_(std::move(text)) {}
+
+    std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+        const std::size_t whole = size == 0 ? 0 : std::min(count, (text_.size() - at_) / size);
+        std::memcpy(to, text_.data() + at_, whole * size);
+        at_ += whole * size;
+        return whole;
+    }
+    std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+    aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+        const std::size_t from = origin == aiOrigin_SET   ? 0
+                                 : origin == aiOrigin_CUR ? at_
+                                                          : text_.size();
+        if (offset > text_.size() - std::min(from, text_.size())) return aiReturn_FAILURE;
+        at_ = from + offset;
+        return aiReturn_SUCCESS;
+    }
+    std::size_t Tell() const override { return at_; }
+    std::size_t FileSize() const override { return text_.size(); }
+    void Flush() override {}
+
+private:
+    std::string text_;
+    std::size_t at_ = 0;
+};
+
 /// Knows regular files alone: a pipe that a mesh refers to would be waited for without end.
+/// One of them may be read as another text.
 class RegularFiles : public Assimp::DefaultIOSystem {
 public:
+    void replace(const std::string& file, std::string text) {
+        replaced_ = file;
+        text_ = std::move(text);
+    }
     bool Exists(const char* file) const override {
         std::error_code ignored;
         return fs::is_regular_file(file, ignored);
     }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         if (!Exists(file)) return nullptr;
+        if (replaced_ && *replaced_ == file) return new TextStream(text_);
         std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(file, mode));
         return stream ? new EndingStream(std::move(stream)) : nullptr;
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
+
+private:
+    std::optional<std::string> replaced_;
+    std::string text_;
 };
 
 Affine3d toAffine(const aiMatrix4x4& m) {
@@ -107,7 +148,9 @@ Affine3d toAffine(const aiMatrix4x4& m) {
 /// Joins the parts of a scene, each where its nodes put it.
 class Joiner {
 public:
-    Joiner(const fs::path& file, const aiScene& scene) : file_(file), scene_(scene) {}
+    /// `origin`: what has been taken off already.
+    Joiner(const fs::path& file, const aiScene& scene, Vec3d origin)
+        : file_(file), scene_(scene), origin_(origin) {}
 
     SurfaceMesh join() {
         struct Placed {
@@ -132,22 +175,33 @@ public:
         if (faulty_ > 0)
             throw inputError("{} has {} points that are not finite, the first is {} of part '{}'",
                              file_.string(), faulty_, firstFaulty_, firstFaultyPart_);
+        place();
         if (!anyNormals_) surface_.normals.clear();
         if (!anyUvs_) surface_.uvs.clear();
         return std::move(surface_);
     }
 
 private:
+    /// Points become floats where the origin is off.
+    void place() {
+        Box3d bounds;
+        for (const Vec3d& p : points_) bounds.add(p);
+        const Vec3d more = origin_ == Vec3d{} ? originFor(bounds) : Vec3d{};
+        mesh_.origin = origin_ + more;
+        mesh_.points.reserve(points_.size());
+        for (const Vec3d& p : points_) mesh_.points.push_back((p - more).as<float>());
+    }
+
     void add(const aiMesh& part, const Affine3d& world) {
         requireRoom(part);
         const bool mirrored = world.determinant() < 0;
-        const auto first = static_cast<std::uint32_t>(mesh_.points.size());
+        const auto first = static_cast<std::uint32_t>(points_.size());
         for (unsigned i = 0; i < part.mNumVertices; ++i) {
             const aiVector3D& v = part.mVertices[i];
-            const Vec3f p = world.point(Vec3d{v.x, v.y, v.z}).as<float>();
-            if (!isFinite(p.as<double>()) && faulty_++ == 0)
+            const Vec3d p = world.point(Vec3d{v.x, v.y, v.z});
+            if (!isFinite(p.as<float>().as<double>()) && faulty_++ == 0)
                 firstFaulty_ = i, firstFaultyPart_ = part.mName.C_Str();
-            mesh_.points.push_back(p);
+            points_.push_back(p);
         }
         for (unsigned i = 0; i < part.mNumFaces; ++i) {
             const aiFace& face = part.mFaces[i];
@@ -157,7 +211,7 @@ private:
                 if (face.mIndices[j] >= part.mNumVertices)
                     throw inputError("{} is damaged: face {} refers to point {} of {}",
                                      file_.string(), i, face.mIndices[j], part.mNumVertices);
-                corners.push_back(mesh_.points[first + face.mIndices[j]].as<double>());
+                corners.push_back(points_[first + face.mIndices[j]]);
             }
             for (auto [a, b, c] : triangulate(corners)) {
                 if (mirrored) std::swap(b, c);  // faces outwards still
@@ -194,7 +248,7 @@ private:
 
     /// One part may stand at many places.
     void requireRoom(const aiMesh& part) const {
-        const std::uint64_t points = mesh_.points.size() + std::uint64_t{part.mNumVertices};
+        const std::uint64_t points = points_.size() + std::uint64_t{part.mNumVertices};
         const std::uint64_t triangles = mesh_.triangles.size() + std::uint64_t{part.mNumFaces};
         if (points > std::numeric_limits<std::uint32_t>::max())
             throw inputError("{} has more than {} points", file_.string(),
@@ -207,8 +261,10 @@ private:
 
     const fs::path& file_;
     const aiScene& scene_;
+    Vec3d origin_;
     SurfaceMesh surface_;
     TriangleMesh& mesh_ = surface_.mesh;
+    std::vector<Vec3d> points_;
     bool anyNormals_ = false, anyUvs_ = false;
     std::size_t faulty_ = 0;
     unsigned firstFaulty_ = 0;
@@ -217,12 +273,18 @@ private:
 
 SurfaceMesh readByAssimp(const fs::path& file) {
     Assimp::Importer importer;
-    importer.SetIOHandler(new RegularFiles);  // which the importer deletes
+    auto* const files = new RegularFiles;
+    importer.SetIOHandler(files);  // which the importer deletes
+    Vec3d origin;
+    if (auto far = withoutOrigin(file)) {
+        origin = far->origin;
+        files->replace(file.string(), std::move(far->text));
+    }
     // Without any of Assimp's steps of processing: they abort where a face is not as they expect.
     const aiScene* scene = importer.ReadFile(file.string(), 0);
     if (!scene)
         throw inputError("cannot read mesh '{}': {}", file.string(), importer.GetErrorString());
-    return Joiner(file, *scene).join();
+    return Joiner(file, *scene, origin).join();
 }
 
 constexpr bool hasAssimp = true;

@@ -32,24 +32,29 @@ const PlyElement::Property& require(const fs::path& file, const PlyElement& elem
     return *found;
 }
 
-std::vector<Vec3f> readPlyVertices(const fs::path& file, const PlyElement& vertices) {
+/// Points, and the mesh's origin, which is taken off them.
+void readPlyVertices(const fs::path& file, const PlyElement& vertices, TriangleMesh& mesh) {
     const PlyElement::Property& x = require(file, vertices, {"x"}, false);
     const PlyElement::Property& y = require(file, vertices, {"y"}, false);
     const PlyElement::Property& z = require(file, vertices, {"z"}, false);
     if (vertices.count > std::numeric_limits<std::uint32_t>::max())
         throw inputError("{} has more than {} points", file.string(),
                          std::numeric_limits<std::uint32_t>::max());
-    std::vector<Vec3f> points;
-    points.reserve(vertices.count);
+    Box3d bounds;
     std::size_t faulty = 0, firstFaulty = 0;
     for (std::size_t i = 0; i < vertices.count; ++i) {
-        points.push_back(Vec3d{x.values[i], y.values[i], z.values[i]}.as<float>());
-        if (!isFinite(points.back().as<double>()) && faulty++ == 0) firstFaulty = i;
+        const Vec3d p{x.values[i], y.values[i], z.values[i]};
+        if (!isFinite(p.as<float>().as<double>()) && faulty++ == 0) firstFaulty = i;
+        bounds.add(p);
     }
     if (faulty > 0)
         throw inputError("{} has {} points that are not finite, the first is {}", file.string(),
                          faulty, firstFaulty);
-    return points;
+    mesh.origin = originFor(bounds);
+    mesh.points.reserve(vertices.count);
+    for (std::size_t i = 0; i < vertices.count; ++i)
+        mesh.points.push_back(
+            (Vec3d{x.values[i], y.values[i], z.values[i]} - mesh.origin).as<float>());
 }
 
 /// A number of each vertex; null where the file has none of these names.
@@ -88,7 +93,7 @@ SurfaceMesh readPlyMesh(const fs::path& file) {
     SurfaceMesh surface;
     TriangleMesh& mesh = surface.mesh;
     const PlyElement& vertices = require(file, elements, "vertex");
-    mesh.points = readPlyVertices(file, vertices);
+    readPlyVertices(file, vertices, mesh);
     const PlyElement& faces = require(file, elements, "face");
     const PlyElement::Property& corners =
         require(file, faces, {"vertex_indices", "vertex_index"}, true);

@@ -141,6 +141,7 @@ Closedness checkClosed(const TriangleMesh& mesh) {
     Closedness result;
     std::vector<std::string> problems;
     const auto report = [&](std::size_t count, std::string_view what, Vec3d first) {
+        first = first + mesh.origin;
         if (count > 0)
             problems.push_back(fmt::format("{} {}, the first one at ({:.6g}, {:.6g}, {:.6g})",
                                            count, what, first.x, first.y, first.z));

@@ -78,7 +78,7 @@ private:
             if (nature.encloses) close(read, shape.file.string());
             mesh = std::make_shared<SurfaceMesh>(std::move(read));
         }
-        return {mesh, {}, {}};
+        return {mesh, Affine3d::translate(mesh->mesh.origin), {}};
     }
     LoadedSurface shaped(const LatheShape& shape, const SurfaceDescription& surface,
                          const SurfaceNature& nature) {
