@@ -29,7 +29,7 @@ struct ConvertWords {
     std::vector<std::filesystem::path> files;  ///< inputs, then the output
     std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
         axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
-        compression, outType, bounds, band, radius;
+        compression, outType, bounds, band, radius, columns;
     std::string progress = "auto";
     bool repair = false, shell = false, quiet = false;
 };
@@ -163,6 +163,7 @@ ConvertOptions readWords(const ConvertWords& words) {
     ifGiven("--band", words.band, length(options.band));
     ifGiven("--radius", words.radius, length(options.radius));
     options.shell = words.shell;
+    options.columns = words.columns;
     ifGiven("--origin", words.origin, [&](const std::string& t) {
         const auto p = numbers(t, 3, "0,0.5,0");
         options.placement.origin = Vec3d{p[0], p[1], p[2]};
@@ -265,6 +266,8 @@ CLI::App& addConvertCommand(CLI::App& app) {
     add("Shapes", "--band", words->band, "WIDTH",
         "Depth below a mesh's or level set's surface at which density is one (three voxels)");
     add("Shapes", "--radius", words->radius, "R", "Of points without one of their own (2 voxels)");
+    add("Shapes", "--columns", words->columns, "NAMES",
+        "What the columns of a table of points are: x,y,z,-,radius (- is not used)");
     command.add_flag("--shell", words->shell, "Fog around a mesh's surface instead of inside it")
         ->group("Shapes");
     add("Place", "--axes", words->axes, "ORDER",

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "woodcock/bake/node_reader.h"
-#include "woodcock/convert/points_to_density.h"
 #include "woodcock/bake/pointwise.h"
 #include "woodcock/base/random.h"
+#include "woodcock/convert/points_to_density.h"
 
 namespace woodcock {
 
@@ -173,8 +173,7 @@ Graph::Entry points(NodeReader& r) {
             file.string(), cloud.points.size(), mostPuffs);
     std::vector<Puff> all;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
-        all.push_back(
-            {cloud.points[i].as<double>(), ownRadii ? double(cloud.radii[i]) * radius : radius});
+        all.push_back({cloud.points[i], ownRadii ? double(cloud.radii[i]) * radius : radius});
     return {.node = std::make_unique<Puffs>(std::move(all), width)};
 }
 

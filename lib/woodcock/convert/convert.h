@@ -39,9 +39,10 @@ struct ConvertOptions {
     std::optional<std::uint64_t> headerBytes;
 
     // Of meshes, points and level sets.
-    std::optional<double> band;    ///< depth at which density reaches one, world units
-    std::optional<double> radius;  ///< of points that have none of their own
-    bool shell = false;            ///< fog around a mesh's surface instead of inside it
+    std::optional<double> band;          ///< depth at which density reaches one, world units
+    std::optional<double> radius;        ///< of points that have none of their own
+    std::optional<std::string> columns;  ///< of a table of points: "x,y,z,radius"
+    bool shell = false;                  ///< fog around a mesh's surface instead of inside it
 
     std::optional<int> channel;  ///< the one that is taken
     AxisOrder axes;

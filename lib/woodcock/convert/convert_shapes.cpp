@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "woodcock/base/error.h"
 #include "woodcock/convert/level_set_to_fog.h"
@@ -36,6 +38,40 @@ double voxelFor(const Box3d& bounds, const ConvertOptions& options) {
     return voxel;
 }
 
+/// Where coordinates are floats so far out that they lie further apart than voxels can do with.
+template <class PlaceOf>
+void noteFloats(std::size_t count, PlaceOf placeOf, double voxel, const ConvertOptions& options) {
+    double furthest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3d p = placeOf(i);
+        for (int a = 0; a < 3; ++a) {
+            if (static_cast<double>(static_cast<float>(p[a])) != p[a]) return;
+            furthest = std::max(furthest, std::abs(p[a]));
+        }
+    }
+    const auto from = static_cast<float>(furthest);
+    const double apart =
+        static_cast<double>(std::nextafter(from, std::numeric_limits<float>::infinity()) - from);
+    if (apart > voxel / 8)
+        say(options.warn,
+            fmt::format(
+                "the coordinates are floats: near {:.9g} these are {:.3g} apart, and voxels "
+                "are {:.3g}, so shapes are rough or in layers; write them as doubles, as "
+                "text, or nearer to the origin",
+                furthest, apart, voxel));
+}
+
+/// What a shape is wrong about is said with its file.
+template <class Make>
+VdbGrids made(const fs::path& in, Make make) {
+    try {
+        return make();
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::Input) throw;
+        throw inputError("{}: {}", in.string(), e.what());
+    }
+}
+
 /// Turned, remapped and named as the options say.
 Source finish(VdbGrids grids, const fs::path& in, const std::vector<std::string>& notes,
               const ConvertOptions& options) {
@@ -43,9 +79,8 @@ Source finish(VdbGrids grids, const fs::path& in, const std::vector<std::string>
     Source source{std::move(grids), {}};
     for (const openvdb::GridBase::Ptr& grid : source.grids.grids) {
         if (options.axes.identity()) continue;
-        const double voxel = grid->voxelSize().x();
         grid->setTransform(
-            openVdbTransform(options.axes.map() * Affine3d::scale({voxel, voxel, voxel})));
+            openVdbTransform(options.axes.map() * affineOf(*grid->transform().baseMap())));
     }
     ValueSummary found;
     if (!options.values.remap.identity() || options.values.tolerance > 0) {
@@ -72,20 +107,28 @@ Source readMeshSource(const fs::path& in, const ConvertOptions& options) {
     auto how = withNameAndVoxel<MeshToFogOptions>(voxelFor(boundsOf(mesh), options), options);
     how.band = options.band.value_or(0);
     how.shell = options.shell;
+    noteFloats(
+        mesh.points.size(),
+        [&](std::size_t i) { return mesh.origin + mesh.points[i].as<double>(); }, how.voxel,
+        options);
     std::vector<std::string> notes;
-    VdbGrids fog = meshToFog(mesh, how, notes);
+    VdbGrids fog = made(in, [&] { return meshToFog(mesh, how, notes); });
     return finish(std::move(fog), in, notes, options);
 }
 
 Source readPointsSource(const fs::path& in, const ConvertOptions& options) {
-    const PointCloud cloud = readPoints(in);
-    say(options.info, fmt::format("read {}: {} points", in.string(), cloud.points.size()));
+    const PointCloud cloud = readPoints(in, options.columns);
+    say(options.info,
+        fmt::format("read {}: {} points; {}", in.string(), cloud.points.size(), cloud.columns));
+    for (const std::string& note : cloud.notes) say(options.warn, note);
     Box3d bounds;
-    for (const Vec3f& p : cloud.points) bounds.add(p.as<double>());
+    for (const Vec3d& p : cloud.points) bounds.add(p);
     auto how = withNameAndVoxel<PointsToDensityOptions>(voxelFor(bounds, options), options);
     how.radius = options.radius.value_or(0);
+    noteFloats(
+        cloud.points.size(), [&](std::size_t i) { return cloud.points[i]; }, how.voxel, options);
     std::vector<std::string> notes;
-    VdbGrids density = pointsToDensity(cloud, how, notes);
+    VdbGrids density = made(in, [&] { return pointsToDensity(cloud, how, notes); });
     return finish(std::move(density), in, notes, options);
 }
 
@@ -93,12 +136,44 @@ Source readPlySource(const fs::path& in, const ConvertOptions& options) {
     return plyHasFaces(in) ? readMeshSource(in, options) : readPointsSource(in, options);
 }
 
+namespace {
+
+bool isLevelSet(const openvdb::GridBase::Ptr& grid) {
+    return grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+}
+
+/// The name of a level set's fog. A file's only one is its density, where it has none yet; others
+/// keep their names, and never take that of another grid.
+std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptions& options) {
+    const auto& all = grids.grids;
+    if (options.name && all.size() == 1) return *options.name;
+    const auto taken = [&](const std::string& name) {
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (i != index && all[i]->getName() == name) return true;
+        return false;
+    };
+    const bool only = std::count_if(all.begin(), all.end(), isLevelSet) == 1;
+    if (only && !taken("density")) return "density";
+    const std::string own = all[index]->getName().empty() ? "fog" : all[index]->getName();
+    std::string name = own;
+    for (int n = 1; taken(name); ++n)
+        name = fmt::format("{}_fog{}", own, n == 1 ? "" : fmt::to_string(n));
+    return name;
+}
+
+}  // namespace
+
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {
-    for (openvdb::GridBase::Ptr& grid : grids.grids) {
-        if (grid->getGridClass() != openvdb::GRID_LEVEL_SET) continue;
+    // All names first: a fog is no level set any more.
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < grids.grids.size(); ++i) {
+        names.push_back(isLevelSet(grids.grids[i]) ? fogName(grids, i, options) : "");
+    }
+    for (std::size_t i = 0; i < grids.grids.size(); ++i) {
+        openvdb::GridBase::Ptr& grid = grids.grids[i];
+        if (!isLevelSet(grid)) continue;
         const std::string name = grid->getName();
-        LevelSetToFogOptions how{.band = options.band.value_or(0),
-                                 .name = options.name.value_or("density")};
+        const LevelSetToFogOptions how{.band = options.band.value_or(0), .name = names[i]};
         std::vector<std::string> notes;
         const VdbGrids one{{grid}};
         grid = levelSetToFog(one, how, notes).grids.front();

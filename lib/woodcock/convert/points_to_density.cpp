@@ -10,10 +10,12 @@
 #include <cmath>
 #include <memory>
 
-#include "woodcock/convert/limits.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/convert/limits.h"
+#include "woodcock/convert/openvdb_lattice.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock {
 
@@ -45,8 +47,7 @@ void requireSound(const PointCloud& cloud, const PointsToDensityOptions& options
         throw inputError("{} points, where at most {} are expected", cloud.points.size(),
                          std::numeric_limits<std::uint32_t>::max());
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-        if (!isFinite(cloud.points[i].as<double>()))
-            throw inputError("point {} is not finite", i + 1);
+        if (!isFinite(cloud.points[i])) throw inputError("point {} is not finite", i + 1);
         if (!cloud.radii.empty() && !(cloud.radii[i] >= 0 && std::isfinite(cloud.radii[i])))
             throw inputError("point {} has a radius of {}", i + 1, cloud.radii[i]);
         if (!cloud.weights.empty() && !(cloud.weights[i] >= 0 && std::isfinite(cloud.weights[i])))
@@ -56,8 +57,8 @@ void requireSound(const PointCloud& cloud, const PointsToDensityOptions& options
 
 class Summer {
 public:
-    Summer(const PointCloud& cloud, const PointsToDensityOptions& options) : options_(options) {
-        requireSound(cloud, options);
+    Summer(const PointCloud& cloud, const PointsToDensityOptions& options, const Lattice& lattice)
+        : options_(options), lattice_(lattice) {
         makeBumps(cloud);
         findShares();
     }
@@ -87,7 +88,7 @@ private:
         bumps_.resize(cloud.points.size());
         for (std::size_t i = 0; i < bumps_.size(); ++i) {
             Bump& bump = bumps_[i];
-            bump.centre = cloud.points[i].as<double>() / options_.voxel;
+            bump.centre = lattice_.index(cloud.points[i]);
             double radius =
                 cloud.radii.empty() ? usual : static_cast<double>(cloud.radii[i]) / options_.voxel;
             bump.peak = cloud.weights.empty() ? 1 : static_cast<double>(cloud.weights[i]);
@@ -155,6 +156,7 @@ private:
     }
 
     const PointsToDensityOptions& options_;
+    const Lattice lattice_;
     std::vector<Bump> bumps_;
     std::vector<Share> shares_;
     std::size_t widened_ = 0;
@@ -164,10 +166,14 @@ private:
 
 VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& options,
                          std::vector<std::string>& notes) {
-    const Summer summer(cloud, options);
+    requireSound(cloud, options);
+    Box3d bounds;
+    for (const Vec3d& p : cloud.points) bounds.add(p);
+    const Lattice lattice(originFor(bounds), options.voxel);
+    const Summer summer(cloud, options, lattice);
     const auto grid = openvdb::FloatGrid::create(summer.sum());
     if (grid->empty()) throw inputError("the density is zero everywhere: all points weigh nothing");
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(options.voxel));
+    grid->setTransform(lattice.transform());
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     grid->setName(options.name);
     if (summer.widened() > 0)
