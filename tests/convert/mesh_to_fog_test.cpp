@@ -87,8 +87,8 @@ TEST(MeshToFog, AnOpenMeshIsReportedAndHasAShell) {
     const double band = 0.2;
     const VdbGrids shell = meshToFog(square, {.voxel = voxel, .band = band, .shell = true}, notes);
     forVoxelsAround(only(shell), [&](Vec3d p, float v) {
-        const Vec3d q{std::abs(p.x) - 1, std::abs(p.y) - 1, p.z + 1};
-        const double d = length({std::max(q.x, 0.0), std::max(q.y, 0.0), q.z});
+        const Vec3d q{p.x + 1, std::abs(p.y) - 1, std::abs(p.z) - 1};
+        const double d = length({q.x, std::max(q.y, 0.0), std::max(q.z, 0.0)});
         EXPECT_NEAR(v, std::max(1 - d / band, 0.0), 1e-4);
     });
     TriangleMesh lidless = cube();
@@ -110,7 +110,7 @@ float at(const VdbGrids& grids, Vec3d place) {
 /// Cubes about the origin, one in the other: every second space between them is solid.
 void expectShells(const TriangleMesh& mesh, const std::vector<double>& halfSides) {
     std::vector<std::string> notes;
-    const double band = 0.2;
+    const double band = 0.1;
     const VdbGrids fog = meshToFog(mesh, {.voxel = voxel, .band = band}, notes);
     EXPECT_TRUE(notes.empty()) << notes.front();
     const auto distanceTo = [](Vec3d p, double half) {

@@ -32,6 +32,7 @@ public:
     std::size_t voxels() const { return voxels_; }              ///< that are inside
     std::size_t cavities() const { return cavities_; }          ///< parts that are cavities
     std::size_t nestedSolids() const { return nestedSolids_; }  ///< parts within what is solid
+    std::size_t parts() const { return adds_.size(); }
     /// Whether parts overlap, or one crosses itself.
     bool hasInnerSurfaces() const { return innerSurfaces_; }
     /// Of what lines along z have inside, the share of pieces that hold no voxel's centre.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/convert/mesh_to_fog.h"
 
+#include <openvdb/math/Proximity.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/ValueTransformer.h>
+#include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
 #include <array>
@@ -87,15 +89,73 @@ void requireRoom(const TriangleMesh& mesh, const MeshLattice& lattice, double re
     requireVoxels(voxels, lattice.voxel, mostVoxels);
 }
 
+double distanceTo(const Corners& t, const openvdb::Coord& voxel) {
+    const auto vec = [](Vec3d v) { return openvdb::Vec3d(v.x, v.y, v.z); };
+    const openvdb::Vec3d p = voxel.asVec3d();
+    openvdb::Vec3d weights;
+    return (openvdb::math::closestPointOnTriangleToPoint(vec(t[0]), vec(t[1]), vec(t[2]), p,
+                                                         weights) -
+            p)
+        .length();
+}
+
+/// Each voxel tries the triangles that are the nearest to its neighbours: OpenVDB's bands without a
+/// sign miss the nearest one here and there, at the corners of leaves.
+void tryNeighbours(openvdb::FloatGrid& grid, const openvdb::Int32Grid& nearest,
+                   const std::vector<Corners>& triangles, double voxel) {
+    openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
+    leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+        const auto known = nearest.getConstAccessor();
+        for (auto value = leaf.beginValueOn(); value; ++value) {
+            double best = static_cast<double>(*value) / voxel;
+            std::array<int, 27> tried{};
+            std::size_t count = 0;
+            for (int n = 0; n < 27; ++n) {
+                const openvdb::Coord at =
+                    value.getCoord().offsetBy(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+                const int t = known.getValue(at);
+                const auto end = tried.begin() + static_cast<std::ptrdiff_t>(count);
+                if (t < 0 || std::size_t(t) >= triangles.size() ||
+                    std::find(tried.begin(), end, t) != end)
+                    continue;
+                tried[count++] = t;
+                best = std::min(
+                    best, distanceTo(triangles[static_cast<std::size_t>(t)], value.getCoord()));
+            }
+            const auto distance = static_cast<float>(best * voxel);
+            if (distance < *value) value.setValue(distance);
+        }
+    });
+}
+
 /// Distances (world units) up to `reach` voxels on both sides, without a sign.
 openvdb::FloatGrid::Ptr distances(const std::vector<Corners>& triangles, const MeshLattice& lattice,
                                   double reach) {
     const auto uniform = openvdb::math::Transform::createLinearTransform(lattice.voxel);
+    const auto nearest = openvdb::Int32Grid::create(-1);
     const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
         TrianglesInVoxels(triangles), *uniform, static_cast<float>(reach), 0,
-        openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+        openvdb::tools::UNSIGNED_DISTANCE_FIELD, nearest.get());
+    tryNeighbours(*grid, *nearest, triangles, lattice.voxel);
     grid->setTransform(lattice.transform());
     return grid;
+}
+
+/// The same with OpenVDB's own sign, for meshes that have neither cavities nor surfaces within.
+openvdb::FloatGrid::Ptr signedDistances(const MeshInside& inside, const MeshLattice& lattice,
+                                        double outside, double within) {
+    const auto uniform = openvdb::math::Transform::createLinearTransform(lattice.voxel);
+    const std::vector<Corners> triangles = inside.border();
+    const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+        TrianglesInVoxels(triangles), *uniform, static_cast<float>(outside),
+        static_cast<float>(within));
+    grid->setTransform(lattice.transform());
+    return grid;
+}
+
+bool isSimple(const MeshInside& inside) {
+    return inside.cavities() == 0 && inside.nestedSolids() == 0 && !inside.hasInnerSurfaces() &&
+           inside.parts() == 1;
 }
 
 /// Distances get the sign of the side: below zero within. What lies beyond the band follows.
@@ -210,8 +270,10 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
         throw inputError(
             "nothing is inside: the mesh is thinner than its voxels; take voxels smaller than {}",
             options.voxel);
-    const auto grid = distances(inside.border(), lattice, reach);
-    sign(*grid, inside);
+    // The sign is found outside: one voxel there would do, three are OpenVDB's usual width.
+    const auto grid = isSimple(inside) ? signedDistances(inside, lattice, 3, reach)
+                                       : distances(inside.border(), lattice, reach);
+    if (!isSimple(inside)) sign(*grid, inside);
     distancesToFog(*grid, band);
     if (grid->empty())
         throw inputError(
@@ -235,8 +297,9 @@ VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& o
     const ClosedMesh closed = closedMesh(mesh);
     notes.insert(notes.end(), closed.notes.begin(), closed.notes.end());
     const MeshInside inside(closed, lattice.indices(closed.mesh));
-    const auto grid = distances(inside.border(), lattice, reach);
-    sign(*grid, inside);
+    const auto grid = isSimple(inside) ? signedDistances(inside, lattice, reach, reach)
+                                       : distances(inside.border(), lattice, reach);
+    if (!isSimple(inside)) sign(*grid, inside);
     noteInside(inside, options.voxel, notes);
     return named(grid, openvdb::GRID_LEVEL_SET, options.name);
 }
