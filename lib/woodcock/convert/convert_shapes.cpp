@@ -164,15 +164,19 @@ std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptio
 }  // namespace
 
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {
-    // All names first: a fog is no level set any more.
-    std::vector<std::string> names;
+    // All names first, as each looks at the others; and a fog is no level set any more.
+    std::vector<std::string> before, names;
     for (std::size_t i = 0; i < grids.grids.size(); ++i) {
-        names.push_back(isLevelSet(grids.grids[i]) ? fogName(grids, i, options) : "");
+        openvdb::GridBase& grid = *grids.grids[i];
+        before.push_back(grid.getName());
+        names.push_back(isLevelSet(grids.grids[i]) ? fogName(grids, i, options) : before.back());
+        grid.setName(names.back());
     }
     for (std::size_t i = 0; i < grids.grids.size(); ++i) {
         openvdb::GridBase::Ptr& grid = grids.grids[i];
         if (!isLevelSet(grid)) continue;
-        const std::string name = grid->getName();
+        const std::string& name = before[i];
+        grid->setName(name);
         const LevelSetToFogOptions how{.band = options.band.value_or(0), .name = names[i]};
         std::vector<std::string> notes;
         const VdbGrids one{{grid}};
