@@ -9,6 +9,7 @@
 #include "woodcock/convert/level_set_to_fog.h"
 #include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/convert/openvdb_convert_source.h"
+#include "woodcock/convert/point_grid_read.h"
 #include "woodcock/convert/points_to_density.h"
 #include "woodcock/grid/openvdb_transform.h"
 #include "woodcock/mesh/ply_file.h"
@@ -162,6 +163,35 @@ std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptio
 }
 
 }  // namespace
+
+void addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
+                  const ConvertOptions& options) {
+    if (options.placement.size || options.placement.origin || options.channel)
+        throw usageError(
+            "--size, --origin and --channel are for grids of voxels; points lie where "
+            "they are");
+    const PointCloud cloud = readPointGrid(file, points);
+    if (cloud.points.empty())
+        throw inputError("grid '{}' of {} holds no points", points.uniqueName, file.path.string());
+    const Vec3d sides = points.voxelSize;
+    PointsToDensityOptions how;
+    how.voxel = options.placement.voxel.value_or(std::min({sides.x, sides.y, sides.z}));
+    how.radius = options.radius.value_or(0);
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(grids.grids.begin(), grids.grids.end(),
+                           [&](const auto& grid) { return grid->getName() == name; });
+    };
+    if (taken(how.name)) how.name = points.name.empty() ? "points" : points.name;
+    for (int n = 2; taken(how.name); ++n) how.name = fmt::format("points_{}", n);
+    say(options.info,
+        fmt::format("read '{}' from {}: {} points; {}; they become '{}', voxels of {:.4g}",
+                    points.uniqueName, file.path.string(), cloud.points.size(), cloud.columns,
+                    how.name, how.voxel));
+    std::vector<std::string> notes;
+    const VdbGrids density = made(file.path, [&] { return pointsToDensity(cloud, how, notes); });
+    for (const std::string& note : notes) say(options.warn, note);
+    grids.grids.push_back(density.grids.front());
+}
 
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {
     // All names first, as each looks at the others; and a fog is no level set any more.

@@ -7,6 +7,7 @@
 
 #include "woodcock/convert/convert.h"
 #include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb_file.h"
 
 namespace woodcock {
 
@@ -45,5 +46,9 @@ Source readPointsSource(const std::filesystem::path& in, const ConvertOptions& o
 Source readPlySource(const std::filesystem::path& in, const ConvertOptions& options);
 /// Those of the grids that are level sets become fog.
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options);
+
+/// The density of a grid of points becomes one of the grids.
+void addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
+                  const ConvertOptions& options);
 
 }  // namespace woodcock

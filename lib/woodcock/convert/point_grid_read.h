@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/convert/points_to_density.h"
+#include "woodcock/grid/vdb_file.h"
+
+namespace woodcock {
+
+/// Whether a grid holds points (OpenVDB's PointDataGrid) in place of values.
+bool isPointGrid(const GridListing& grid);
+
+/// The points of such a grid, in world space, with their radii where it has an attribute pscale or
+/// radius. What the file says is not trusted: sizes are held against its length before memory is
+/// taken, and it may hold a million points more than four for each of its bytes. Errors: Input,
+/// with the place; also for codecs and transforms that are not known.
+PointCloud readPointGrid(const VdbFile& file, const GridListing& grid);
+
+}  // namespace woodcock
