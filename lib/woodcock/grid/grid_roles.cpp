@@ -187,8 +187,11 @@ FoundGrid findGrid(const VdbFile& file, GridRole role) {
     std::string names;
     for (std::string_view name : namesOf(role))
         names += (names.empty() ? "" : ", ") + std::string(name);
-    throw inputError("no {} grid in {} (looked for: {}); it has: {}; name the grid to use",
-                     roleName(role), file.path.string(), names, describeGrids(file));
+    const bool points = std::any_of(file.grids.begin(), file.grids.end(),
+                                    [](const auto& grid) { return grid.valueType == "points"; });
+    throw inputError("no {} grid in {} (looked for: {}); it has: {}; name the grid to use{}",
+                     roleName(role), file.path.string(), names, describeGrids(file),
+                     points ? "; `woodcock convert IN OUT.vdb` makes a density of points" : "");
 }
 
 bool isNamedFor(const GridListing& grid, GridRole role) {
