@@ -20,6 +20,23 @@ double areaOf(const TriangleMesh& m) {
     return area;
 }
 
+/// Of 6000 facets, most of which no plane comes near.
+TEST(FacetedMesh, ManyFacetsMakeABall) {
+    std::vector<FacetRing> rings;
+    for (int i = 0; i <= 100; ++i) rings.push_back({1.8 * i, 60, 1, 3.0 * (i % 2)});
+    const SurfaceMesh ball = facetedMesh(rings);
+    EXPECT_TRUE(checkClosed(ball.mesh).closed);
+    EXPECT_NEAR(volume(ball.mesh), 4 * pi / 3, 0.005);
+    EXPECT_GT(volume(ball.mesh), 4 * pi / 3);
+    EXPECT_GT(ball.mesh.triangles.size(), 10000U);
+}
+
+TEST(FacetedMesh, TooManyAreRefused) {
+    const std::vector<FacetRing> rings(26, {90, 1000, 1, 0});
+    expectError(ErrorKind::Usage, "more than 25000 facets; a mesh from a file has no such limit",
+                [&] { facetedMesh(rings); });
+}
+
 TEST(FacetedMesh, CubeOctahedronAndPrism) {
     const SurfaceMesh cube =
         facetedMesh(std::vector<FacetRing>{{0, 1, 1, 0}, {180, 1, 1, 0}, {90, 4, 1, 0}});

@@ -34,39 +34,69 @@ public:
                 Vec3d n, s, t;
                 n[axis] = sign;
                 orthonormalBasis(n, s, t);
-                faces_.push_back({(n - s - t) * size, (n + s - t) * size, (n + s + t) * size,
-                                  (n - s + t) * size});
+                add({(n - s - t) * size, (n + s - t) * size, (n + s + t) * size,
+                     (n - s + t) * size});
             }
     }
 
     void cutBy(const Plane& plane) {
-        std::vector<Polygon> left;
         Polygon rim;
-        for (const Polygon& face : faces_) {
-            Polygon kept;
-            for (std::size_t i = 0; i < face.size(); ++i) {
-                const Vec3d a = face[i], b = face[(i + 1) % face.size()];
-                const double u = plane.above(a), v = plane.above(b);
-                if (u <= near_) kept.push_back(a);
-                if (std::abs(u) <= near_) rim.push_back(a);
-                if ((u < -near_ && v > near_) || (u > near_ && v < -near_)) {
-                    kept.push_back(cut(plane, a, b));
-                    rim.push_back(kept.back());
-                }
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            // Most faces are far from the plane, on its inner side: they stay as they are.
+            if (!(plane.above(balls_[i].centre) + balls_[i].radius < -near_)) {
+                if (!cutFace(faces_[i], plane, rim)) continue;
+                balls_[i] = ballAround(faces_[i]);
             }
-            // A face that only touches the plane from above is gone.
-            const bool below = std::any_of(kept.begin(), kept.end(),
-                                           [&](Vec3d p) { return plane.above(p) < -near_; });
-            if (kept.size() > 2 && below) left.push_back(std::move(kept));
+            if (left != i) faces_[left] = std::move(faces_[i]), balls_[left] = balls_[i];
+            ++left;
         }
-        faces_ = std::move(left);
-        if (Polygon face = ordered(rim, plane.normal); face.size() > 2)
-            faces_.push_back(std::move(face));
+        faces_.resize(left), balls_.resize(left);
+        if (Polygon face = ordered(rim, plane.normal); face.size() > 2) add(std::move(face));
     }
 
     const std::vector<Polygon>& faces() const { return faces_; }
 
 private:
+    struct Ball {
+        Vec3d centre;
+        double radius;
+    };
+    static Ball ballAround(const Polygon& face) {
+        Ball ball{{}, 0};
+        for (const Vec3d p : face) ball.centre += p * (1 / static_cast<double>(face.size()));
+        for (const Vec3d p : face) ball.radius = std::max(ball.radius, length(p - ball.centre));
+        ball.radius *= 1 + 1e-12;
+        return ball;
+    }
+
+    void add(Polygon face) {
+        balls_.push_back(ballAround(face));
+        faces_.push_back(std::move(face));
+    }
+
+    /// Leaves of a face what lies below, and adds to the rim what lies in the plane. False: nothing
+    /// is left.
+    bool cutFace(Polygon& face, const Plane& plane, Polygon& rim) const {
+        Polygon kept;
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            const Vec3d a = face[i], b = face[(i + 1) % face.size()];
+            const double u = plane.above(a), v = plane.above(b);
+            if (u <= near_) kept.push_back(a);
+            if (std::abs(u) <= near_) rim.push_back(a);
+            if ((u < -near_ && v > near_) || (u > near_ && v < -near_)) {
+                kept.push_back(cut(plane, a, b));
+                rim.push_back(kept.back());
+            }
+        }
+        // A face that only touches the plane from above is gone.
+        if (kept.size() < 3 || std::none_of(kept.begin(), kept.end(),
+                                            [&](Vec3d p) { return plane.above(p) < -near_; }))
+            return false;
+        face = std::move(kept);
+        return true;
+    }
+
     /// Points of a convex polygon, each once, counter-clockwise about the normal.
     Polygon ordered(const Polygon& points, Vec3d normal) const {
         Polygon distinct;
@@ -89,7 +119,11 @@ private:
 
     double near_;
     std::vector<Polygon> faces_;
+    std::vector<Ball> balls_;  ///< around each face
 };
+
+/// The work grows with the square of their number: so many take seconds.
+constexpr std::size_t mostFacets = 25'000;
 
 std::vector<Plane> planesOf(std::span<const FacetRing> rings) {
     std::vector<Plane> planes;
@@ -107,6 +141,9 @@ std::vector<Plane> planesOf(std::span<const FacetRing> rings) {
                 {{std::sin(tilt) * std::sin(turn), std::cos(tilt), std::sin(tilt) * std::cos(turn)},
                  ring.distance});
         }
+        if (planes.size() > mostFacets)
+            throw usageError("more than {} facets; a mesh from a file has no such limit",
+                             mostFacets);
     }
     return planes;
 }
