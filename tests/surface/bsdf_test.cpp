@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/oracle/quadrature.h"
 #include "tests/support/statistics.h"
 #include "tests/surface/one_bsdf.h"
 #include "woodcock/surface/fresnel.h"
@@ -60,9 +61,20 @@ TEST(Bsdf, RoughMetalIsTheFormula) {
         for (int c = 0; c < 3; ++c) {
             const double f = conductorReflectance(dot(o, h), double{metal.eta[c]} / ior,
                                                   double{metal.k[c]} / ior);
-            const double expected =
+            const double once =
                 f * distribution(alpha, h.z) * shadowing(alpha, o.z, i.z) / (4 * o.z);
-            EXPECT_NEAR(double{bsdf.evaluate(o, i)[c]} / expected, 1, 1e-5);
+            // Kulla and Conty 2017, with the mean reflectance over light from all around.
+            const double mean = oracle::tanhSinh(
+                [&](double cosine, double) {
+                    return 2 * cosine *
+                           conductorReflectance(cosine, double{metal.eta[c]} / ior,
+                                                double{metal.k[c]} / ior);
+                },
+                0, 1);
+            const FacetLosses& losses = facetEnergy(alpha, 0).outside;
+            const double more = losses.lost(o.z) * losses.lost(i.z) * i.z / (pi * losses.mean()) *
+                                mean * mean * (1 - losses.mean()) / (1 - mean * losses.mean());
+            EXPECT_NEAR(double{bsdf.evaluate(o, i)[c]}, once + more, 1e-5 * once + 1e-3 * more);
         }
         EXPECT_EQ(bsdf.evaluate(o, -i), Rgb());
     }
@@ -85,7 +97,13 @@ TEST(Bsdf, RoughGlassIsTheFormula) {
         const double reflected = refraction(dot(o, mirror), there / here).reflectance *
                                  distribution(alpha, mirror.z) * shadowing(alpha, o.z, i.z) /
                                  (4 * o.z);
-        EXPECT_NEAR(double{bsdf.evaluate(o * side, i * side)[0]} / reflected, 1, 1e-5);
+        const FacetEnergy& energy = facetEnergy(alpha, below / above);
+        const FacetLosses& near = side > 0 ? energy.outside : energy.inside;
+        const FacetLosses& far = side > 0 ? energy.inside : energy.outside;
+        const double back = side > 0 ? energy.backOutside : energy.backInside;
+        const double again = back * near.lost(o.z) * near.lost(i.z) * i.z / (pi * near.mean());
+        EXPECT_NEAR(double{bsdf.evaluate(o * side, i * side)[0]}, reflected + again,
+                    1e-5 * (reflected + again));
 
         const Vec3d beyond = -i;
         Vec3d h = normalize(-(o * here + beyond * there));
@@ -98,6 +116,8 @@ TEST(Bsdf, RoughGlassIsTheFormula) {
                           distribution(alpha, h.z) * shadowing(alpha, o.z, i.z) / (sum * sum);
             ++seen;
         }
+        transmitted += (1 - back) * near.lost(o.z) * far.lost(i.z) * i.z / (pi * far.mean()) *
+                       here * here / (there * there);
         EXPECT_NEAR(bsdf.evaluate(o * side, beyond * side)[0], transmitted, 1e-5 * transmitted);
     }
     EXPECT_GT(seen, 1000);

@@ -77,6 +77,11 @@ def mirror(nodes, colour):
                      Roughness=0.0).outputs[0]
 
 
+def facets(m):
+    """Those that lose no light between them, as Woodcock's."""
+    return "MULTI_GGX" if m["roughness"] > 0 else "GGX"
+
+
 def conductor(nodes, m):
     if not m["eta"] and m["roughness"] == 0:
         return mirror(nodes, texture(nodes, m["colour"]))
@@ -85,16 +90,16 @@ def conductor(nodes, m):
                       % (bpy.app.version_string,
                          "eta and k" if m["eta"] else "Schlick's reflectance with roughness"))
     if m["eta"]:
-        settings = {"distribution": "GGX", "fresnel_type": "PHYSICAL_CONDUCTOR"}
+        settings = {"distribution": facets(m), "fresnel_type": "PHYSICAL_CONDUCTOR"}
         return nodes.add("ShaderNodeBsdfMetallic", settings, IOR=m["eta"], Extinction=m["k"],
                          Roughness=m["roughness"]).outputs[0]
-    settings = {"distribution": "GGX", "fresnel_type": "F82"}
+    settings = {"distribution": facets(m), "fresnel_type": "F82"}
     return nodes.add("ShaderNodeBsdfMetallic", settings, Base_Color=texture(nodes, m["colour"]),
                      Edge_Tint=(1, 1, 1), Roughness=m["roughness"]).outputs[0]
 
 
 def dielectric(nodes, m):
-    return nodes.add("ShaderNodeBsdfGlass", {"distribution": "GGX"}, Color=(1, 1, 1),
+    return nodes.add("ShaderNodeBsdfGlass", {"distribution": facets(m)}, Color=(1, 1, 1),
                      Roughness=m["roughness"], IOR=m["ior"]).outputs[0]
 
 

@@ -2,8 +2,10 @@
 #include "woodcock/surface/bsdf.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "woodcock/base/random.h"
 #include "woodcock/surface/fresnel.h"
 #include "woodcock/surface/microfacet.h"
 
@@ -18,6 +20,7 @@ struct Bsdf::View {
     Vec3d local;                  ///< `out` in that frame, above its horizon
     double cosine = 0;            ///< of `out` to `normal`; at most 0: nothing is seen
     double iorHere = 1, eta = 1;  ///< the index on this side; the other side's over it
+    bool outside = true;          ///< this is the side of the surface's own normal
 
     Vec3d toFacets(Vec3d v) const { return {dot(v, s), dot(v, t), dot(v, facing)}; }
     Vec3d fromFacets(Vec3d v) const { return s * v.x + t * v.y + facing * v.z; }
@@ -96,11 +99,22 @@ void Bsdf::add(const Material& material, double weight) {
         if (metal->schlick) lobe.colour = metal->fresnelColour.at(point_.u, point_.v);
         lobe.eta = metal->eta, lobe.k = metal->k;
         lobe.alpha = alphaOf(metal->roughness);
+        if (lobe.alpha > 0) {
+            lobe.energy = &facetEnergy(lobe.alpha, 0);
+            // The light that meets further facets, each of which absorbs its share: Hill 2018, "A
+            // Multi-Faceted Exploration", part 3, after Kulla and Conty.
+            const Rgb f = meanFresnel(lobe, point_.iorOutside);
+            const auto kept = static_cast<float>(1 - lobe.energy->outside.mean());
+            lobe.again =
+                Rgb::map([&](int c) { return f[c] * f[c] * kept / (1 - f[c] * (1 - kept)); });
+        }
     } else if (const auto* glass = std::get_if<DielectricMaterial>(&material)) {
         const double change = std::abs(point_.iorInside / point_.iorOutside - 1);
         if (change > 0) lobe.kind = Lobe::Kind::Dielectric;
         // So little is bent that the density of what is transmitted would outgrow a float.
         if (change > 1e-5) lobe.alpha = alphaOf(glass->roughness);
+        if (lobe.alpha > 0)
+            lobe.energy = &facetEnergy(lobe.alpha, point_.iorInside / point_.iorOutside);
     } else if (const auto* light = std::get_if<EmissiveMaterial>(&material)) {
         lobe.kind = Lobe::Kind::Emissive;
         lobe.colour = light->radiance.at(point_.u, point_.v);
@@ -133,6 +147,7 @@ Bsdf::View Bsdf::viewFrom(Vec3d out) const {
     view.normal = outside ? point_.normal : -point_.normal;
     view.shading = outside ? point_.shadingNormal : -point_.shadingNormal;
     view.cosine = dot(out, view.normal);
+    view.outside = outside;
     view.iorHere = outside ? point_.iorOutside : point_.iorInside;
     view.eta = (outside ? point_.iorInside : point_.iorOutside) / view.iorHere;
     if (!(view.cosine > 0)) return view;
@@ -151,18 +166,47 @@ Rgb Bsdf::fresnel(const Lobe& lobe, double cosine, double ior) {
     });
 }
 
+/// Mean over directions of light from all around, by Gauss-Legendre in the squared cosine.
+Rgb Bsdf::meanFresnel(const Lobe& lobe, double ior) {
+    if (lobe.schlick) return lobe.colour + (Rgb(1.0f) - lobe.colour) * (1 / 21.0f);
+    constexpr double nodes[] = {0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558};
+    constexpr float weights[] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
+    Rgb sum;
+    for (int i = 0; i < 4; ++i) sum += fresnel(lobe, std::sqrt(nodes[i]), ior) * weights[i];
+    return Rgb::map([&](int c) { return std::min(sum[c], 1.0f); });
+}
+
 Bsdf::Density Bsdf::diffuse(const Lobe& lobe, const View& view, Vec3d in) {
     const double cosine = dot(in, view.shading);
     if (!(cosine > 0) || !(dot(in, view.normal) > 0)) return {};
     return {cosine / pi, lobe.colour};
 }
 
+/// What leaves after more than one facet: the share that the first one hides, spread by what is
+/// hidden in the other direction.
+Bsdf::Density Bsdf::again(const Lobe& lobe, const View& view, Vec3d in) {
+    const FacetEnergy& energy = *lobe.energy;
+    const bool metal = lobe.kind == Lobe::Kind::Conductor;
+    const FacetLosses& here = metal || view.outside ? energy.outside : energy.inside;
+    const double lost = here.lost(view.local.z);
+    if (metal) {
+        if (!view.reflects(in)) return {};
+        return {lost * here.density(dot(in, view.facing)), lobe.again};
+    }
+    const double back = view.outside ? energy.backOutside : energy.backInside;
+    if (view.reflects(in)) return {lost * back * here.density(dot(in, view.facing)), Rgb(1.0f)};
+    if (!view.transmits(in)) return {};
+    const FacetLosses& beyond = view.outside ? energy.inside : energy.outside;
+    return {lost * (1 - back) * beyond.density(-dot(in, view.facing)),
+            Rgb(static_cast<float>(1 / (view.eta * view.eta)))};
+}
+
 Bsdf::Density Bsdf::conductor(const Lobe& lobe, const View& view, Vec3d in) {
     if (lobe.alpha == 0 || !view.reflects(in)) return {};
     const Ggx facets(lobe.alpha);
     const Vec3d o = view.local, i = view.toFacets(in), h = normalize(o + i);
-    const auto shadowing = static_cast<float>(facets.shadowing(o, i));
-    return {facets.visible(o, h) / 4, fresnel(lobe, dot(o, h), view.iorHere) * shadowing};
+    const double unhidden = facets.shadowing(o, i);
+    return {facets.visible(o, h) / 4 * unhidden, fresnel(lobe, dot(o, h), view.iorHere)};
 }
 
 // Walter et al. 2007, eq. 13 to 21, with the density of visible normals.
@@ -173,7 +217,7 @@ Bsdf::Density Bsdf::dielectric(const Lobe& lobe, const View& view, Vec3d in) {
     if (view.reflects(in)) {
         const Vec3d h = normalize(o + i);
         const double share = refraction(dot(o, h), view.eta).reflectance;
-        return {share * facets.visible(o, h) / 4, Rgb(static_cast<float>(facets.shadowing(o, i)))};
+        return {share * facets.visible(o, h) / 4 * facets.shadowing(o, i), Rgb(1.0f)};
     }
     if (!view.transmits(in)) return {};
     const double eta = view.eta;
@@ -182,8 +226,9 @@ Bsdf::Density Bsdf::dielectric(const Lobe& lobe, const View& view, Vec3d in) {
     const double cosine = dot(o, h), beyond = -dot(i, h);
     if (!(cosine > 0) || !(beyond > 0)) return {};
     const double share = 1 - refraction(cosine, eta).reflectance;
-    return {share * facets.visible(o, h) * cosine * eta * eta * beyond / dot(sum, sum),
-            Rgb(static_cast<float>(facets.shadowing(o, i) / (eta * eta)))};
+    return {share * facets.visible(o, h) * cosine * eta * eta * beyond / dot(sum, sum) *
+                facets.shadowing(o, i),
+            Rgb(static_cast<float>(1 / (eta * eta)))};
 }
 
 Bsdf::Density Bsdf::density(const Lobe& lobe, const View& view, Vec3d in) {
@@ -191,9 +236,16 @@ Bsdf::Density Bsdf::density(const Lobe& lobe, const View& view, Vec3d in) {
         case Lobe::Kind::Diffuse:
             return diffuse(lobe, view, in);
         case Lobe::Kind::Conductor:
-            return conductor(lobe, view, in);
-        case Lobe::Kind::Dielectric:
-            return dielectric(lobe, view, in);
+        case Lobe::Kind::Dielectric: {
+            if (lobe.alpha == 0) return {};
+            const Density once = lobe.kind == Lobe::Kind::Conductor ? conductor(lobe, view, in)
+                                                                    : dielectric(lobe, view, in);
+            const Density more = again(lobe, view, in);
+            const double pdf = once.pdf + more.pdf;
+            if (!(pdf > 0)) return {};
+            return {pdf, once.ratio * static_cast<float>(once.pdf / pdf) +
+                             more.ratio * static_cast<float>(more.pdf / pdf)};
+        }
         case Lobe::Kind::Pass:
         case Lobe::Kind::Emissive:
             break;
@@ -235,13 +287,13 @@ const Bsdf::Lobe& Bsdf::choose(double& u) const {
     return *chosen;
 }
 
-/// Both a plane's answer and where a rough lobe's facet sends the ray.
+/// Both a plane's answer and where a rough lobe's facet sends the ray: away, or to others.
 BsdfSample Bsdf::sampleFacet(const Lobe& lobe, const View& view, std::array<double, 3> u) {
     const Vec3d o = view.local;
-    const Vec3d facet =
-        lobe.alpha == 0 ? Vec3d{0, 0, 1} : Ggx(lobe.alpha).sampleVisible(o, u[1], u[2]);
+    const bool rough = lobe.alpha > 0;
+    const Vec3d facet = rough ? Ggx(lobe.alpha).sampleVisible(o, u[1], u[2]) : Vec3d{0, 0, 1};
     const double cosine = dot(o, facet);
-    if (!(cosine > 0)) return {};
+    if (!(cosine > 0)) return rough ? sampleAgain(lobe, view, u) : BsdfSample{};
     BsdfSample drawn;
     Vec3d in = mirrored(o, facet);
     if (lobe.kind == Lobe::Kind::Conductor) {
@@ -252,8 +304,37 @@ BsdfSample Bsdf::sampleFacet(const Lobe& lobe, const View& view, std::array<doub
         drawn.weight =
             Rgb(drawn.transmitted ? static_cast<float>(1 / (view.eta * view.eta)) : 1.0f);
         if (drawn.transmitted) in = refracted(o, facet, cosine, split.cosine, view.eta);
+        u[0] = drawn.transmitted ? (u[0] - split.reflectance) / (1 - split.reflectance)
+                                 : u[0] / split.reflectance;
+    }
+    if (rough) {
+        const bool leaves = drawn.transmitted ? in.z < 0 : in.z > 0;
+        if (!leaves || u[0] >= Ggx(lobe.alpha).shadowing(o, in)) return sampleAgain(lobe, view, u);
     }
     drawn.direction = normalize(view.fromFacets(in));
+    const bool leaks =
+        drawn.transmitted ? !view.transmits(drawn.direction) : !view.reflects(drawn.direction);
+    return leaks ? BsdfSample{} : drawn;
+}
+
+BsdfSample Bsdf::sampleAgain(const Lobe& lobe, const View& view, std::array<double, 3> u) {
+    // More numbers than were given, named by those.
+    RandomStream random(hashOf(std::bit_cast<std::uint64_t>(u[0]),
+                               std::bit_cast<std::uint64_t>(u[1]),
+                               std::bit_cast<std::uint64_t>(u[2])));
+    const FacetEnergy& energy = *lobe.energy;
+    BsdfSample drawn;
+    bool outside = true;  // of the losses
+    if (lobe.kind == Lobe::Kind::Dielectric) {
+        drawn.transmitted =
+            random.uniform() >= (view.outside ? energy.backOutside : energy.backInside);
+        outside = view.outside != drawn.transmitted;
+    }
+    const double cosine = (outside ? energy.outside : energy.inside).sampleCosine(random.uniform());
+    const double sine = std::sqrt((1 - cosine) * (1 + cosine)), phi = 2 * pi * random.uniform();
+    drawn.direction = normalize(view.fromFacets(
+        {sine * std::cos(phi), sine * std::sin(phi), drawn.transmitted ? -cosine : cosine}));
+    drawn.weight = Rgb(1.0f);
     const bool leaks =
         drawn.transmitted ? !view.transmits(drawn.direction) : !view.reflects(drawn.direction);
     return leaks ? BsdfSample{} : drawn;
