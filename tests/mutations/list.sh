@@ -210,6 +210,16 @@ defect "facets hidden from one side alone" 'Bsdf*:Ggx*' "" \
     lib/woodcock/surface/microfacet.h \
     'z * (out.z + o) / (z * o + out.z * slope(in))' '1 + 0 * (z + o + slope(in))'
 
+defect "surfaces in one place met one by one" 'Together*:*SameBody*' "surfaces in one place" \
+    lib/woodcock/surface/geometry.cpp \
+    'slack, together || point.together, i, point}' 'slack, false, i, point}'
+
+defect "what facets hide lost again" 'Bsdf*' "rough facets" \
+    $bsdf \
+    'return sampleAgain(lobe, view, u);
+    }' 'return {};
+    }'
+
 defect "metals in glass as in air" 'Bsdf*' "" \
     $bsdf \
     'double{lobe.k[c]} / ior' 'double{lobe.k[c]}'

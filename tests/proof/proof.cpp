@@ -76,8 +76,8 @@ const std::vector<Check>& checks() {
     static const std::vector<Check> all = [] {
         std::vector<Check> list;
         for (const auto& subject :
-             {closedForms(), singleScattering(), slabs(), surfaces(), properties(), sampling(),
-              lightSampling(), extremes(), emission()})
+             {closedForms(), singleScattering(), slabs(), surfaces(), surfacesTogether(),
+              roughSurfaces(), properties(), sampling(), lightSampling(), extremes(), emission()})
             list.insert(list.end(), subject.begin(), subject.end());
         std::stable_sort(list.begin(), list.end(),
                          [](const Check& a, const Check& b) { return a.kind < b.kind; });

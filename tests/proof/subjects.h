@@ -12,6 +12,8 @@ std::vector<Check> closedForms();
 std::vector<Check> singleScattering();
 std::vector<Check> slabs();
 std::vector<Check> surfaces();
+std::vector<Check> surfacesTogether();
+std::vector<Check> roughSurfaces();
 std::vector<Check> properties();
 std::vector<Check> sampling();
 std::vector<Check> lightSampling();

@@ -170,9 +170,6 @@ TEST(SurfaceErrors, OfMedia) {
         surfaceMistake("sphere = {}\nmedium = { sigma_a = 1 }"),
         "scene.toml:9:10: surface[0].medium can never be seen: the default material, diffuse, "
         "lets no light in; a dielectric or an interface does");
-    EXPECT_EQ(surfaceMistake("sphere = {}\npriority = 2"),
-              "scene.toml:9:12: surface[0].priority says which of two media wins, but the default "
-              "material, diffuse, lets no light in; a dielectric or an interface does");
 }
 
 TEST(SurfaceErrors, WhatIsOpenEnclosesNothing) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <variant>
 
@@ -17,6 +18,8 @@ struct LightSample {
     double distance = std::numeric_limits<double>::infinity();
     Rgb weight;      ///< radiance / pdf, or the irradiance perpendicular to it of a delta light
     double pdf = 0;  ///< per steradian; 0: a delta light, which no other sampling can hit
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t emitter = none;  ///< of a MeshLight: the triangle
 };
 
 /// Parallel rays, or a disc in the sky of even radiance.

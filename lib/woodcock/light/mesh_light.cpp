@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/light/mesh_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,19 @@ constexpr double smallest = 1e-8, largest = 2 * pi - 1e-6;
 /// Twice the area long, towards the side that emits.
 Vec3d wideNormal(const MeshLight::Triangle& t) {
     return cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+}
+
+/// A point that lies in the plane of a triangle, as one on the triangle itself does. What rounding
+/// makes of its height would say which side it is on, and so whether half of all that can be seen
+/// from there shines.
+bool inPlaneOf(const MeshLight::Triangle& t, Vec3d from) {
+    const auto largestOf = [](Vec3d v) {
+        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    };
+    const Vec3d normal = wideNormal(t);
+    constexpr double rounding = 0x1p-46;  // of a few transforms
+    return !(std::abs(dot(normal, t.corner[0] - from)) >
+             rounding * length(normal) * (largestOf(from) + largestOf(t.corner[0])));
 }
 
 /// 0 from the side that is dark.
@@ -102,6 +116,7 @@ double MeshLight::importance(std::uint32_t node, Vec3d from) const {
     const LightTree::Node& n = tree_.nodes[node];
     if (!n.leaf()) return n.importance(from);
     const Triangle& t = triangles_[n.emitter];
+    if (inPlaneOf(t, from)) return 0;
     return t.radiance.mean() * litSolidAngle(t, SphericalTriangle(t.corner, from));
 }
 
@@ -137,6 +152,7 @@ LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& t
         node = first ? node + 1 : tree_.nodes[node].second;
     }
     const Triangle& t = triangles_[tree_.nodes[node].emitter];
+    if (inPlaneOf(t, from)) return s;
     const SphericalTriangle seen(t.corner, from);
     const double solidAngle = litSolidAngle(t, seen);
     if (!(solidAngle > 0)) return s;
@@ -145,6 +161,7 @@ LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& t
     s.direction = sampleDirection(t, seen, from, u0, u1, distance);
     if (!(distance > 0 && std::isfinite(distance))) return s;
     s.distance = distance;
+    s.emitter = triangle;
     s.pdf = picked * density(t, from, solidAngle, distance);
     s.weight = radianceAt(triangle, from + s.direction * distance, seen.front()) *
                static_cast<float>(1 / s.pdf);
@@ -153,6 +170,7 @@ LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& t
 
 double MeshLight::pdf(Vec3d from, std::uint32_t triangle, Vec3d position) const {
     const Triangle& t = triangles_[triangle];
+    if (inPlaneOf(t, from)) return 0;
     const double solidAngle = litSolidAngle(t, SphericalTriangle(t.corner, from));
     if (!(solidAngle > 0) || !(boundsOf(t).power > 0)) return 0;
     double picked = 1;

@@ -28,7 +28,7 @@ public:
         if constexpr (Surfaces) {
             interiors_.emplace(scene);
             if (scene.camera.kind == Camera::Kind::Perspective)
-                aroundCamera_ = interiors_->at(scene.camera.worldFromCamera.translation);
+                aroundCamera_ = interiors_->around(scene.camera.worldFromCamera.translation);
         }
     }
 
@@ -78,9 +78,10 @@ private:
         p.standIn = standInAfter(0);
         ++counters_.paths;
         if constexpr (Surfaces)
-            p.surfaces.place.inside = scene_.camera.kind == Camera::Kind::Perspective
-                                          ? aroundCamera_
-                                          : interiors_->at(p.origin);
+            p.surfaces.place = interiors_->place(scene_.camera.kind == Camera::Kind::Perspective
+                                                     ? aroundCamera_
+                                                     : interiors_->around(p.origin),
+                                                 p.direction);
         if (options_.depthLayers || options_.featureLayers) findDepth(p);
         paths_.push_back(p);
         const std::size_t i = paths_.size() - 1;
@@ -290,6 +291,7 @@ private:
     /// that stops it.
     void shadowAmongSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
                              TrackingCounters& c);
+    bool arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit, double left) const;
     /// Camera rays' transmittance, and what they meet, by a walk of their own.
     void findDepth(const Path& p);
     void addNextEvent(std::size_t i, const EventNumbers& u, const FlightShare& share);
@@ -388,7 +390,7 @@ private:
     std::vector<TransmittanceQuery<N>> shadowQueries_;
     // Where there are surfaces:
     std::optional<Interiors> interiors_;
-    InteriorStack aroundCamera_;
+    Interiors::Start aroundCamera_;
     std::vector<Piece> pieces_;  // of one shadow ray
 };
 

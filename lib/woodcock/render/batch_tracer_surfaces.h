@@ -101,10 +101,10 @@ void BatchTracer<N, Surfaces>::addEmission(Path& p, const SurfaceHit& hit, const
     const Rgb radiance = bsdf.emitted(-p.direction);
     if (!(radiance.maximum() > 0)) return;
     const auto pdf = [&] {
-        const std::uint32_t first = scene_.surfaces->firstEmitter[hit.instance];
+        const std::uint32_t emitter = interiors_->emitter(hit);
         const MeshLight* light = scene_.lights.mesh();
-        if (first == SurfaceObject::dark || !light) return 0.0;
-        return light->pdf(p.from.position, first + hit.primitive, hit.position) *
+        if (emitter == SurfaceObject::dark || !light) return 0.0;
+        return light->pdf(p.from.position, emitter, hit.position) *
                choice_.probability(scene_.lights.meshIndex(), p.from);
     };
     p.radiance += toRgb(p.throughput) * tint(p) * radiance * static_cast<float>(hitWeight(p, pdf));
@@ -118,7 +118,7 @@ void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u
     const auto chosen = choice_.choose(p.from, u.pick);
     if (!chosen) return;
     const LightSample l = scene_.lights.sample(chosen->light, hit.position, u.light[0], u.light[1]);
-    if (!(l.weight.maximum() > 0)) return;
+    if (!(l.weight.maximum() > 0) || interiors_->startsOn(hit, l.emitter)) return;
     const Rgb f = crossing.bsdf.evaluate(out, l.direction);
     if (!(f.maximum() > 0)) return;
     double weight = 1 / chosen->probability;
@@ -130,6 +130,7 @@ void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u
     if (!addShadowRay(i, hit.position, l.direction, l.distance,
                       f * l.weight * static_cast<float>(weight), true))
         return;
+    shadows_.back().emitter = l.emitter;
     if (dot(out, hit.normal) * dot(l.direction, hit.normal) < 0)
         shadows_.back().place.inside = crossing.beyond;
 }
@@ -166,11 +167,14 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
     double left = q.tMax;
     SurfaceHit hit;
     Rgb passed(1.0f);
+    const bool toSurface = shadow.emitter != LightSample::none;
     while (true) {
         counters_.surfaceRays += !shadow.withinFlight;
-        const bool hits =
+        bool hits =
             !shadow.withinFlight &&
-            interiors_->nearest(origin, q.direction, left * beforeLight, place, false, hit);
+            interiors_->nearest(origin, q.direction, left * (toSurface ? behindLight : beforeLight),
+                                place, false, hit);
+        if (hits && toSurface) hits = !arrives(shadow, hit, left);
         pieces_.push_back({origin, hits ? hit.t : left, mediumIndex(shadow.standIn, place.inside)});
         if (!hits) break;
         const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
@@ -194,6 +198,14 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
         findTransmittances(medium, {&q, 1}, c);
         if (!(q.contribution.maximum() > 0)) return;
     }
+}
+
+/// Of a lamp that lies together with other surfaces only the one that counts is lit.
+template <int N, bool Surfaces>
+bool BatchTracer<N, Surfaces>::arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit,
+                                       double left) const {
+    if (hit.together.any) return interiors_->emitter(hit) == shadow.emitter;
+    return hit.t > left * beforeLight;
 }
 
 template <int N, bool Surfaces>

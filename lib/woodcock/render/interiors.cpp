@@ -26,20 +26,32 @@ void InteriorStack::leave(std::uint32_t instance) {
     *found = instances_[--count_];
 }
 
+namespace {
+
+std::uint8_t shiningSides(std::span<const Material> materials, std::uint32_t index) {
+    if (const auto* emissive = std::get_if<EmissiveMaterial>(&materials[index]))
+        return emissive->bothSides ? 2 : 1;
+    if (const auto* mix = std::get_if<MixMaterial>(&materials[index]))
+        return std::max(shiningSides(materials, mix->first), shiningSides(materials, mix->second));
+    return 0;
+}
+
+bool hasHoles(std::span<const Material> materials, std::uint32_t index) {
+    const auto* mix = std::get_if<MixMaterial>(&materials[index]);
+    return mix && (std::holds_alternative<InterfaceMaterial>(materials[mix->first]) ||
+                   std::holds_alternative<InterfaceMaterial>(materials[mix->second]));
+}
+
+}  // namespace
+
 Interiors::Interiors(const Scene& scene)
     : set_(*scene.surfaces), holds_(scene.surfaces->holdsMedium()) {
     for (const SurfaceObject& object : set_.objects) {
         anyHolds_ |= object.holdsMedium;
         anyInvisible_ |= !object.cameraVisible;
+        shines_.push_back(shiningSides(set_.materials, object.material));
+        sheet_.push_back(!object.holdsMedium && hasHoles(set_.materials, object.material));
     }
-}
-
-InteriorStack Interiors::at(Vec3d position) const {
-    InteriorStack inside;
-    if (!anyHolds_) return inside;
-    for (const std::uint32_t instance : set_.geometry.enclosing(position, holds_))
-        if (objectOf(instance).cameraVisible) inside.enter(instance);
-    return inside;
 }
 
 std::uint32_t Interiors::filling(const InteriorStack& inside) const {
@@ -70,7 +82,15 @@ Crossing Interiors::cross(const InteriorStack& inside, Vec3d direction,
     InteriorStack near = inside, beyond = inside;
     BsdfPoint point{hit.normal, hit.shadingNormal, hit.u, hit.v, 1, 1};
     bool hidden = false;
-    if (holds) {
+    if (holds && hit.together.any) {
+        std::vector<CoincidentSurface> surfaces;
+        set_.geometry.together(hit, surfaces);
+        crossLayer(hit, surfaces, direction, near, beyond);
+        const std::uint32_t from = filling(near), to = filling(beyond);
+        hidden = from == to;
+        point.iorOutside = ior(entering ? from : to);
+        point.iorInside = ior(entering ? to : from);
+    } else if (holds) {
         // On either side as if it were just entered or left, wherever the stack believes to be.
         if (entering)
             near.leave(hit.instance), beyond.enter(hit.instance);
@@ -92,10 +112,20 @@ Crossing Interiors::cross(const InteriorStack& inside, Vec3d direction,
 bool Interiors::nearest(Vec3d origin, Vec3d direction, double tMax, const Place& start,
                         bool cameraRay, SurfaceHit& hit) const {
     const SurfaceHit* left = start.left ? &*start.left : nullptr;
+    if (left && left->together.any && nextLayer(*left, direction, start.inside, cameraRay, hit))
+        return hit.t < tMax;
     if (!set_.geometry.intersect(origin, direction, tMax, left, hit)) return false;
-    if (!cameraRay || !anyInvisible_) return true;
     double travelled = 0;
-    while (!object(hit).cameraVisible) {
+    while (true) {
+        if (hit.together.any) {
+            const SurfaceHit place = hit;
+            if (nextLayer(place, direction, start.inside, cameraRay, hit)) {
+                hit.t = place.t;
+                break;
+            }
+        } else if (!cameraRay || !anyInvisible_ || object(hit).cameraVisible) {
+            break;
+        }
         travelled += hit.t;
         const SurfaceHit passed = hit;
         if (!set_.geometry.intersect(passed.position, direction, tMax - travelled, &passed, hit))

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "woodcock/base/sample_sequence.h"
+#include "woodcock/light/light.h"
 #include "woodcock/render/flight.h"
 #include "woodcock/render/interiors.h"
 #include "woodcock/render/path_tracer.h"
@@ -36,6 +37,8 @@ inline constexpr int firstBounceRoulette = 256;
 inline constexpr float bounceSurvival = 0.95f;
 /// Shadow rays end this much, relatively, before a light that is a surface itself.
 inline constexpr double beforeLight = 1 - 1e-7;
+/// Where such a light may lie together with other surfaces, they end this far behind it.
+inline constexpr double behindLight = 1 + 1e-6;
 
 /// The random numbers of one scattering event and of the flight after it.
 struct EventNumbers {
@@ -91,7 +94,8 @@ struct ShadowRay {
     bool withinFlight = false;  // no surface lies in its way
     std::uint8_t standIn = 0;   // which media it goes through
     std::uint8_t secondStandIn = 0;
-    Vec3d origin = {}, direction = {};  // of the second leg
+    std::uint32_t emitter = LightSample::none;  // the triangle that it goes to
+    Vec3d origin = {}, direction = {};          // of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, Interiors::Place, Nothing> place = {};
 };

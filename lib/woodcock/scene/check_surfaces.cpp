@@ -114,13 +114,8 @@ private:
         if (!surface.material.empty())
             need(scene_.materials, "material", value("material"), surface.material);
         const SurfaceNature nature = natureOf(scene_, index);
-        if (!nature.letsLightIn) {
-            if (surface.interior)
-                throw error(value("medium"), "can never be seen: {}", noWayIn(surface));
-            if (surface.priority != 0)
-                throw error(value("priority"), "says which of two media wins, but {}",
-                            noWayIn(surface));
-        }
+        if (!nature.letsLightIn && surface.interior)
+            throw error(value("medium"), "can never be seen: {}", noWayIn(surface));
         const bool plane = std::holds_alternative<PlaneShape>(surface.shape);
         const bool infinite = plane && !std::get<PlaneShape>(surface.shape).size;
         if (nature.encloses &&

@@ -80,7 +80,11 @@ void intersect(RTCScene scene, const TreeRay& ray, Visitor& visitor) {
 void filterTriangle(const RTCFilterFunctionNArguments* a) {
     if (a->valid[0] == 0) return;
     const auto& query = *reinterpret_cast<Query<TriangleVisitor>*>(a->context);
-    if (!query.visitor->accept(RTCHitN_primID(a->hit, a->N, 0))) a->valid[0] = 0;
+    if (query.visitor->accept(RTCHitN_primID(a->hit, a->N, 0)))
+        // Where the ray ends from now on; Embree lets filters move it.
+        RTCRayN_tfar(a->ray, a->N, 0) += static_cast<float>(query.visitor->beyond);
+    else
+        a->valid[0] = 0;
 }
 
 void visitBox(const RTCIntersectFunctionNArguments* a) {
@@ -185,6 +189,22 @@ void EmbreeTree::traverse(const TreeRay& ray, TriangleVisitor& visitor) const {
 
 void EmbreeTree::traverse(const TreeRay& ray, BoxVisitor& visitor) const {
     intersect(impl_->scene.get(), ray, visitor);
+}
+
+void EmbreeTree::around(Vec3d point, double radius,
+                        const std::function<void(std::uint32_t)>& visit) const {
+    const Vec3f p = point.as<float>();
+    RTCPointQuery query{};
+    query.x = p.x, query.y = p.y, query.z = p.z;
+    query.radius = static_cast<float>(radius + 2 * margin);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    const auto found = [](RTCPointQueryFunctionArguments* a) {
+        (*static_cast<const std::function<void(std::uint32_t)>*>(a->userPtr))(a->primID);
+        return false;  // goes on looking as far as before
+    };
+    rtcPointQuery(impl_->scene.get(), &query, &context, found,
+                  const_cast<std::function<void(std::uint32_t)>*>(&visit));
 }
 
 }  // namespace woodcock

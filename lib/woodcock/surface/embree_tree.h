@@ -31,8 +31,9 @@ private:
 
 /// What a ray may meet, the nearer ones first as a rule.
 struct TriangleVisitor {
-    /// Whether the ray meets it: then what lies beyond is not looked for.
+    /// Whether the ray meets it: then what lies farther than `beyond` behind it is not looked for.
     virtual bool accept(std::uint32_t triangle) = 0;
+    double beyond = 0;
 
 protected:
     ~TriangleVisitor() = default;
@@ -72,6 +73,9 @@ public:
     explicit operator bool() const { return impl_ != nullptr; }
     void traverse(const TreeRay& ray, TriangleVisitor& visitor) const;
     void traverse(const TreeRay& ray, BoxVisitor& visitor) const;
+    /// Calls `visit` with all triangles or boxes that may lie within a radius of a point, and with
+    /// some others.
+    void around(Vec3d point, double radius, const std::function<void(std::uint32_t)>& visit) const;
 
 private:
     struct Impl;

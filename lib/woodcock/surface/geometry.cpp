@@ -5,83 +5,9 @@
 #include <cmath>
 
 #include "woodcock/base/error.h"
-#include "woodcock/surface/embree_tree.h"
-#include "woodcock/surface/geometry_mesh.h"
-#include "woodcock/surface/geometry_solve.h"
-
-// Each instance is a box of one tree, so that a million of them need little memory. What a ray
-// meets of it is found in the frame of its shape: wherever it stands in the world, and however
-// small it is beside others, no digit is lost.
+#include "woodcock/surface/geometry_impl.h"
 
 namespace woodcock {
-
-namespace {
-
-/// A shape in its own frame.
-struct Prepared {
-    enum class Kind { Sphere, Disk, Plane, Mesh } kind = Kind::Mesh;
-    std::optional<FramedMesh> mesh;  ///< of meshes that have triangles
-    Frame frame;
-    Box3d box;  ///< in its frame; empty where there is nothing of finite size
-};
-
-using Columns = std::array<Vec3d, 3>;
-Vec3d times(const Columns& m, Vec3d v) { return m[0] * v.x + m[1] * v.y + m[2] * v.z; }
-Vec3d timesTransposed(const Columns& m, Vec3d v) {
-    return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
-}
-
-struct Nearest {
-    bool found = false;
-    double t = 0;  ///< of the nearest so far
-    std::uint32_t instance = 0;
-    MeshPoint point;  ///< of meshes
-};
-
-}  // namespace
-
-struct Geometry::Impl {
-    std::vector<Shape> shapes;
-    std::vector<ShapeInstance> instances;
-    std::optional<EmbreeDevice> device;  ///< only where something is of finite size
-    std::vector<Prepared> prepared;      ///< of each shape
-    std::vector<Columns> localOfWorld;   ///< of each instance: directions to its shape's frame
-    std::vector<std::uint32_t> finite, planes;
-    Box3d bounds;
-    Frame frame;  ///< of the tree
-    EmbreeTree tree;
-
-    Impl(std::vector<Shape> s, std::vector<ShapeInstance> i);
-    void prepareShape(const Shape& shape);
-    void placeInstance(std::uint32_t i);
-    Box3d worldBox(std::uint32_t i) const;
-
-    const Prepared& shapeOf(std::uint32_t i) const { return prepared[instances[i].shape]; }
-    Vec3d centre(std::uint32_t i) const {
-        return instances[i].worldFromObject.point(shapeOf(i).frame.centre);
-    }
-    LocalRay local(std::uint32_t i, const LocalRay& ray) const {
-        return {times(localOfWorld[i], ray.origin - centre(i)),
-                times(localOfWorld[i], ray.direction)};
-    }
-    Vec3d world(std::uint32_t i, Vec3d p) const {
-        return instances[i].worldFromObject.vector(p * (1 / shapeOf(i).frame.scale)) + centre(i);
-    }
-    /// Which side is outside does not depend on the determinant's sign, as normals are covectors.
-    Vec3d worldNormal(std::uint32_t i, Vec3d n) const {
-        return normalize(timesTransposed(localOfWorld[i], n));
-    }
-
-    struct NearestVisitor;
-    struct EnclosingVisitor;
-    template <class Visitor>
-    void visitInstances(const LocalRay& ray, Visitor& visitor) const;
-    void meet(std::uint32_t i, const LocalRay& worldRay, const SurfaceHit* left,
-              Nearest& nearest) const;
-    bool encloses(std::uint32_t i, Vec3d point) const;
-    void complete(const Nearest& nearest, const LocalRay& worldRay, SurfaceHit& hit) const;
-    void completeMesh(const Nearest& nearest, SurfaceHit& hit) const;
-};
 
 Geometry::Impl::Impl(std::vector<Shape> s, std::vector<ShapeInstance> i)
     : shapes(std::move(s)), instances(std::move(i)) {
@@ -98,15 +24,15 @@ Geometry::Impl::Impl(std::vector<Shape> s, std::vector<ShapeInstance> i)
 }
 
 void Geometry::Impl::prepareShape(const Shape& shape) {
-    Prepared& p = prepared.emplace_back();
+    PreparedShape& p = prepared.emplace_back();
     if (std::holds_alternative<UnitSphere>(shape)) {
-        p.kind = Prepared::Kind::Sphere;
+        p.kind = PreparedShape::Kind::Sphere;
         p.box = {{-1, -1, -1}, {1, 1, 1}};
     } else if (std::holds_alternative<UnitDisk>(shape)) {
-        p.kind = Prepared::Kind::Disk;
+        p.kind = PreparedShape::Kind::Disk;
         p.box = {{-1, 0, -1}, {1, 0, 1}};
     } else if (std::holds_alternative<InfinitePlane>(shape)) {
-        p.kind = Prepared::Kind::Plane;
+        p.kind = PreparedShape::Kind::Plane;
     } else if (const auto& mesh = *std::get<std::shared_ptr<const SurfaceMesh>>(shape);
                !mesh.mesh.triangles.empty()) {
         if (!device) device.emplace();
@@ -118,7 +44,7 @@ void Geometry::Impl::prepareShape(const Shape& shape) {
 
 void Geometry::Impl::placeInstance(std::uint32_t i) {
     const ShapeInstance& instance = instances[i];
-    const Prepared& shape = prepared.at(instance.shape);
+    const PreparedShape& shape = prepared.at(instance.shape);
     const Affine3d& m = instance.worldFromObject;
     Columns inverse = Affine3d{m.column, {}}.inverse().column;
     for (Vec3d& column : inverse) column = column * shape.frame.scale;
@@ -132,7 +58,7 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
         throw inputError("the transform of instance {} (object {}) makes its shape flat", i,
                          instance.object);
     localOfWorld.push_back(inverse);
-    if (shape.kind == Prepared::Kind::Plane) {
+    if (shape.kind == PreparedShape::Kind::Plane) {
         planes.push_back(i);
     } else if (!shape.box.empty()) {
         finite.push_back(i);
@@ -141,8 +67,8 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
 }
 
 Box3d Geometry::Impl::worldBox(std::uint32_t i) const {
-    const Prepared& shape = shapeOf(i);
-    if (shape.kind == Prepared::Kind::Sphere) {
+    const PreparedShape& shape = shapeOf(i);
+    if (shape.kind == PreparedShape::Kind::Sphere) {
         const Columns& c = instances[i].worldFromObject.column;
         const Vec3d half{length(Vec3d{c[0].x, c[1].x, c[2].x}),
                          length(Vec3d{c[0].y, c[1].y, c[2].y}),
@@ -173,18 +99,18 @@ struct Geometry::Impl::NearestVisitor final : BoxVisitor {
     const Impl& impl;
     const LocalRay& ray;
     const SurfaceHit* left;
-    Nearest nearest;
+    NearestSurface nearest;
     double from = 0, perUnit = 1;  ///< of the tree's ray: where it begins, its units in one of t
 
     NearestVisitor(const Impl& i, const LocalRay& r, double tMax, const SurfaceHit* l)
         : impl(i), ray(r), left(l) {
         nearest.t = tMax;
     }
-    double end() const { return nearest.t; }
+    double end() const { return nearest.t + nearest.slack; }
     void visitInstance(std::uint32_t i) { impl.meet(i, ray, left, nearest); }
     double visit(std::uint32_t box) override {
         visitInstance(impl.finite[box]);
-        return (nearest.t - from) * perUnit;
+        return (end() - from) * perUnit;
     }
 };
 
@@ -209,92 +135,139 @@ struct Geometry::Impl::EnclosingVisitor final : BoxVisitor {
 };
 
 void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, const SurfaceHit* left,
-                          Nearest& nearest) const {
-    const Prepared& shape = shapeOf(i);
+                          NearestSurface& nearest) const {
+    const PreparedShape& shape = shapeOf(i);
     const LocalRay ray = local(i, worldRay);
-    const bool starts = left && left->instance == i;
+    const double tMax = nearest.t + nearest.slack;
+    Vec3d outwards;  // of a shape that the ray starts on
+    bool leaves = false;
+    if (left && shape.kind != PreparedShape::Kind::Mesh) {
+        if (left->instance == i) {
+            leaves = true, outwards = left->normal;
+        } else if (left->together.any) {
+            if (const auto start = passesThrough(*left, i, 0)) {
+                leaves = true;
+                outwards = start->facing == 0  ? start->normal
+                           : start->facing > 0 ? left->normal
+                                               : -left->normal;
+            }
+        }
+    }
     std::optional<double> t;
+    MeshPoint point;
     switch (shape.kind) {
-        case Prepared::Kind::Mesh:
-            if (const std::optional<MeshPoint> point = shape.mesh->nearest(
-                    ray, nearest.t, starts ? std::optional(left->primitive) : std::nullopt)) {
-                nearest.point = *point;
-                t = point->t;
+        case PreparedShape::Kind::Mesh:
+            if (const std::optional<MeshPoint> met = meetMesh(i, ray, tMax, left)) {
+                point = *met;
+                t = point.t;
             }
             break;
-        case Prepared::Kind::Sphere:
-            if (!starts)
-                t = meetSphere(ray, nearest.t);
-            else if (dot(worldRay.direction, left->normal) < 0)
+        case PreparedShape::Kind::Sphere:
+            if (!leaves)
+                t = meetSphere(ray, tMax);
+            else if (dot(worldRay.direction, outwards) < 0)
                 t = crossSphere(ray);
             break;
-        case Prepared::Kind::Disk:
-        case Prepared::Kind::Plane:
-            if (starts) break;
-            t = meetPlane(ray, nearest.t);
-            if (t && shape.kind == Prepared::Kind::Disk) {
+        case PreparedShape::Kind::Disk:
+        case PreparedShape::Kind::Plane:
+            if (leaves) break;
+            t = meetPlane(ray, tMax);
+            if (t && shape.kind == PreparedShape::Kind::Disk) {
                 const Vec3d p = ray.at(*t);
                 if (!(p.x * p.x + p.z * p.z <= 1)) t.reset();
             }
     }
-    if (!t || !(*t < nearest.t)) return;
-    nearest.found = true;
-    nearest.t = *t;
-    nearest.instance = i;
+    if (!t || !(*t < tMax)) return;
+    const double slack = slackOf(i, worldRay, ray, *t, point);
+    const bool nearer = *t < nearest.t;
+    const bool together =
+        nearest.found && std::abs(*t - nearest.t) <= std::max(slack, nearest.slack);
+    if (!nearer) {
+        nearest.together = nearest.together || together;
+        return;
+    }
+    nearest = {true, *t, slack, together || point.together, i, point};
+}
+
+std::optional<MeshPoint> Geometry::Impl::meetMesh(std::uint32_t i, const LocalRay& ray, double tMax,
+                                                  const SurfaceHit* left) const {
+    const FramedMesh& mesh = *shapeOf(i).mesh;
+    std::optional<std::uint32_t> triangle;
+    if (left && left->instance == i) triangle = left->primitive;
+    if (!left || !left->together.any) return mesh.nearest(ray, tMax, triangle);
+    return mesh.nearest(ray, tMax, triangle, [&](std::uint32_t other) {
+        return passesThrough(*left, i, other).has_value();
+    });
 }
 
 bool Geometry::Impl::encloses(std::uint32_t i, Vec3d point) const {
-    const Prepared& shape = shapeOf(i);
+    const PreparedShape& shape = shapeOf(i);
     const Vec3d p = local(i, {point, {}}).origin;
     switch (shape.kind) {
-        case Prepared::Kind::Sphere:
+        case PreparedShape::Kind::Sphere:
             return dot(p, p) < 1;
-        case Prepared::Kind::Plane:
+        case PreparedShape::Kind::Plane:
             return p.y < 0;
-        case Prepared::Kind::Disk:
+        case PreparedShape::Kind::Disk:
             return false;
-        case Prepared::Kind::Mesh:
+        case PreparedShape::Kind::Mesh:
             return shape.mesh->encloses(p);
     }
     return false;
 }
 
-void Geometry::Impl::complete(const Nearest& nearest, const LocalRay& worldRay,
+void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& worldRay,
                               SurfaceHit& hit) const {
     const std::uint32_t i = nearest.instance;
     hit.t = nearest.t;
     hit.instance = i;
-    hit.primitive = 0;
+    hit.primitive = nearest.point.triangle;
     hit.object = instances[i].object;
-    const Prepared::Kind kind = shapeOf(i).kind;
-    if (kind == Prepared::Kind::Mesh) return completeMesh(nearest, hit);
-    Vec3d p = local(i, worldRay).at(hit.t);
-    if (kind == Prepared::Kind::Sphere) {
-        p = normalize(p);
-        hit.normal = worldNormal(i, p);
+    if (shapeOf(i).kind == PreparedShape::Kind::Mesh) {
+        // Who leaves from the very edge could pass between two triangles, as floats see them.
+        const Triangle triangle = shapeOf(i).mesh->triangle(hit.primitive);
+        hit.position =
+            world(i, triangle.at(awayFromEdges(triangle, nearest.point.weights, floatError)));
+        completeMesh(nearest.point, hit);
+    } else {
+        Vec3d p = local(i, worldRay).at(hit.t);
+        if (shapeOf(i).kind == PreparedShape::Kind::Sphere)
+            p = normalize(p);
+        else
+            p.y = 0;
+        hit.position = world(i, p);
+        completeShape(p, hit);
+    }
+    hit.together = {};
+    if (!nearest.together) return;
+    hit.together.any = true;
+    hit.together.reach = reach(i, hit.primitive, hit.normal, hit.position);
+}
+
+/// What is no mesh, at a point of its own frame.
+void Geometry::Impl::completeShape(Vec3d p, SurfaceHit& hit) const {
+    if (shapeOf(hit.instance).kind == PreparedShape::Kind::Sphere) {
+        hit.normal = worldNormal(hit.instance, p);
         const double longitude = std::atan2(-p.z, p.x) / (2 * pi);
         hit.u = longitude < 0 ? longitude + 1 : longitude;
         hit.v = 0.5 + std::asin(std::clamp(p.y, -1.0, 1.0)) / pi;
     } else {
-        p.y = 0;
-        hit.normal = worldNormal(i, {0, 1, 0});
-        const bool disk = kind == Prepared::Kind::Disk;  // an image fits the square around it
+        hit.normal = worldNormal(hit.instance, {0, 1, 0});
+        // An image fits the square around a disk.
+        const bool disk = shapeOf(hit.instance).kind == PreparedShape::Kind::Disk;
         hit.u = disk ? (1 + p.x) / 2 : p.x;
         hit.v = disk ? (1 - p.z) / 2 : -p.z;
     }
     hit.shadingNormal = hit.normal;
-    hit.position = world(i, p);
 }
 
-void Geometry::Impl::completeMesh(const Nearest& nearest, SurfaceHit& hit) const {
-    const std::uint32_t i = nearest.instance;
+void Geometry::Impl::completeMesh(const MeshPoint& point, SurfaceHit& hit) const {
+    const std::uint32_t i = hit.instance;
     const FramedMesh& framed = *shapeOf(i).mesh;
     const SurfaceMesh& mesh = framed.mesh();
-    const auto& [t, primitive, w] = nearest.point;
+    const std::uint32_t primitive = point.triangle;
+    const std::array<double, 3>& w = point.weights;
     const Triangle triangle = framed.triangle(primitive);
-    hit.primitive = primitive;
-    // Who leaves from the very edge could pass between two triangles, as floats see them.
-    hit.position = world(i, triangle.at(awayFromEdges(triangle, w, floatError)));
     hit.normal = worldNormal(i, triangle.normal);
     hit.shadingNormal = hit.normal;
     hit.u = hit.v = 0;

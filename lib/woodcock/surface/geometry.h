@@ -37,6 +37,23 @@ struct SurfaceHit {
     /// around it.
     double u = 0, v = 0;
     std::uint32_t object = 0, instance = 0, primitive = 0;
+    /// What lies in the same place. Geometry sets the first two; the rest is kept for the caller.
+    struct Together {
+        /// How far rounding may have put the point off its own surface: of floats in meshes, of
+        /// doubles in transforms. In world units.
+        double reach = 0;
+        bool any = false;        ///< other surfaces may lie there: see Geometry::together()
+        std::uint8_t layer = 0;  ///< which of them this is
+        bool turned = false;     ///< its normal is the opposite one of what was hit
+        bool forCamera = false;  ///< as the camera sees them
+    } together = {};
+};
+
+/// A surface that passes through the place of a hit.
+struct CoincidentSurface {
+    std::uint32_t instance = 0, object = 0, primitive = 0;
+    double facing = 0;  ///< which way its normal points: cosine to the normal of the hit
+    Vec3d normal;       ///< its own, outwards, unit
 };
 
 /// All surfaces of a scene. What a ray may meet is found by Embree in floats, in each shape's own
@@ -54,10 +71,19 @@ public:
     const std::vector<ShapeInstance>& instances() const;
 
     /// The nearest hit with 0 < t < tMax. `left`: the hit at whose position the ray starts, null in
-    /// free space; a ray does not meet again the place that it leaves. No closed mesh has cracks,
-    /// but a ray that is aimed at one of its corners to the last bit of a float may pass there.
+    /// free space; a ray does not meet again the place that it leaves, nor what lies together with
+    /// it. No closed mesh has cracks, but a ray that is aimed at one of its corners to the last bit
+    /// of a float may pass there.
     bool intersect(Vec3d origin, Vec3d direction, double tMax, const SurfaceHit* left,
                    SurfaceHit& hit) const;
+
+    /// All surfaces in the place of a hit of which `together.any` says that there may be several,
+    /// in the order of instances and primitives: those that pass through its position and have its
+    /// normal or the opposite one, as far as rounding can tell. With a normal of length zero, all
+    /// that pass through the position, whichever way they face.
+    void together(const SurfaceHit& hit, std::vector<CoincidentSurface>& found) const;
+    /// One of them in the hit's stead: what it says of itself, at the hit's position.
+    SurfaceHit inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& other) const;
 
     /// The instances that enclose a point, in order; only of those for which `closed` (by object)
     /// is true. Counts what a ray from the point leaves and enters.

@@ -18,6 +18,11 @@ FramedMesh::FramedMesh(const SurfaceMesh& mesh, const EmbreeDevice& device) : me
     const Box3d box = boundsOf(mesh.mesh);
     frame_ = Frame(box);
     box_ = {frame_.point(box.lower), frame_.point(box.upper)};
+    constexpr double doubles = 0x1p-44;  // in a frame of about unit size
+    largestRounding_ = doubles;
+    for (int axis = 0; axis < 3; ++axis)
+        largestRounding_ +=
+            0x1p-23 * frame_.scale * std::max(std::abs(box.lower[axis]), std::abs(box.upper[axis]));
     tree_ = EmbreeTree(
         device, mesh.mesh.points.size(),
         [&](std::size_t i) { return frame_.point(mesh.mesh.points[i].as<double>()); },
@@ -47,12 +52,19 @@ struct NearestTriangle final : TriangleVisitor {
     double speed;
     double error = floatError;  ///< of the search
     std::optional<Start> start;
+    const std::function<bool(std::uint32_t)>& alsoLeft;
     MeshPoint nearest;  ///< t: so far
+    double slack = 0;   ///< what rounding may make of that t
     bool found = false;
     double side = 0;  ///< direction . normal, of what was found
 
-    NearestTriangle(const FramedMesh& m, const LocalRay& r, double begin, double tMax)
-        : mesh(m), ray{r.at(begin), r.direction}, from(begin), speed(length(r.direction)) {
+    NearestTriangle(const FramedMesh& m, const LocalRay& r, double begin, double tMax,
+                    const std::function<bool(std::uint32_t)>& others)
+        : mesh(m),
+          ray{r.at(begin), r.direction},
+          from(begin),
+          speed(length(r.direction)),
+          alsoLeft(others) {
         nearest.t = tMax;
     }
 
@@ -62,14 +74,24 @@ struct NearestTriangle final : TriangleVisitor {
         const std::optional<TrianglePoint> point = meetTriangle(ray, triangle, error);
         if (!point) return false;
         const double t = from + point->t;
-        if (!(t > 0) || !(t < nearest.t)) return false;
+        if (!(t > 0) || !(t < nearest.t + slack)) return false;
         // Beside the edge that the ray starts at, and where it passes one, only the side can tell a
         // hit from what rounding makes of none: who starts inside can only leave, and the other way
         // round.
         const double thisSide = dot(ray.direction, triangle.normal);
         const bool doubtful = point->edge < 0 || t * speed < 4 * point->tolerance;
         if (start && doubtful && thisSide * start->side > 0) return false;
-        nearest = {t, index, point->weights};
+        if (alsoLeft && alsoLeft(index)) return false;
+        // An error of the search makes `tolerance`; what rounding makes is in proportion.
+        const double thisSlack = 4 * mesh.largestRounding() * point->tolerance / (error * speed);
+        const bool together = found && std::abs(t - nearest.t) <= std::max(slack, thisSlack);
+        if (!(t < nearest.t)) {
+            nearest.together = nearest.together || together;
+            return false;
+        }
+        nearest = {t, index, point->weights, error / point->tolerance * speed, thisSlack, together};
+        slack = thisSlack;
+        beyond = thisSlack * speed + 3 * EmbreeTree::margin;
         side = thisSide;
         found = true;
         return true;
@@ -99,11 +121,28 @@ struct Crossings final : TriangleVisitor {
 
 }  // namespace
 
-std::optional<MeshPoint> FramedMesh::nearest(const LocalRay& ray, double tMax,
-                                             std::optional<std::uint32_t> left) const {
+double FramedMesh::rounding(std::uint32_t index, Vec3d normal) const {
+    Vec3d most;
+    for (const std::uint32_t corner : mesh_->mesh.triangles[index]) {
+        const Vec3d p = mesh_->mesh.points[corner].as<double>();
+        for (int axis = 0; axis < 3; ++axis) most[axis] = std::max(most[axis], std::abs(p[axis]));
+    }
+    return 0x1p-23 * frame_.scale *
+           (most.x * std::abs(normal.x) + most.y * std::abs(normal.y) +
+            most.z * std::abs(normal.z));
+}
+
+void FramedMesh::around(Vec3d point, double radius,
+                        const std::function<void(std::uint32_t)>& visit) const {
+    tree_.around(point, radius, visit);
+}
+
+std::optional<MeshPoint> FramedMesh::nearest(
+    const LocalRay& ray, double tMax, std::optional<std::uint32_t> left,
+    const std::function<bool(std::uint32_t)>& alsoLeft) const {
     const RayInterval part = clip(ray, box_, EmbreeTree::margin, {0, tMax});
     if (part.empty()) return std::nullopt;
-    NearestTriangle visitor(*this, ray, part.from, tMax);
+    NearestTriangle visitor(*this, ray, part.from, tMax, alsoLeft);
     if (!(visitor.speed > 0)) return std::nullopt;
     TreeRay treeRay{visitor.ray.origin, ray.direction * (1 / visitor.speed),
                     (part.to - part.from) * visitor.speed};

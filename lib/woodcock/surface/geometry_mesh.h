@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "woodcock/mesh/surface_mesh.h"
@@ -25,6 +26,9 @@ struct MeshPoint {
     double t = 0;
     std::uint32_t triangle = 0;
     std::array<double, 3> weights{};
+    double slope = 1;       ///< direction . unit normal, of the side that faces the ray
+    double slack = 0;       ///< what rounding of its corners may make of t, at the most
+    bool together = false;  ///< another triangle was met where rounding cannot tell them apart
 };
 
 /// A mesh in a frame of its own, in which floats are as precise as it is large, with its tree.
@@ -39,9 +43,18 @@ public:
     const Box3d& box() const { return box_; }  ///< in its frame
     Triangle triangle(std::uint32_t index) const;
 
-    /// The nearest triangle in (0, tMax). `left`: the triangle that the ray starts on.
+    /// How far floats may have moved a triangle along its unit normal, in its frame: half of the
+    /// last digit of its corners' numbers, twice.
+    double rounding(std::uint32_t index, Vec3d normal) const;
+    double largestRounding() const { return largestRounding_; }  ///< a bound of that of all
+
+    /// The nearest triangle in (0, tMax). `left`: the triangle that the ray starts on; `alsoLeft`
+    /// says which others it starts on.
     std::optional<MeshPoint> nearest(const LocalRay& ray, double tMax,
-                                     std::optional<std::uint32_t> left) const;
+                                     std::optional<std::uint32_t> left,
+                                     const std::function<bool(std::uint32_t)>& alsoLeft = {}) const;
+    /// Calls `visit` with all triangles that may lie within a radius of a point.
+    void around(Vec3d point, double radius, const std::function<void(std::uint32_t)>& visit) const;
     /// Whether more triangles are left through than entered on the way out from a point.
     bool encloses(Vec3d point) const;
 
@@ -49,6 +62,7 @@ private:
     const SurfaceMesh* mesh_;
     Frame frame_;
     Box3d box_;
+    double largestRounding_ = 0;
     EmbreeTree tree_;
 };
 

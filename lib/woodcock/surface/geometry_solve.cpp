@@ -13,6 +13,16 @@ std::array<double, 3> heights(const Triangle& triangle) {
             twiceArea / length(p[1] - p[0])};
 }
 
+std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d p, double twiceArea) {
+    const double scale = 1 / (twiceArea * twiceArea);
+    const auto& c = triangle.corner;
+    std::array<double, 3> w;
+    w[1] = dot(cross(p - c[0], c[2] - c[0]), triangle.normal) * scale;
+    w[2] = dot(cross(c[1] - c[0], p - c[0]), triangle.normal) * scale;
+    w[0] = 1 - w[1] - w[2];
+    return w;
+}
+
 }  // namespace
 
 RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterval within) {
@@ -55,6 +65,15 @@ std::optional<double> meetPlane(const LocalRay& ray, double tMax) {
     return t > 0 && t < tMax ? std::optional(t) : std::nullopt;
 }
 
+std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d point) {
+    return weightsAt(triangle, point, length(triangle.normal));
+}
+
+double edgeDistance(const Triangle& triangle, Vec3d point) {
+    const std::array<double, 3> w = weightsAt(triangle, point), height = heights(triangle);
+    return std::min({w[0] * height[0], w[1] * height[1], w[2] * height[2]});
+}
+
 std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
                                           double error) {
     const double slope = dot(ray.direction, triangle.normal);
@@ -62,13 +81,8 @@ std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& t
     if (slope == 0 || !(twiceArea > 0)) return std::nullopt;
     TrianglePoint point;
     point.t = dot(triangle.corner[0] - ray.origin, triangle.normal) / slope;
-    const Vec3d p = ray.at(point.t);
-    const double scale = 1 / (twiceArea * twiceArea);
-    const auto& c = triangle.corner;
     auto& w = point.weights;
-    w[1] = dot(cross(p - c[0], c[2] - c[0]), triangle.normal) * scale;
-    w[2] = dot(cross(c[1] - c[0], p - c[0]), triangle.normal) * scale;
-    w[0] = 1 - w[1] - w[2];
+    w = weightsAt(triangle, ray.at(point.t), twiceArea);
 
     const double cosine = std::abs(slope) / (length(ray.direction) * twiceArea);
     point.tolerance = error / cosine;

@@ -54,6 +54,11 @@ struct TrianglePoint {
 std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
                                           double error);
 
+/// Barycentric weights of a point in a triangle's plane, or of its projection there.
+std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d point);
+/// Its distance from the nearest edge; negative: outside.
+double edgeDistance(const Triangle& triangle, Vec3d point);
+
 /// Weights moved inwards so far that their point has `margin` from all edges, or is the middle.
 std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
                                     double margin);

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
+#include "woodcock/render/interiors.h"
+
+// Surfaces in one place have one answer, whichever of them a ray meets first and however their
+// numbers were rounded:
+//   - of those that light cannot enter, the one of highest rank counts, alone. A sheet with holes
+//     of a higher rank lies before it;
+//   - what light can enter touches its like without a gap: all are crossed at once;
+//   - but from what light cannot enter it is parted by a gap of no width. So a block of glass on a
+//     floor is what it is a hair above it.
+// A path that such a place holds goes from layer to layer, a step of no length each.
+
+namespace woodcock {
+
+namespace {
+
+/// Which side of the first normal of the place a surface's inside lies on: behind its own.
+double sideOf(const CoincidentSurface& surface, const SurfaceHit& hit) {
+    return hit.together.turned ? -surface.facing : surface.facing;
+}
+
+Vec3d firstNormal(const SurfaceHit& hit) { return hit.together.turned ? -hit.normal : hit.normal; }
+
+}  // namespace
+
+/// Priority, then what shines towards the side (1: that of the first normal), then what was added
+/// later. A lamp counts least from behind, where it is black.
+Interiors::Rank Interiors::rank(const CoincidentSurface& surface, double side) const {
+    int light = 1;
+    if (const std::uint8_t shines = shines_[surface.object]; shines > 0)
+        light = shines == 2 || side > 0 ? 2 : 0;
+    return {set_.objects[surface.object].priority, light, surface.object, surface.instance,
+            surface.primitive};
+}
+
+bool Interiors::inLayer(const CoincidentSurface& surface, const SurfaceHit& hit) const {
+    if (hit.together.forCamera && !set_.objects[surface.object].cameraVisible) return false;
+    if (!holds_[surface.object]) return false;
+    if (hit.together.layer == OneBoundary) return true;
+    return (sideOf(surface, hit) > 0) == (hit.together.layer == Back);
+}
+
+bool Interiors::nextLayer(const SurfaceHit& hit, Vec3d direction, const InteriorStack& inside,
+                          bool cameraRay, SurfaceHit& next) const {
+    if (hit.together.layer == OneBoundary || hit.together.layer == FromCamera) return false;
+    std::vector<CoincidentSurface> all;
+    set_.geometry.together(hit, all);
+    if (all.size() < 2 && hit.together.layer == NoLayer &&
+        !(cameraRay && !object(hit).cameraVisible)) {
+        next = hit;  // only neighbours at an edge
+        next.together = {};
+        return true;
+    }
+    const bool forward = dot(direction, firstNormal(hit)) < 0;
+    // The best of each kind, as it is seen from the front and from the back.
+    struct Best {
+        const CoincidentSurface* surface = nullptr;
+        Rank rank;
+        void add(const CoincidentSurface& s, const Rank& r) {
+            if (!surface || r > rank) surface = &s, rank = r;
+        }
+    };
+    std::array<Best, 2> solid, sheet;
+    std::array<bool, 2> interior{};  // in front and behind
+    for (const CoincidentSurface& s : all) {
+        if (cameraRay && !set_.objects[s.object].cameraVisible) continue;
+        const double side = sideOf(s, hit);
+        if (holds_[s.object]) {
+            interior[side > 0] = true;
+            continue;
+        }
+        for (const std::size_t seenFrom : {0, 1})
+            (sheet_[s.object] ? sheet : solid)[seenFrom].add(s,
+                                                             rank(s, seenFrom == 0 ? side : -side));
+    }
+    const bool parted = solid[0].surface || sheet[0].surface;
+    const auto sheetCounts = [&](std::size_t seenFrom) {
+        return sheet[seenFrom].surface &&
+               (!solid[seenFrom].surface || sheet[seenFrom].rank > solid[seenFrom].rank);
+    };
+    const auto exists = [&](int layer) {
+        switch (layer) {
+            case Front:
+                return parted && interior[0];
+            case FrontSheet:
+                return sheetCounts(0);
+            case Solid:
+                return solid[0].surface != nullptr;
+            case BackSheet:  // without anything between, the sheet is one
+                return solid[0].surface && sheetCounts(1);
+            case Back:
+                return parted && interior[1];
+            default:
+                return !parted && (interior[0] || interior[1]);
+        }
+    };
+    int layer = hit.together.layer;
+    if (layer == NoLayer && !forward) layer = FromCamera;
+    do layer += forward ? 1 : -1;
+    while (layer > NoLayer && layer < FromCamera && !exists(layer));
+    if (layer <= NoLayer || layer >= FromCamera) return false;
+
+    SurfaceHit place = hit;
+    place.together.layer = static_cast<std::uint8_t>(layer);
+    place.together.forCamera = cameraRay;
+    const CoincidentSurface* counts = nullptr;
+    if (layer == Solid || layer == FrontSheet || layer == BackSheet) {
+        // A sheet alone may be met from behind.
+        const std::size_t seenFrom = layer == BackSheet || (layer == Solid && !forward);
+        counts = (layer == Solid ? solid : sheet)[seenFrom].surface;
+    } else {
+        // The face of what fills the place on either side; of both, the higher one's, but that of
+        // glass before that of a mere interface, or fog on glass would take its reflections away.
+        InteriorStack near = inside, beyond = inside;
+        crossLayer(place, all, direction, near, beyond);
+        const std::uint32_t from = filling(near), to = filling(beyond);
+        for (const CoincidentSurface& s : all) {
+            if (!inLayer(s, place)) continue;
+            const auto order = [&](const CoincidentSurface& c) {
+                const bool changes = from != to && (c.instance == from || c.instance == to);
+                const bool passes = std::holds_alternative<InterfaceMaterial>(
+                    set_.materials[set_.objects[c.object].material]);
+                return std::tuple(changes, !passes, rank(c, 1));
+            };
+            if (!counts || order(s) > order(*counts)) counts = &s;
+        }
+    }
+    next = set_.geometry.inPlaceOf(place, *counts);
+    next.t = std::numeric_limits<double>::min();  // no length, but in front of the ray
+    return true;
+}
+
+void Interiors::crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurface> surfaces,
+                           Vec3d direction, InteriorStack& near, InteriorStack& beyond) const {
+    const bool forward = dot(direction, firstNormal(hit)) < 0;
+    for (std::size_t i = 0; i < surfaces.size();) {
+        // Faces of one body that lie back to back cancel; of the same way, they are one.
+        const std::uint32_t instance = surfaces[i].instance;
+        int outwards = 0;
+        for (; i < surfaces.size() && surfaces[i].instance == instance; ++i)
+            if (inLayer(surfaces[i], hit)) outwards += sideOf(surfaces[i], hit) > 0 ? 1 : -1;
+        if (outwards == 0) continue;
+        // On either side as if it were just entered or left, wherever the stack believes to be.
+        if ((outwards > 0) == forward)
+            near.leave(instance), beyond.enter(instance);
+        else
+            near.enter(instance), beyond.leave(instance);
+    }
+}
+
+bool Interiors::startsOn(const SurfaceHit& hit, std::uint32_t emitter) const {
+    if (emitter == SurfaceObject::dark) return false;
+    if (!hit.together.any) return this->emitter(hit) == emitter;
+    std::vector<CoincidentSurface> all;
+    set_.geometry.together(hit, all);
+    return std::any_of(all.begin(), all.end(), [&](const CoincidentSurface& s) {
+        const std::uint32_t first = set_.firstEmitter[s.instance];
+        return first != SurfaceObject::dark && first + s.primitive == emitter;
+    });
+}
+
+Interiors::Start Interiors::around(Vec3d position) const {
+    Start start{position, {}, {}};
+    SurfaceHit place;
+    place.position = position;
+    set_.geometry.together(place, start.touched);
+    if (!anyHolds_) return start;
+    const auto touched = [&](std::uint32_t instance) {
+        return std::any_of(start.touched.begin(), start.touched.end(),
+                           [&](const CoincidentSurface& s) { return s.instance == instance; });
+    };
+    for (const std::uint32_t instance : set_.geometry.enclosing(position, holds_))
+        if (objectOf(instance).cameraVisible && !touched(instance)) start.inside.enter(instance);
+    return start;
+}
+
+Interiors::Place Interiors::place(const Start& start, Vec3d direction) const {
+    Place place{start.inside, {}};
+    if (start.touched.empty()) return place;
+    for (std::size_t i = 0; i < start.touched.size();) {
+        const std::uint32_t instance = start.touched[i].instance;
+        bool inwards = true;  // of bodies that are convex there
+        for (; i < start.touched.size() && start.touched[i].instance == instance; ++i)
+            inwards = inwards && dot(direction, start.touched[i].normal) < 0;
+        const SurfaceObject& object = objectOf(instance);
+        if (inwards && object.holdsMedium && object.cameraVisible) place.inside.enter(instance);
+    }
+    place.left.emplace();
+    place.left->position = start.position;
+    place.left->instance = std::numeric_limits<std::uint32_t>::max();
+    place.left->together.any = true;
+    place.left->together.layer = FromCamera;
+    return place;
+}
+
+}  // namespace woodcock
