@@ -307,6 +307,13 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
             if (spent()) return false;
         }
     }
+    if (q.opacityToo)
+        q.opacity = Spectrum<N>::map([&](int c) {
+            const float left = q.contribution[c] > 0 ? ratio[c] / q.contribution[c] : 0.0f;
+            const auto here =
+                (1 - left) - left * std::expm1(static_cast<float>(-control) * extinction[c]);
+            return q.opacity[c] + (1 - q.opacity[c]) * here;
+        });
     q.contribution = arrived();
     return true;
 }

@@ -53,6 +53,9 @@ struct TransmittanceQuery {
     float roulette = 0;
     // In and out: multiplied by an unbiased estimate of the transmittance.
     Spectrum<N> contribution;
+    bool opacityToo = false;
+    // Out, where asked for: 1 - transmittance, of which no digit is lost where it is small.
+    Spectrum<N> opacity{};
 };
 
 /// Residual ratio tracking with each cell's lower bound as control: Novak et al. 2014, eq. 13.

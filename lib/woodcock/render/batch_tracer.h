@@ -120,7 +120,7 @@ private:
                 if (medium.scatters)
                     findEvents(*medium.medium, {&walks_[i], 1}, c);
                 else if (!medium.medium->parts.empty())
-                    absorbAlong(medium, walks_[i], c);
+                    absorbAlong(medium, walks_[i], paths_[i], c);
             }
         } else {
             forRuns(paths_, [&](const MediumSummary& medium, std::size_t first, std::size_t count) {
@@ -128,19 +128,29 @@ private:
                 if (medium.scatters)
                     findEvents(*medium.medium, walks, c);
                 else
-                    for (DistanceQuery<N>& walk : walks) absorbAlong(medium, walk, c);
+                    for (std::size_t i = 0; i < count; ++i)
+                        absorbAlong(medium, walks[i], paths_[first + i], c);
             });
         }
         counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
     }
 
     /// Media that only absorb: the path escapes, with its transmittance.
-    void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk,
+    void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk, Path& p,
                      TrackingCounters& c) const {
-        TransmittanceQuery<N> q{walk.origin, walk.direction, walk.tMax, walk.random,
-                                0,           walk.throughput};
+        TransmittanceQuery<N> q{walk.origin, walk.direction,  walk.tMax, walk.random,
+                                0,           walk.throughput, seen(p)};
         findTransmittances(*medium.medium, {&q, 1}, c);
+        if (seen(p) && options_.approximations.marchStep == 0)
+            p.opacity = Spectrum<N>::map(
+                [&](int i) { return p.opacity[i] + (1 - p.opacity[i]) * q.opacity[i]; });
         walk.random = q.random, walk.throughput = q.contribution;
+    }
+    /// Of what the camera's ray has come through so far.
+    float opacityOf(const Path& p) const {
+        const float lost = 1 - p.throughput.mean(), opacity = p.opacity.mean();
+        constexpr float rounding = 1e-6f;  // where no more than that parts them, they are the same
+        return opacity > 0 && std::abs(lost - opacity) < rounding ? opacity : lost;
     }
 
     void shade(std::size_t i) {
@@ -159,7 +169,7 @@ private:
                 return;
             }
         }
-        if (seen(p)) p.result->film.alpha = scattered ? 1 : 1 - p.throughput.mean();
+        if (seen(p)) p.result->film.alpha = scattered ? 1 : opacityOf(p);
         if (!(p.throughput.maximum() > 0)) {
             p.alive = false;
         } else if (!scattered) {

@@ -17,7 +17,7 @@ void BatchTracer<N, Surfaces>::meetSurface(std::size_t i) {
     p.origin = hit.position;
     s.place.left = hit;
     if (s.seen && object.holdout) {
-        p.result->film.alpha = 1 - p.throughput.mean();
+        p.result->film.alpha = opacityOf(p);
         p.alive = false;
         return;
     }
@@ -33,7 +33,7 @@ void BatchTracer<N, Surfaces>::meetSurface(std::size_t i) {
             return;
         }
         if (object.shadowCatcher) {
-            p.result->film.alpha = 1 - p.throughput.mean();
+            p.result->film.alpha = opacityOf(p);
             p.result->catcher.weight = p.throughput.mean();
         }
     }

@@ -71,6 +71,7 @@ struct PathState {
     RandomStream random;
     Vec3d origin, direction;
     Spectrum<N> throughput{1.0f};
+    Spectrum<N> opacity{};  // of what only absorbs on the camera's ray: 1 - throughput, unrounded
     Rgb radiance;
     std::int64_t scatterings = 0;
     ScatterPoint from;    // the last scattering event, for MIS at what its direction hits
