@@ -146,6 +146,21 @@ TEST(Session, StopsAtTheTimeLimit) {
             EXPECT_GE(result.film.at(x, y).samples, static_cast<std::uint64_t>(result.endSample));
 }
 
+/// Fog of albedo 1 that fills all space: hardly a path ends.
+TEST(Session, StopsAtTheTimeLimitWhatHasNoEnd) {
+    const Scene scene = test::sceneFrom(
+        "[[volume]]\nbox = { min = [-1e30, -1e30, -1e30], max = [1e30, 1e30, 1e30] }\n"
+        "sigma_s = 1\nsigma_a = 0\n"
+        "[[light]]\ntype = \"environment\"\n[camera]\neye = [0, 0, 0]\nlook_at = [0, 0, 1]\n");
+    RenderSettings s = settings(64, 64, 1);
+    s.timeLimit = 0.2;
+    const RenderResult result = render(scene, s);
+    EXPECT_EQ(result.reason, StopReason::TimeLimit);
+    EXPECT_EQ(result.endSample, 0);
+    EXPECT_GT(result.film.pixelsWithoutSamples(), 0U);
+    EXPECT_LT(result.seconds, 20);  // of 0.4: nothing that an end must be waited for
+}
+
 TEST(Session, StopsAtTheNoise) {
     RenderSettings s = settings(32, 32, 1 << 30);
     s.noise = 0.05;

@@ -244,6 +244,12 @@ std::uint64_t Film::nonFiniteCount() const {
     return count;
 }
 
+std::uint64_t Film::pixelsWithoutSamples() const {
+    return static_cast<std::uint64_t>(
+        std::count_if(pixels_.begin(), pixels_.end(),
+                      [](const Pixel& p) { return p.samples + p.nonFinite == 0; }));
+}
+
 std::uint64_t Film::mostSamples() const {
     std::uint64_t most = 0;
     for (const Pixel& p : pixels_) most = std::max(most, p.samples);

@@ -117,6 +117,8 @@ public:
     Vec3f normal(int x, int y) const;
 
     std::uint64_t nonFiniteCount() const;
+    /// Of a render that was stopped inside its first pass.
+    std::uint64_t pixelsWithoutSamples() const;
     /// Of all pixels; above the fewest after a render was interrupted inside a pass.
     std::uint64_t mostSamples() const;
     double meanSamples() const;  ///< per pixel

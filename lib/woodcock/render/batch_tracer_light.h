@@ -20,8 +20,9 @@ void BatchTracer<N, Surfaces>::addNextEvent(std::size_t i, const EventNumbers& u
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
     if (const auto lamp = lampPosition(chosen->light)) weight *= share(*lamp);
-    addShadowRay(i, p.from.position, s.direction, s.distance, s.weight * static_cast<float>(weight),
-                 true);
+    if (addShadowRay(i, p.from.position, s.direction, s.distance,
+                     s.weight * static_cast<float>(weight), true))
+        shadows_.back().emitter = s.emitter;
 }
 
 template <int N, bool Surfaces>

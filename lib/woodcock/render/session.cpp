@@ -26,6 +26,8 @@ constexpr int tileSize = 16;
 constexpr int longestPass =
     32;  // samples per pixel: bounds a tile's buffer and the wait for a stop
 constexpr std::chrono::milliseconds progressInterval{100};
+/// Time limits that the first sample of all pixels may take, so that there is a whole picture.
+constexpr double firstPassPatience = 2;
 
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) {
@@ -218,10 +220,9 @@ private:
 
     /// False when it was stopped before its last tile.
     bool runPass(const Pass& pass) {
-        const auto stopping = [&] {
-            return stop_ || (pass.first > settings_.firstSample && settings_.timeLimit > 0 &&
-                             secondsSince(start_) > settings_.timeLimit);
-        };
+        const double limit =
+            settings_.timeLimit * (pass.first > settings_.firstSample ? 1 : firstPassPatience);
+        const auto stopping = [&] { return stop_ || (limit > 0 && secondsSince(start_) > limit); };
         {
             const std::vector<std::size_t> paths = pathsOf(pass);
             const std::lock_guard lock(countersMutex_);

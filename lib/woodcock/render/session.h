@@ -25,8 +25,9 @@ struct RenderSettings {
     /// Samples go where the error is largest, for the work of [firstSample, endSample) in every
     /// pixel: see SamplePlan.
     bool adaptive = false;
-    int threads = 0;             ///< 0: all cores
-    double timeLimit = 0;        ///< seconds; 0: none. The first sample is always whole.
+    int threads = 0;  ///< 0: all cores
+    /// Seconds; 0: none. The first sample of all pixels may take twice as long.
+    double timeLimit = 0;
     double noise = 0;            ///< stop once Film::noise() is below it; 0: never
     bool depthLayers = false;    ///< also sample transmittance and depth of camera rays
     bool featureLayers = false;  ///< these, and albedo and normal of what they meet
@@ -60,7 +61,8 @@ struct RenderResult {
 /// `onProgress` is called a few times a second from one thread; returning false stops at once, as
 /// does the time limit: tiles of the pass at work that are finished stay, so that some pixels may
 /// hold more samples than endSample - firstSample (Film::Pixel::samples tells), or, where the first
-/// pass is interrupted, none.
+/// pass is stopped, none. No path of an unfinished tile counts: those that end early would be more
+/// often kept than others.
 /// Throws Error{Usage} on an empty crop, image or sample range, and on an adaptive render of a
 /// range that does not begin at 0.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
