@@ -42,7 +42,7 @@ TEST_P(SameBody, IsFoundWholeByEveryRayAndLeftAtOnce) {
     int outer = 0, inner = 0;
     for (int n = 0; n < 20000; ++n) {
         const Vec3d from = place + randomDirection(random) * (3 * scale);
-        const Vec3d to = place + randomPoint(random, 0.5 * scale);
+        const Vec3d to = place + randomPoint(random, 0.4 * scale);
         SurfaceHit hit, next;
         Vec3d direction = normalize(to - from);
         ASSERT_TRUE(geometry.intersect(from, direction, infinity, nullptr, hit));

