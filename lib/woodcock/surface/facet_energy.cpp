@@ -22,7 +22,7 @@ double below(double p, double q, double t) { return t * t * t * t * (p + 0.8 * q
 /// Share of what is seen at this cosine that is hidden behind its first facet; eta 0: all facets
 /// are mirrors.
 double lostAt(double alpha, double eta, double cosine) {
-    constexpr int across = 64;
+    constexpr int across = 128;
     const Ggx facets(alpha);
     const Vec3d out{std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine};
     double kept = 0;

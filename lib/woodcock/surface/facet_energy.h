@@ -41,7 +41,7 @@ struct FacetEnergy {
 };
 
 /// Of GGX of this alpha, between indices of which the inner one is `eta` times the outer one; 0:
-/// metal. Worked out once for each pair, in about ten milliseconds; valid until the thread's next
+/// metal. Worked out once for each pair, in a tenth of a second; valid until the thread's next
 /// call but seven, or as long as the copy is kept.
 const FacetEnergy& facetEnergy(double alpha, double eta);
 
