@@ -291,6 +291,104 @@ TEST_F(AxExpressionTest, WhatIsSafeIsNotRefused) {
         EXPECT_NO_THROW(run(code, {density_, colour_})) << code;
 }
 
+TEST_F(AxExpressionTest, CastsToAnyTypeGiveTheValue) {
+    // Among them casts to the type that a value has already, in every place that code has.
+    const std::pair<const char*, double> cases[]{
+        {"@density = 0.5f * float(@density);", 1.25},
+        {"@density = float(0.5f) + float(0.25);", 0.75},
+        {"@density = float(float(float(@density)));", 2.5},
+        {"@density = double(double(@density)) + double(0.5);", 3},
+        {"@density = int(int(@density)) + int(3) + int64(4l) + long(5);", 14},
+        {"@density = bool(bool(@density)) + bool(true) + bool(0.25) + bool(0);", 3},
+        {"@density = sin(float(0.0f)) + max(float(@density), float(1.0f));", 2.5},
+        {"@density *= float(@density);", 6.25},
+        {"@density = float(-@density);", -2.5},
+        {"@density = float(@density--) + float(@density);", 4},
+        {"@density = (1, 2, float(3.0f));", 3},
+        {"@density = @density > 5 ? float(@density) : int(7);", 7},
+        {"@density = float(@density) ?: int(1);", 2.5},
+        {"@density = float(@density) && bool(true);", 1},
+        {"float(@density), int(1); @density += 1;", 3.5},
+        {"float x = float(@density), y = float(x); @density = y;", 2.5},
+        {"vec3f v = {float(@density), 1, 2}; @density = float(v.x) + float(v[2]);", 4.5},
+        {"vec3f v = 0; v.y = float(v.x) + float(3.0f); @density = v.y;", 3},
+        {"mat3f m = 1; m[0, 1] = float(2.0f); @density = float(m[0, 1]);", 2},
+        {"@density = 0; for (int i = int(0); bool(i < 3); i = int(i + 1)) @density += "
+         "float(1.0f);",
+         3},
+        {"int i = 0; do { i++; } while (bool(i < 5)); @density = i;", 5},
+        {"if (bool(true)) { @density = int(4); } else { @density = int(5); }", 4},
+        {"@density = int(-7.9);", -7}};
+    for (const auto& [code, value] : cases) {
+        const auto grid = makeGrid<FloatGrid>("density");
+        grid->tree().setValueOn({1, 2, 3}, 2.5F);
+        run(code, {grid});
+        EXPECT_EQ(grid->tree().getValue({1, 2, 3}), static_cast<float>(value)) << code;
+    }
+    expectRefused("@density = 1;\n @density = float(v@Cd);", "2:13: cannot assign a scalar value");
+    expectRefused("@density = float({1, 2, 3});", "1:12: cannot assign a scalar value");
+    expectRefused("@density = float(nothing);", "1:18: variable \"nothing\" hasn't been declared");
+}
+
+TEST_F(AxExpressionTest, LoopsGoRoundAMillionTimes) {
+    const auto one = makeGrid<FloatGrid>("density");
+    one->tree().setValueOn({1, 2, 3}, 0);
+    run("for (int i = 0; i < 999999; ++i) { @density += 1; }", {one});
+    EXPECT_EQ(one->tree().getValue({1, 2, 3}), 999999);
+    for (const char* code :
+         {"while (true) {}", "for (;;) {}", "do {} while (1);", "for (;;) { continue; }",
+          "while (@density >= 0) @density += 1;", "for (int i = 0; i < 2000000000; ++i) {}",
+          "for (int i = 0; i < 3; ++i) i = 0;",
+          "for (int i = 0; i < 2000; ++i) for (int j = 0; j < 2000; ++j) @density += 1;",
+          "while (true) { while (true) { break; } }",
+          "int i = 0; while (true) { if (++i > 1500000) return; }"}) {
+        const auto grid = makeGrid<FloatGrid>("density");
+        grid->tree().setValueOn({1, 2, 3}, 1);
+        expectError(ErrorKind::Input,
+                    place + ": AX: its loops go round more than 1000000 times at a voxel",
+                    [&] { run("@density += 1; " + std::string(code), {grid}); });
+    }
+    // Each voxel has its own million.
+    const auto many = makeGrid<FloatGrid>("density");
+    many->fill(CoordBBox({0, 0, 0}, {15, 15, 15}), 0);
+    run("for (int i = 0; i < 1000; ++i) { @density += 1; }", {many});
+    EXPECT_EQ(many->tree().getValue({15, 15, 15}), 1000);
+    expectRefused("while (int i = 0) {}", "1:8: a loop's condition must not declare a variable");
+}
+
+TEST_F(AxExpressionTest, EndsWhereItIsToldTo) {
+    const auto grid = makeGrid<FloatGrid>("density");
+    grid->fill(CoordBBox({0, 0, 0}, {255, 255, 255}), 0);
+    VdbGrids grids{{grid}};
+    // A sixteenth of a million million rounds, which would take a day.
+    const AxExpression code(
+        "for (int i = 0; i < 900000; ++i) @density = sin(@density) + getcoordx();", place);
+    int asked = 0;
+    EXPECT_FALSE(code.run(grids, [&] { return ++asked < 3; }));
+    EXPECT_EQ(asked, 3);
+    expectError(ErrorKind::Failure, "no more",
+                [&] { code.run(grids, []() -> bool { throw failure("no more"); }); });
+    const AxExpression quick("@density = 1;", place);
+    EXPECT_TRUE(quick.run(grids, [] { return true; }));
+}
+
+TEST_F(AxExpressionTest, TextAndWhatHasNoDefinedValueIsRefused) {
+    expectRefused("string s = \"aaaaaaaaaa\";", "1:1: a text variable has no use here");
+    expectRefused("for (int i = 0; i < 40; ++i) { string s; s += s; }", "1:32: a text variable");
+    expectRefused("@density = atof(\"1\");", "1:17: text has no use here");
+    expectRefused("if (@density > 0.5) return; @density = hash(\"abc\");", "1:45: text has no use");
+    expectRefused("s@name = 1;", "1:1: text has no use here");
+    expectRefused("@density = 1 << 32;", "1:12: bits may be shifted by a number from 0 to 31");
+    expectRefused("int a = 1; a >>= getcoordx();", "1:12: bits may be shifted");
+    std::string nested;
+    for (int i = 0; i < 40; ++i) nested += "for (;;) ";
+    expectRefused(nested + "break;", "1:289: more than 32 blocks within each other");
+    const auto grid = makeGrid<FloatGrid>("density");
+    grid->tree().setValueOn({0, 0, 0}, 0);
+    run("@density = (3 << 31 >> 31) + (1 << 0);", {grid});
+    EXPECT_EQ(grid->tree().getValue({0, 0, 0}), 0);
+}
+
 TEST_F(AxExpressionTest, MalformedCodeIsAnErrorAndNothingElse) {
     const std::string deep(4000, '{');
     for (const std::string& code :

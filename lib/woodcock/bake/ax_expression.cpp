@@ -78,6 +78,8 @@ bool axAvailable() {
 AxExpression::AxExpression(const std::string& code, const std::string& name)
     : program_(compile(code, name)) {}
 
-void AxExpression::run(VdbGrids& grids) const { program_->run(grids.grids); }
+bool AxExpression::run(VdbGrids& grids, const std::function<bool()>& goesOn) const {
+    return program_->run(grids.grids, goesOn);
+}
 
 }  // namespace woodcock

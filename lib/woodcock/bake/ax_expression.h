@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -23,7 +24,8 @@ bool axAvailable();
 ///
 /// Refused is what AX itself would let end the program or depend on threads: integers divided by
 /// anything but a number other than 0; a component's index that is not a number or does not exist;
-/// rand() without a seed; print(), external() and $variables. An endless loop stays endless.
+/// rand() without a seed; text; print(), external() and $variables. Loops may go round a million
+/// times at a voxel.
 class AxExpression {
 public:
     /// `name` is the place of the code, as "cumulus.toml:12:8"; messages begin with it, followed by
@@ -32,9 +34,11 @@ public:
     /// AX; Failure, where the library that holds it cannot be loaded.
     AxExpression(const std::string& code, const std::string& name);
 
-    /// Runs the code over the grids that it writes. Errors: Input, where it names a grid that does
-    /// not exist or has another type; the grids are untouched then.
-    void run(VdbGrids& grids) const;
+    /// Runs the code over the grids that it writes. `goesOn` is asked now and then, from one other
+    /// thread, whether it shall go on; returns false where it said no, and the grids are of no use
+    /// then. Errors: Input, where the code names a grid that does not exist or has another type
+    /// (the grids are untouched then), and where its loops go on for too long.
+    bool run(VdbGrids& grids, const std::function<bool()>& goesOn = {}) const;
 
 private:
     std::shared_ptr<const AxProgram> program_;

@@ -7,12 +7,20 @@
 #include <openvdb_ax/ax.h>
 #include <openvdb_ax/compiler/AttributeRegistry.h>
 #include <openvdb_ax/compiler/Compiler.h>
+#include <openvdb_ax/compiler/CustomData.h>
 #include <openvdb_ax/compiler/Logger.h>
 #include <openvdb_ax/compiler/VolumeExecutable.h>
 
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "woodcock/bake/openvdb_ax_bounds.h"
 #include "woodcock/bake/openvdb_ax_program.h"
 #include "woodcock/bake/openvdb_ax_rules.h"
 #include "woodcock/base/error.h"
@@ -47,6 +55,17 @@ public:
         logger.error("", &node);
         before.swap(found_);
         return before.empty() ? "AX" : before.front().substr(0, before.front().find(": "));
+    }
+
+    AxLocation locationOf(const ax::ast::Node& node) {
+        const std::string place = placeOf(node);  // "AX 2:14"
+        const std::size_t digits = place.find_first_of("0123456789");
+        AxLocation found(0, 0);
+        if (digits == std::string::npos) return found;
+        const char* const end = place.data() + place.size();
+        const auto line = std::from_chars(place.data() + digits, end, found.first);
+        if (line.ptr != end) std::from_chars(line.ptr + 1, end, found.second);
+        return found;
     }
 
     ax::Logger logger{
@@ -115,6 +134,44 @@ void splitRootTiles(openvdb::GridBase& grid) {
     });
 }
 
+/// Looks every now and then, on a thread of its own, whether the code that runs shall go on.
+class Watch {
+public:
+    /// `look` says whether it shall; `stop` is called once where not.
+    Watch(std::function<bool()> look, std::function<void()> stop)
+        : thread_([this, look = std::move(look), stop = std::move(stop)](
+                      const std::stop_token& ended) { watch(ended, look, stop); }) {}
+
+    /// Throws what `look` threw.
+    void end() {
+        thread_.request_stop();
+        thread_.join();
+        if (error_) std::rethrow_exception(error_);
+    }
+
+private:
+    void watch(const std::stop_token& ended, const std::function<bool()>& look,
+               const std::function<void()>& stop) {
+        constexpr std::chrono::milliseconds pause(20);
+        std::unique_lock lock(mutex_);
+        while (!ended.stop_requested()) {
+            wake_.wait_for(lock, ended, pause, [] { return false; });
+            if (ended.stop_requested()) return;
+            try {
+                if (look()) continue;
+            } catch (...) {
+                error_ = std::current_exception();
+            }
+            return stop();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    std::exception_ptr error_;
+    std::jthread thread_;
+};
+
 class Program : public AxProgram {
 public:
     Program(const std::string& code, const std::string& name) : name_(name) {
@@ -134,9 +191,15 @@ public:
             checkAxRules(*tree, [&](const std::string& message, const ax::ast::Node& node) {
                 messages.logger.error(message, &node);
             });
-            executable_ = ax::Compiler().compile<ax::VolumeExecutable>(*tree, messages.logger);
             refuse();
             findAccesses(*tree, messages);
+            const ax::ast::Tree::ConstPtr bounded = boundAx(
+                *tree, [&](const ax::ast::Node& node) { return messages.locationOf(node); },
+                messages.logger);
+            refuse();
+            executable_ =
+                ax::Compiler().compile<ax::VolumeExecutable>(*bounded, messages.logger, controls_);
+            refuse();
         } catch (const openvdb::Exception& error) {
             throw inputError("{}: AX: {}", name, error.what());
         }
@@ -148,7 +211,7 @@ public:
             executable_->setActiveTileStreaming(Streaming::ON);
     }
 
-    void run(openvdb::GridPtrVec& grids) const override {
+    bool run(openvdb::GridPtrVec& grids, const std::function<bool()>& goesOn) const override {
         std::vector<openvdb::GridBase*> written;
         for (const Access& access : accesses_) {
             openvdb::GridBase& grid = gridOf(access, grids, name_);
@@ -156,11 +219,27 @@ public:
         }
         if (executable_->getActiveTileStreaming() == Streaming::ON)
             for (openvdb::GridBase* grid : written) splitRootTiles(*grid);
+        stop(false);
+        clearOverrun();
+        bool ended = false;
+        Watch watch(
+            [&] {
+                if (hasOverrun()) return false;
+                ended = goesOn && !goesOn();
+                return !ended;
+            },
+            [&] { stop(true); });
         try {
             executable_->execute(grids);
         } catch (const openvdb::Exception& error) {
             throw inputError("{}: AX: {}", name_, error.what());
         }
+        watch.end();
+        if (hasOverrun())
+            throw inputError(
+                "{}: AX: its loops go round more than {} times at a voxel; make them end earlier",
+                name_, mostAxRounds);
+        return !ended;
     }
 
 private:
@@ -174,7 +253,19 @@ private:
         }
     }
 
+    // The code reads one of these numbers and writes the other, from several threads.
+    template <class T>
+    T& control(const char* name) {
+        return controls_->getOrInsertData<openvdb::TypedMetadata<T>>(name)->value();
+    }
+    void stop(bool on) const { std::atomic_ref(stop_).store(on ? 1.0F : 0.0F); }
+    void clearOverrun() const { std::atomic_ref(overrun_.x()).store(0); }
+    bool hasOverrun() const { return std::atomic_ref(overrun_.x()).load() != 0; }
+
     std::string name_;
+    ax::CustomData::Ptr controls_ = ax::CustomData::create();
+    float& stop_ = control<float>(axStopVariable);
+    openvdb::Vec3s& overrun_ = control<openvdb::Vec3s>(axOverrunVariable);
     ax::VolumeExecutable::Ptr executable_;
     std::vector<Access> accesses_;
 };

@@ -34,15 +34,16 @@ void checkFinite(const Grid& grid, const std::string& place) {
                      faulty.first.z);
 }
 
-class AxStage : public Stage {
+class AxStage : public GridStage {
 public:
     AxStage(const std::string& code, const std::string& place, std::vector<std::string> names,
             std::size_t result)
         : expression_(code, place), place_(place), names_(std::move(names)), result_(result) {}
 
     std::vector<std::string> gridNames() const override { return names_; }
-    std::shared_ptr<const Node> run(VdbGrids& inputs) const override {
-        expression_.run(inputs);
+    std::shared_ptr<const Node> run(VdbGrids& inputs,
+                                    const std::function<bool()>& goesOn) const override {
+        if (!expression_.run(inputs, goesOn)) return nullptr;
         const openvdb::GridBase& grid = *inputs.grids[result_];
         if (const auto* scalars = dynamic_cast<const openvdb::FloatGrid*>(&grid))
             checkFinite(*scalars, place_);

@@ -86,6 +86,9 @@ bool isSafeDivisor(const ast::Node& node) {
     return value && *value > 0 && *value <= INT32_MAX;
 }
 
+/// Compiling takes a time that grows with the square of the depth, or faster.
+constexpr int mostBlocks = 32;
+
 const std::set<std::string> moduloFunctions{"euclideanmod", "floormod", "truncatemod"};
 
 class Rules {
@@ -100,16 +103,23 @@ public:
         });
     }
 
-    void check(const ast::Node& node) const {
+    void check(const ast::Node& node, int blocks = 0) const {
+        blocks += node.nodetype() == ast::Node::BlockNode;
+        if (blocks > mostBlocks) {
+            report_(fmt::format("more than {} blocks within each other", mostBlocks), node);
+            return;
+        }
         switch (node.nodetype()) {
             case ast::Node::BinaryOperatorNode: {
                 const auto& binary = static_cast<const ast::BinaryOperator&>(node);
                 checkDivision(binary.operation(), *binary.lhs(), *binary.rhs(), node);
+                checkShift(binary.operation(), *binary.rhs(), node);
                 break;
             }
             case ast::Node::AssignExpressionNode: {
                 const auto& assign = static_cast<const ast::AssignExpression&>(node);
                 checkDivision(assign.operation(), *assign.lhs(), *assign.rhs(), node);
+                checkShift(assign.operation(), *assign.rhs(), node);
                 break;
             }
             case ast::Node::FunctionCallNode:
@@ -118,6 +128,17 @@ public:
             case ast::Node::ArrayUnpackNode:
                 checkIndex(static_cast<const ast::ArrayUnpack&>(node));
                 break;
+            case ast::Node::ValueStrNode:
+                report_("text has no use here; grids hold numbers", node);
+                break;
+            case ast::Node::DeclareLocalNode:
+                if (static_cast<const ast::DeclareLocal&>(node).type() == CoreType::STRING)
+                    report_("a text variable has no use here; grids hold numbers", node);
+                break;
+            case ast::Node::AttributeNode:
+                if (static_cast<const ast::Attribute&>(node).type() == CoreType::STRING)
+                    report_("text has no use here; grids hold numbers", node);
+                break;
             case ast::Node::ExternalVariableNode:
                 report_("a $variable has no value here; write a number", node);
                 break;
@@ -125,7 +146,7 @@ public:
                 break;
         }
         for (std::size_t i = 0; i < node.children(); ++i)
-            if (const ast::Node* child = node.child(i)) check(*child);
+            if (const ast::Node* child = node.child(i)) check(*child, blocks);
     }
 
 private:
@@ -143,6 +164,17 @@ private:
             "integers may be divided by positive numbers only, as division by 0 would end the "
             "program; for anything else, make one of them a float: float(...)",
             node);
+    }
+
+    /// What a shift by more bits than there are gives is left open by the processor and by LLVM.
+    void checkShift(ast::tokens::OperatorToken operation, const ast::Node& rhs,
+                    const ast::Node& node) const {
+        const bool shifts =
+            operation == ast::tokens::SHIFTLEFT || operation == ast::tokens::SHIFTRIGHT ||
+            operation == ast::tokens::SHIFTLEFTEQUALS || operation == ast::tokens::SHIFTRIGHTEQUALS;
+        const std::optional<std::uint64_t> bits = integerLiteral(rhs);
+        if (shifts && !(bits && *bits < 32))
+            report_("bits may be shifted by a number from 0 to 31 only", node);
     }
 
     void checkCall(const ast::FunctionCall& call) const {

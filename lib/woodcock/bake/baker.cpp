@@ -291,7 +291,6 @@ Bake Baker::assemble() {
 }
 
 std::optional<Bake> Baker::run() {
-    const auto start = std::chrono::steady_clock::now();
     findPieces();
     checkAmount();
     const auto visit = [&](const Region& region, const std::vector<Status>& status,
@@ -306,16 +305,17 @@ std::optional<Bake> Baker::run() {
         if (!stopped_) finishPiece();
     });
     if (stopped_) return std::nullopt;
-    Bake bake = assemble();
-    bake.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return bake;
+    return assemble();
 }
 
 namespace {
 
 /// Runs the stages of a graph, in their order, and puts the nodes that they make in their places.
-/// Returns false when it was ended by `progress`.
-bool runStages(Plan& plan, const BakeSettings& settings, const BakeProgress& progress) {
+/// Returns the number of voxels that were evaluated for them, or nothing when it was ended by
+/// `progress`.
+std::optional<std::uint64_t> runStages(Plan& plan, const BakeSettings& settings,
+                                       const BakeProgress& progress) {
+    std::uint64_t evaluated = 0;
     for (std::size_t i = 0; i < plan.graph.entries.size(); ++i) {
         const Graph::Entry entry = plan.graph.entries[i];
         if (!entry.stage) continue;
@@ -329,12 +329,15 @@ bool runStages(Plan& plan, const BakeSettings& settings, const BakeProgress& pro
             inputs.outputs.push_back(output);
         }
         const std::optional<Bake> bake = Baker(inputs, settings, progress).run();
-        if (!bake) return false;
-        plan.graph.entries[i].node = entry.stage->run(*bake->grids);
+        if (!bake) return std::nullopt;
+        evaluated += bake->evaluatedVoxels;
+        plan.graph.entries[i].node =
+            entry.stage->run(*bake->grids, [&] { return !progress || progress(1); });
+        if (!plan.graph.entries[i].node) return std::nullopt;
         plan.graph.entries[i].stage = nullptr;
         plan.graph.entries[i].inputs.clear();
     }
-    return true;
+    return evaluated;
 }
 
 }  // namespace
@@ -345,6 +348,7 @@ BakeSettings cubicVoxels(double size) {
 
 std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& settings,
                                const BakeProgress& progress) {
+    const auto start = std::chrono::steady_clock::now();
     openvdb::initialize();
     std::optional<tbb::global_control> allow;  // more threads than cores, where asked for
     if (settings.threads > 0)
@@ -355,8 +359,13 @@ std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& setting
     arena.execute([&] {
         openVdbTransform(settings.worldFromIndex);  // throws before the work where it cannot be
         Plan plan{recipe.graph, recipe.outputs, recipe.bounds, recipe.boundsPlace};
-        if (runStages(plan, settings, progress)) bake = Baker(plan, settings, progress).run();
+        const std::optional<std::uint64_t> evaluated = runStages(plan, settings, progress);
+        if (!evaluated) return;
+        bake = Baker(plan, settings, progress).run();
+        if (bake) bake->evaluatedVoxels += *evaluated;
     });
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    if (bake) bake->seconds = time.count();
     return bake;
 }
 

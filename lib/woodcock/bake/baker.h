@@ -38,8 +38,8 @@ struct Bake {
     std::shared_ptr<VdbGrids> grids;
     std::vector<BakedGridStatistics> statistics{};  ///< of each grid
     double boxVoxels = 0;                           ///< within the recipe's bounds
-    std::uint64_t evaluatedVoxels = 0;
-    double seconds = 0;
+    std::uint64_t evaluatedVoxels = 0;              ///< those of nodes that need grids included
+    double seconds = 0;                             ///< for all of them
 };
 
 /// Progress, from 0 to 1; called now and then, and not from several threads at once. Returning

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -58,11 +59,14 @@ struct VdbGrids;
 
 /// A node whose inputs are made as grids before it can say anything: the first one where it is not
 /// zero, the others there too.
-class Stage {
+class GridStage {
 public:
-    virtual ~Stage() = default;
+    virtual ~GridStage() = default;
     virtual std::vector<std::string> gridNames() const = 0;  ///< of the inputs
-    virtual std::shared_ptr<const Node> run(VdbGrids& inputs) const = 0;
+    /// Asks `goesOn` now and then, from any thread but one at a time, and returns nothing where
+    /// that says no.
+    virtual std::shared_ptr<const Node> run(VdbGrids& inputs,
+                                            const std::function<bool()>& goesOn) const = 0;
 };
 
 /// The pieces of a recipe; indices are those of `nodes`, and an input comes before its user.
@@ -70,7 +74,7 @@ struct Graph {
     struct Entry {
         std::shared_ptr<const Node> node = nullptr;        ///< either this
         std::shared_ptr<const Mapping> mapping = nullptr;  ///< or this, of entry `mapped`
-        std::shared_ptr<const Stage> stage = nullptr;      ///< or this, which will make a node
+        std::shared_ptr<const GridStage> stage = nullptr;  ///< or this, which will make a node
         std::vector<int> inputs{};
         int mapped = -1;
         int channels = 1;

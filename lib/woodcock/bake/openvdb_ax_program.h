@@ -3,6 +3,7 @@
 
 #include <openvdb/Grid.h>
 
+#include <functional>
 #include <string>
 
 namespace woodcock {
@@ -12,7 +13,9 @@ namespace woodcock {
 class AxProgram {
 public:
     virtual ~AxProgram() = default;
-    virtual void run(openvdb::GridPtrVec& grids) const = 0;
+    /// Asks `goesOn` now and then, from another thread, unless it is empty; returns false where
+    /// that said no, and the grids are of no use then.
+    virtual bool run(openvdb::GridPtrVec& grids, const std::function<bool()>& goesOn) const = 0;
 };
 
 /// What the library offers, as woodcockCompileAx; see AxExpression. The program is the caller's.
