@@ -14,6 +14,7 @@ if(WOODCOCK_WITH_AX)
     mark_as_advanced(OpenVDBAX_INCLUDE_DIR OpenVDBAX_LIBRARY)
     if(OpenVDBAX_INCLUDE_DIR AND OpenVDBAX_LIBRARY)
         set(OpenVDBAX_FOUND TRUE)
+        set(OpenVDBAX_VERSION ${OpenVDB_VERSION})  # they are released as one
         add_library(OpenVDB::AX UNKNOWN IMPORTED)
         set_target_properties(OpenVDB::AX PROPERTIES IMPORTED_LOCATION ${OpenVDBAX_LIBRARY})
         target_include_directories(OpenVDB::AX INTERFACE ${OpenVDBAX_INCLUDE_DIR})

@@ -189,6 +189,7 @@ void prepareReport(const CompareOptions& o) {
 }
 
 int run(const CompareWords& words, const std::string& commandLine) {
+    const ProgressStyle style = words.options.reports.start();
     words.check();
     CompareOptions o = words.sorted();
     if (words.scene.empty()) return runCompare(o);
@@ -197,11 +198,11 @@ int run(const CompareWords& words, const std::string& commandLine) {
     for (const std::string& limit : o.failAbove) parseLimit(limit);
     if (!o.report.empty()) {
         makeDirectory(o.report);
-        o.sources = renderBoth(both, o.report, commandLine);
+        o.sources = renderBoth(both, o.report, commandLine, style);
         return runCompare(o);
     }
     const ScratchDirectory scratch;
-    o.sources = renderBoth(both, scratch.path(), commandLine);
+    o.sources = renderBoth(both, scratch.path(), commandLine, style);
     return runCompare(o);
 }
 
@@ -226,92 +227,95 @@ int runCompare(const CompareOptions& o) {
         write(jsonFile(o), compareJson(comparison));
         write(htmlFile(o), html);
     }
-    if (o.json)
+    if (o.reports.json)
         printData(compareJson(comparison));
-    else
+    else if (o.reports.printsText())
         printText(compareText(comparison));
-    if (!o.report.empty() && !o.json)
-        print("wrote {} and {}\n", jsonFile(o).string(), htmlFile(o).string());
     std::fflush(stdout);
+    if (!o.report.empty())
+        spdlog::info("wrote {} and {}", jsonFile(o).string(), htmlFile(o).string());
     return exceeds(comparison, o.failAbove) ? 1 : 0;
 }
 
 CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
     CLI::App* command = app.add_subcommand(
         "compare",
-        "Holds images against the first of them: metrics, tests against noise, a page to look at");
+        "Hold images against the first of them: metrics, tests against noise, a page to look at");
     auto words = std::make_shared<CompareWords>();
     CompareOptions& o = words->options;
     command
         ->add_option(
-            "FILE", words->files,
-            "images (EXR, PNG, JPEG, TIFF, HDR ...): the first is the reference A, the others "
+            "INPUT", words->files,
+            "Images (EXR, PNG, JPEG, TIFF, HDR ...): the first is the reference A, the others "
             "are B, C, ...")
         ->type_name("FILE");
     command
-        ->add_option(
-            "--cycles", words->scene,
-            "instead of images: renders this scene (.toml, or .vdb) by Woodcock (A) and by "
-            "Blender's Cycles (B), into the report's directory where there is one")
+        ->add_option("--cycles", words->scene,
+                     "Instead of images: render this scene (.toml, or .vdb) by Woodcock (A) and by "
+                     "Blender's Cycles (B), into the report's directory where there is one")
         ->type_name("SCENE");
     addCount(*command, "--spp", words->cycles.spp, 1, 16777216,
-             "of --cycles: samples per pixel of each seed (the scene's)");
+             "For --cycles: samples per pixel of each seed (the scene's)");
     addCount(*command, "--seeds", words->cycles.seeds, 2, 64,
-             "of --cycles: renders by each program, whose scatter is the error (2)");
+             "For --cycles: renders by each program, whose scatter is the error (2)");
     addChoice(*command, "--mode", words->cycles.mode, {"null", "biased"},
-              "of --cycles: null-collision tracking or ray marching:")
+              "For --cycles: null-collision tracking or ray marching:")
         ->type_name("MODE");
     addChoice(*command, "--interpolation", words->cycles.interpolation, {"stochastic", "trilinear"},
-              "of --cycles: how it reads grids:")
+              "For --cycles: how it reads grids:")
         ->type_name("KIND");
     addParsed(
         *command, "--step-rate", words->cycles.stepRate,
         [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
-        "of --cycles --mode biased")
+        "For --cycles --mode biased: a step's length as Blender counts it")
         ->type_name("NUMBER");
     command
-        ->add_option("--blender", words->cycles.blender,
-                     "of --cycles: Blender's program, or a Python with bpy; else $BLENDER, else on "
-                     "the PATH")
+        ->add_option(
+            "--blender", words->cycles.blender,
+            "For --cycles: Blender's program, or a Python with bpy; else $BLENDER, else on "
+            "the PATH")
         ->type_name("PROGRAM");
     addList(*command, "--set", words->cycles.input.overrides,
-            "of --cycles: sets a value of the scene, such as volume[0].scale=2")
+            "For --cycles: set a value of the scene, such as volume[0].scale=2")
         ->type_name("KEY=VALUE");
     addList(*command, "--more", words->more,
-            "another seed of an image, as in A=second.exr: their mean is compared, and their "
+            "Another seed of an image, as in A=second.exr: their mean is compared, and their "
             "scatter is the error where the files have no layer 'error'")
         ->type_name("LETTER=FILE");
     command
         ->add_option("--report", o.report,
-                     "writes DIR/compare.json and DIR/compare.html, a page that needs nothing else")
+                     "Write DIR/compare.json and DIR/compare.html, a page that needs nothing else")
         ->type_name("DIR");
-    command->add_flag("--json", o.json, "one JSON document on stdout instead of the tables");
+    o.reports.addTo(*command, "Print one JSON document on stdout instead of the tables");
     addList(*command, "--fail-above", o.failAbove,
-            "exit code 1 where an image's metric is above: bias, ratio (its distance from 1), "
+            "Exit with code 1 where an image's metric is above: bias, ratio (its distance from 1), "
             "rmse, relmse, largest, flip, hdr-flip, non-finite, tiles (that differ), or the word "
             "'differ' for the verdict")
         ->type_name("METRIC=VALUE");
     command->add_flag("--resample", o.settings.resample,
-                      "averages images of other sizes over areas to the smallest width and height");
+                      "Average images of other sizes over areas to the smallest width and height");
     addParsed(
         *command, "--tile", o.settings.tile,
         [](const std::string& text) { return static_cast<int>(parseCount(text, 2, 4096)); },
-        "least side of a tile in pixels (8)")
+        "Least side of a tile in pixels (8)")
         ->type_name("PIXELS");
     addParsed(
         *command, "--false-alarms", o.settings.falseAlarms,
         [](const std::string& text) { return parseNumber(text, 1e-12, 0.5); },
-        "chance that images of equal expectation are said to differ, all tiles and channels "
+        "Chance that images of equal expectation are said to differ, all tiles and channels "
         "together (0.001)")
         ->type_name("RATE");
     addList(*command, "--colour-space", words->colourSpaces,
-            "what an image's colours are, as in B=ACEScg, by the OpenColorIO config; floats are "
+            "What an image's colours are, as in B=ACEScg, by the OpenColorIO config; floats are "
             "scene-linear otherwise, integers sRGB pictures")
         ->type_name("LETTER=NAME");
     command
         ->add_option("--ocio", o.ocio,
                      "OpenColorIO config ($OCIO, or the one that comes with the program)")
         ->type_name("FILE");
+    command->footer(
+        examplesText({"woodcock compare reference.exr test.exr --report comparison",
+                      "woodcock compare reference.png test.png --quiet --fail-above flip=0.05"}));
     command->callback([words, commandLine] {
         if (const int code = run(*words, commandLine)) throw CLI::RuntimeError(code);
     });

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "report_options.h"
 #include "woodcock/compare/comparison.h"
 
 namespace woodcock::tool {
@@ -15,7 +16,7 @@ struct CompareOptions {
     std::vector<std::string> failAbove;  ///< "rmse=0.01", "differ"
     std::filesystem::path report;        ///< a directory; empty: none
     std::filesystem::path ocio;          ///< empty: $OCIO or the shipped one
-    bool json = false;
+    ReportOptions reports;
 };
 
 /// Compares, prints and writes the report, whose directory it makes; notes go to the log. Returns

@@ -80,8 +80,7 @@ CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene
 }  // namespace
 
 std::vector<PictureSource> renderBoth(const BothOptions& o, const std::filesystem::path& directory,
-                                      const std::string& commandLine) {
-    const ProgressStyle style = progressStyle("auto");
+                                      const std::string& commandLine, ProgressStyle style) {
     catchInterrupts();
     checkInput(o.input);
     SceneDescription description = parseInput(o.input);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "progress.h"
 #include "scene_input.h"
 #include "woodcock/compare/comparison.h"
 
@@ -24,6 +25,6 @@ struct BothOptions {
 /// CLI::RuntimeError where it was interrupted.
 std::vector<PictureSource> renderBoth(const BothOptions& options,
                                       const std::filesystem::path& directory,
-                                      const std::string& commandLine);
+                                      const std::string& commandLine, ProgressStyle style);
 
 }  // namespace woodcock::tool

@@ -5,15 +5,19 @@
 #include <spdlog/spdlog.h>
 
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "info_report.h"
 #include "interrupt.h"
-#include "log.h"
 #include "option_kinds.h"
+#include "output_folders.h"
 #include "progress.h"
+#include "report_options.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/parse.h"
 
@@ -30,8 +34,8 @@ struct ConvertWords {
     std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
         axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
         compression, outType, bounds, band, radius, columns;
-    std::string progress = "auto";
-    bool repair = false, shell = false, quiet = false;
+    bool repair = false, shell = false, mkdir = false;
+    ReportOptions reports;
 };
 
 /// "1,2,3": exactly `count` numbers.
@@ -212,21 +216,35 @@ void stopWhereInterrupted() {
     if (interrupted()) throw CLI::RuntimeError(interruptedCode);
 }
 
+/// What was written, of which OUTPUT is all or the first file.
+nlohmann::ordered_json resultJson(const ConvertWords& words, const std::vector<std::string>& notes,
+                                  const std::vector<std::string>& warnings, double seconds) {
+    nlohmann::ordered_json result{{"input", words.in.string()}, {"output", words.out.string()}};
+    std::error_code unknown;
+    const std::uintmax_t bytes = std::filesystem::file_size(words.out, unknown);
+    result["bytes"] = unknown ? nlohmann::ordered_json() : nlohmann::ordered_json(bytes);
+    result.update({{"seconds", seconds}, {"notes", notes}, {"warnings", warnings}});
+    if (words.out.extension() == ".vdb")
+        result["grids"] = infoJson({inspectFile(words.out, "")})["files"][0]["grids"];
+    return result;
+}
+
 void run(const ConvertWords& words) {
-    const ProgressStyle style = words.quiet ? ProgressStyle::None : progressStyle(words.progress);
-    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
-             words.quiet ? "warning" : "info");
+    const ProgressStyle style = words.reports.start();
     catchInterrupts();
     ConvertOptions options = readWords(words);
     Stages bar(style);
+    std::vector<std::string> notes, warnings;
     options.info = [&](const std::string& text) {
         stopWhereInterrupted();
         bar.clear();
         spdlog::info("{}", text);
+        notes.push_back(text);
     };
     options.warn = [&](const std::string& text) {
         bar.clear();
         spdlog::warn("{}", text);
+        warnings.push_back(text);
     };
     options.progress = [&](std::string_view stage, double fraction) {
         stopWhereInterrupted();
@@ -235,7 +253,14 @@ void run(const ConvertWords& words) {
     if (words.files.size() < 2)
         throw usageError("'{}' is given alone: name an input and an output",
                          words.files.empty() ? "" : words.files.front().string());
+    prepareFolder(words.files.back(), words.mkdir);
+    const auto start = std::chrono::steady_clock::now();
     convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(), options);
+    if (!words.reports.json) return;
+    bar.clear();
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    printJson(resultJson(words, notes, warnings, time.count())
+                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -245,27 +270,30 @@ CLI::App& addConvertCommand(CLI::App& app) {
     const auto words = std::make_shared<ConvertWords>();
     command
         .add_option(
-            "IN... OUT", words->files,
+            "INPUT... OUTPUT", words->files,
             "What to convert, and the file to write; slices as slice.####.png or one by one")
         ->required()
         ->type_name("FILE");
+    addMkdir(command, words->mkdir);
     const auto add = [&](const char* group, const char* name, std::optional<std::string>& to,
                          const char* type, const char* help) {
         command.add_option(name, to, help)->type_name(type)->group(group);
     };
-    add("Input", "--from", words->from, "FORMAT", "Format of IN, instead of what its name says");
+    add("Input", "--from", words->from, "FORMAT", "Format of INPUT, instead of what its name says");
     add("Input", "--grid", words->grid, "NAME",
         "Grid of a VDB, medium of a pbrt scene, or array of a .npz");
     add("Input", "--channel", words->channel, "N", "Take one channel of several, from 0");
     add("Bare numbers", "--dims", words->dims, "X,Y,Z", "Voxels; x varies fastest in the file");
     add("Bare numbers", "--type", words->type, "TYPE",
-        "u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64");
+        "Type of the numbers: u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64");
     add("Bare numbers", "--channels", words->channels, "N", "Numbers of each voxel (1)");
-    add("Bare numbers", "--endian", words->endian, "ORDER", "little (usual) or big");
+    add("Bare numbers", "--endian", words->endian, "ORDER",
+        "Order of their bytes: little (usual) or big");
     add("Bare numbers", "--header", words->header, "BYTES", "Bytes before the numbers (0)");
     add("Shapes", "--band", words->band, "WIDTH",
         "Depth below a mesh's or level set's surface at which density is one (three voxels)");
-    add("Shapes", "--radius", words->radius, "R", "Of points without one of their own (2 voxels)");
+    add("Shapes", "--radius", words->radius, "R",
+        "Radius of points that have none of their own (2 voxels)");
     add("Shapes", "--columns", words->columns, "NAMES",
         "What the columns of a table of points are: x,y,z,-,radius (- is not used)");
     command.add_flag("--shell", words->shell, "Fog around a mesh's surface instead of inside it")
@@ -277,7 +305,7 @@ CLI::App& addConvertCommand(CLI::App& app) {
     add("Place", "--size", words->size, "LENGTH", "Longest side of the volume, instead; or three");
     add("Place", "--origin", words->origin, "X,Y,Z", "Centre of the first voxel");
     constexpr const char* values = "Values, in this order: repair, scale, offset, clamp, threshold";
-    command.add_flag("--repair", words->repair, "NaN and infinite values become zero")
+    command.add_flag("--repair", words->repair, "Set NaN and infinite values to zero")
         ->group(values);
     add(values, "--scale", words->scale, "S", "Multiply");
     add(values, "--offset", words->offset, "B", "Then add");
@@ -285,18 +313,18 @@ CLI::App& addConvertCommand(CLI::App& app) {
     add(values, "--threshold", words->threshold, "T", "Then zero where below");
     add(values, "--tolerance", words->tolerance, "E",
         "Values this near to zero become background, which takes no memory (0)");
-    add("Output", "--name", words->name, "NAME", "Of the grid (density)");
+    add("Output", "--name", words->name, "NAME", "Name of the grid (density)");
     add("Output", "--precision", words->precision, "P",
-        "half, float or double; the error is measured and said");
+        "Save values as half, float or double; the error is measured and said");
     add("Output", "--compression", words->compression, "C",
-        "none, zip or blosc; usual: blosc (vdb), none (nvdb, nrrd)");
-    add("Output", "--out-type", words->outType, "TYPE", "Of the numbers of a dense file");
+        "Compress: none, zip or blosc; usual: blosc (vdb), none (nvdb, nrrd)");
+    add("Output", "--out-type", words->outType, "TYPE", "Type of the numbers in a dense file");
     add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
         "First and last voxel that a dense file gets; else the active ones' box");
-    addChoice(command, "--progress", words->progress, {"auto", "bar", "json", "none"}, "One of")
-        ->type_name("WORD");
-    command.add_flag("-q,--quiet", words->quiet, "Warnings and errors only");
-    command.footer("Formats:\n" + describeFormats());
+    words->reports.addTo(command, "Print a JSON object about what is written, on stdout");
+    command.footer("Formats:\n" + describeFormats() + "\n" +
+                   examplesText({"woodcock convert teapot.obj teapot.vdb --voxel 0.01",
+                                 "woodcock convert slice.####.png scan.vdb --voxel 0.5"}));
     command.callback([words] { run(*words); });
     return command;
 }

@@ -3,13 +3,14 @@
 
 #include <array>
 #include <climits>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "cycles_render.h"
 #include "interrupt.h"
-#include "log.h"
 #include "option_kinds.h"
 #include "progress.h"
+#include "report_options.h"
 #include "scene_input.h"
 #include "woodcock/base/whole_file.h"
 
@@ -26,9 +27,8 @@ struct Options {
     std::optional<std::string> mode, interpolation;
     std::optional<double> stepRate;
     std::filesystem::path image, blend;
-    std::string blender, progress = "auto";
-    std::optional<std::string> logLevel;
-    bool quiet = false;
+    std::string blender;
+    ReportOptions reports;
 };
 
 void checkOutput(const std::filesystem::path& file, const char* option, const char* extension) {
@@ -48,15 +48,10 @@ void check(const Options& options) {
     checkOutput(options.blend, "--save", ".blend");
     if (options.stepRate && options.mode == "null")
         throw usageError("--step-rate is for --mode biased, which marches");
-    if (options.quiet && options.logLevel)
-        throw usageError("--quiet and --log-level contradict each other; give one of them");
 }
 
 void run(const Options& options, const std::string& commandLine) {
-    const ProgressStyle style =
-        options.quiet ? ProgressStyle::None : progressStyle(options.progress);
-    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
-             options.quiet ? "warning" : options.logLevel.value_or("info"));
+    const ProgressStyle style = options.reports.start();
     check(options);
     catchInterrupts();
     SceneDescription scene = parseInput(options.input);
@@ -92,8 +87,20 @@ void run(const Options& options, const std::string& commandLine) {
         spdlog::info("Blender {} ({}): {} samples in {:.1f} s", result.version, result.mode,
                      scene.render.spp, result.seconds);
     }
-    for (const auto& file : {options.image, options.blend})
-        if (!file.empty()) spdlog::info("wrote {}", file.string());
+    nlohmann::ordered_json files = nlohmann::ordered_json::array();
+    for (const auto& file : {options.image, options.blend}) {
+        if (file.empty()) continue;
+        spdlog::info("wrote {}", file.string());
+        files.push_back(file.string());
+    }
+    if (!options.reports.json) return;
+    nlohmann::ordered_json about{{"files", files}, {"blender", result.version}};
+    if (!options.image.empty())
+        about.update({{"mode", result.mode},
+                      {"samples", scene.render.spp},
+                      {"seed", scene.render.seed},
+                      {"seconds", result.seconds}});
+    printJson(about.dump(2));
 }
 
 }  // namespace
@@ -117,31 +124,30 @@ CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
               "marching:")
         ->type_name("MODE");
     addChoice(command, "--interpolation", o->interpolation, {"stochastic", "trilinear"},
-              "Of grids: one voxel at random (from Blender 5.0 on, and the default there), or all "
+              "How grids are read: one voxel at random (from Blender 5.0 on, and the default "
+              "there), or all "
               "eight:")
         ->type_name("KIND");
     addParsed(
         command, "--step-rate", o->stepRate,
         [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
-        "Of --mode biased: a step's length as Blender counts it, 1 being a voxel; 0.1 if not given")
+        "For --mode biased: a step's length as Blender counts it, 1 being a voxel; 0.1 if not "
+        "given")
         ->type_name("NUMBER");
     addParsed(command, "--res", o->input.size, parseImageSize,
               "Image size; a width alone keeps the scene's shape")
         ->type_name("WIDTHxHEIGHT");
     addCount(command, "--spp", o->spp, 1, 16777216, "Samples per pixel");
-    addCount(command, "--seed", o->seed, 0, INT64_MAX, "Of the random numbers");
-    addCount(command, "--threads", o->threads, 0, 1024, "0: one for each core");
+    addCount(command, "--seed", o->seed, 0, INT64_MAX,
+             "Start of the random numbers: another seed gives other noise");
+    addCount(command, "--threads", o->threads, 0, 1024,
+             "Threads to render with; 0, the default: as many as the machine has");
     addList(command, "--set", o->input.overrides,
             "Set a value of the scene, such as volume[0].scale=2")
         ->type_name("KEY=VALUE");
-    addChoice(command, "--progress", o->progress, {"auto", "bar", "json", "none"},
-              "How to show it:")
-        ->type_name("STYLE");
-    addChoice(command, "--log-level", o->logLevel,
-              {"trace", "debug", "info", "warning", "error", "off"},
-              "The least to report; debug shows what Blender says:")
-        ->type_name("LEVEL");
-    command.add_flag("-q,--quiet", o->quiet, "Report warnings and errors only");
+    o->reports.addTo(command, "Print a JSON object about the render, on stdout");
+    command.footer(examplesText({"woodcock cycles scene.toml -o cycles.exr --spp 64",
+                                 "woodcock cycles scene.toml --save scene.blend"}));
     command.callback([o, commandLine] { run(*o, commandLine); });
     return command;
 }

@@ -8,6 +8,8 @@
 
 #include "commands.h"
 #include "info_report.h"
+#include "option_kinds.h"
+#include "report_options.h"
 #include "print.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/grid_roles.h"
@@ -21,8 +23,10 @@ constexpr int exitBadInput = 3;
 struct InfoOptions {
     std::vector<std::filesystem::path> files;
     std::string grid;
-    bool json = false;
+    ReportOptions reports;
 };
+
+}  // namespace
 
 FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridName) {
     FileInfo info;
@@ -45,8 +49,10 @@ FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridN
     return info;
 }
 
-void report(const FileInfo& file) {
-    if (file.error.empty()) printText(infoText(file));
+namespace {
+
+void report(const FileInfo& file, bool quiet) {
+    if (file.error.empty() && !quiet) printText(infoText(file));
     std::fflush(stdout);  // keeps the order where both streams end on one terminal
     if (!file.error.empty()) spdlog::error("{}", file.error);
     for (const GridInfo& grid : file.grids)
@@ -54,14 +60,17 @@ void report(const FileInfo& file) {
 }
 
 void runInfo(const InfoOptions& options) {
+    WorkProgress progress(options.reports.start(), "info");
+    const bool json = options.reports.json;
     std::vector<FileInfo> files;
     for (const std::filesystem::path& path : options.files) {
         files.push_back(inspectFile(path, options.grid));
-        if (!options.json) report(files.back());
+        if (!json) report(files.back(), options.reports.quiet);
+        progress.update(static_cast<double>(files.size()) /
+                        static_cast<double>(options.files.size()));
     }
-    if (options.json)
-        printData(infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                  "\n");
+    if (json)
+        printJson(infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     const bool sound =
         std::all_of(files.begin(), files.end(), [](const FileInfo& file) { return file.sound(); });
     if (!sound) throw CLI::RuntimeError(exitBadInput);
@@ -72,12 +81,14 @@ void runInfo(const InfoOptions& options) {
 CLI::App& addInfoCommand(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App& command = *app.add_subcommand(
-        "info", "Tells what VDB files hold: types, bounds, values, memory, and what looks wrong.");
+        "info", "Tell what volumes hold: types, bounds, values, memory, and what looks wrong");
     command.add_option("INPUT", options->files, "One or more volumes (.vdb, .nvdb)")
         ->required()
         ->type_name("FILE");
     command.add_option("--grid", options->grid, "Only this grid of each file")->type_name("NAME");
-    command.add_flag("--json", options->json, "One JSON document for all files, on stdout");
+    options->reports.addTo(command, "Print one JSON document for all files, on stdout");
+    command.footer(
+        examplesText({"woodcock info smoke.vdb", "woodcock info smoke.vdb fire.vdb --json"}));
     command.callback([options] { runInfo(*options); });
     return command;
 }

@@ -22,6 +22,10 @@ struct FileInfo {
     bool sound() const;  ///< the file and all of its voxels could be read
 };
 
+/// What a file holds; only the grid of this name unless it is empty. What is wrong with the file is
+/// its `error`.
+FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridName);
+
 std::string infoText(const FileInfo& file);  ///< for people; without the error
 nlohmann::ordered_json infoJson(const std::vector<FileInfo>& files);
 

@@ -17,8 +17,19 @@ namespace woodcock::tool {
 
 namespace {
 
+// What a command printed on stdout stands before what it logs later, where both end in one file.
+void orderStdout() { std::fflush(stdout); }
+
+class TextSink : public spdlog::sinks::stderr_color_sink_mt {
+    void log(const spdlog::details::log_msg& message) override {
+        orderStdout();
+        spdlog::sinks::stderr_color_sink_mt::log(message);
+    }
+};
+
 class JsonSink : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg& message) override {
+        orderStdout();
         const nlohmann::ordered_json line{
             {"event", "log"},
             {"level",

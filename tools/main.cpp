@@ -2,16 +2,20 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <csignal>
+#include <memory>
 #include <new>
 #include <vector>
 
+#include "about.h"
 #include "commands.h"
 #include "log.h"
 #include "print.h"
+#include "stats.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/memory.h"
 #include "woodcock/base/nearest_name.h"
-#include "woodcock/base/version.h"
 
 namespace {
 
@@ -42,7 +46,8 @@ std::string commandLine(int argc, char** argv) {
 std::vector<std::string> namesOf(const std::vector<const CLI::Option*>& options) {
     std::vector<std::string> names;
     for (const CLI::Option* option : options)
-        if (!option->get_lnames().empty()) names.push_back("--" + option->get_lnames().front());
+        if (!option->get_lnames().empty() && !option->get_group().empty())  // no hidden ones
+            names.push_back("--" + option->get_lnames().front());
     return names;
 }
 
@@ -63,6 +68,46 @@ std::string describeMistake(const CLI::ParseError& error, const CLI::App& comman
     return text;
 }
 
+/// What stands for options that other programs have and this one has not.
+std::string answerFor(std::string_view option) {
+    constexpr std::pair<std::string_view, std::string_view> answers[]{
+        {"--denoise",
+         "there is no denoiser; --layers albedo,normal,error of render writes what "
+         "denoisers need"},
+        {"--width", "the image's size is --res WIDTHxHEIGHT"},
+        {"--height", "the image's size is --res WIDTHxHEIGHT"},
+        {"--size", "the image's size is --res WIDTHxHEIGHT"},
+        {"--resolution", "the image's size is --res WIDTHxHEIGHT"},
+        {"--preview", "a quick picture is --quality draft --res 320 --spp 16"},
+        {"--draft", "it is --quality draft"},
+        {"--verbose", "--log-level debug says more"},
+        {"--debug", "it is --log-level debug"},
+        {"-v", "--log-level debug says more, and -V tells the version"},
+        {"--silent", "it is --quiet"},
+        {"--gpu", "renders use the processor alone"},
+        {"--device", "renders use the processor alone"},
+        {"--frames", "one call draws one frame; a shell's loop or a farm calls it for each"},
+        {"--resume", "a render cannot be resumed"},
+        {"--overwrite", "outputs are written over"},
+        {"--force", "outputs are written over"},
+        {"--out", "it is -o or --output"},
+        {"--jobs", "it is --threads"},
+        {"-j", "it is --threads"}};
+    for (const auto& [name, answer] : answers)
+        if (name == option) return fmt::format("; {}", answer);
+    return "";
+}
+
+/// "; did you mean --noise?", or where to look.
+std::string suggestOption(const std::string& word, const CLI::App& command,
+                          const std::string& name) {
+    const std::string option = word.substr(0, word.find('='));
+    if (const std::string answer = answerFor(option); !answer.empty()) return answer;
+    const std::string nearest = nearestName(option, namesOf(command.get_options()));
+    return nearest.empty() ? fmt::format("; {} --help lists those that there are", name)
+                           : fmt::format("; did you mean '{}'?", nearest);
+}
+
 /// The mistake in words that help.
 Error explain(const CLI::ParseError& error, const CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
@@ -73,27 +118,53 @@ Error explain(const CLI::ParseError& error, const CLI::App& app) {
         const std::vector<std::string> words = app.remaining();
         if (words.empty())
             return usageError("no command is given; there are: {}", joinNames(known));
-        return usageError(
-            "unknown {} '{}'{}", words.front().starts_with("-") ? "option" : "command",
-            words.front(),
-            suggestName(words.front(), "known",
-                        words.front().starts_with("-") ? namesOf(app.get_options()) : known));
+        if (words.front().starts_with("-"))
+            return usageError("unknown option '{}'{}", words.front(),
+                              suggestOption(words.front(), app, "woodcock"));
+        return usageError("unknown command '{}'{}", words.front(),
+                          suggestName(words.front(), "known", known));
     }
     const CLI::App& command = *commands.front();
-    for (const std::string& word : command.remaining())
+    const std::string name = "woodcock " + command.get_name();
+    const std::vector<std::string> left = command.remaining();
+    for (const std::string& word : left)
         if (word.starts_with("-"))
-            return usageError("woodcock {}: unknown option {}{}", command.get_name(), word,
-                              suggestName(word, "known", namesOf(command.get_options())));
-    return usageError("woodcock {}: {}", command.get_name(), describeMistake(error, command));
+            return usageError("{}: unknown option {}{}", name, word,
+                              suggestOption(word, command, name));
+    if (!left.empty())
+        return usageError("{}: '{}' is more than the command takes; {} --help tells what it does",
+                          name, left.front(), name);
+    return usageError("{}: {}", name, describeMistake(error, command));
+}
+
+/// `woodcock version` and `woodcock help`, as many expect them beside --version and --help.
+void addHelpCommands(CLI::App& app, const std::string& programHelp) {
+    app.add_subcommand("version", "Print the versions of the program and of its libraries")
+        ->callback([] { tool::print("{}\n", tool::aboutProgram()); });
+    CLI::App* const help = app.add_subcommand("help", "Print the help of the program or a command");
+    const auto name = std::make_shared<std::string>();
+    help->add_option("COMMAND", *name, "Whose help to print; the program's if not given")
+        ->type_name("");
+    help->callback([&app, &programHelp, name] {
+        std::vector<std::string> known;
+        for (const CLI::App* command : app.get_subcommands(nullptr)) {
+            known.push_back(command->get_name());
+            if (known.back() == *name) return tool::print("{}", command->help("woodcock"));
+        }
+        if (!name->empty())
+            throw usageError("woodcock help: unknown command '{}'{}", *name,
+                             suggestName(*name, "known", known));
+        tool::print("{}", programHelp);
+    });
 }
 
 int run(int argc, char** argv) {
     CLI::App app("Renders OpenVDB volumes.", "woodcock");
-    app.set_version_flag("--version", fmt::format("woodcock {}", version()));
     app.require_subcommand(1);
     app.failure_message(CLI::FailureMessage::simple);
     app.footer(
-        "Exit codes: 0 done, 1 failed while working, 2 wrong usage, 3 bad input, 130 interrupted.");
+        "Exit codes: 0 done, 1 failed while working, 2 wrong usage, 3 bad input, 130 interrupted.\n"
+        "woodcock COMMAND --help tells more, with examples.");
     tool::addRenderCommand(app, commandLine(argc, argv));
     tool::addBakeCommand(app);
     tool::addConvertCommand(app);
@@ -104,6 +175,14 @@ int run(int argc, char** argv) {
     tool::addCyclesCommand(app, commandLine(argc, argv));
     for (CLI::App* command : app.get_subcommands(nullptr))
         for (CLI::Option* option : command->get_options()) option->disable_flag_override();
+    std::string help;
+    addHelpCommands(app, help);
+    app.set_version_flag("-V,--version", tool::aboutProgram,
+                         "Print the versions of the program and its libraries");
+    for (CLI::App* command : app.get_subcommands(nullptr))
+        command->set_version_flag("-V,--version", tool::aboutProgram)->group("");
+    help = app.help();  // before the parse: after it, CLI11 gives the help of the command
+    const auto start = std::chrono::steady_clock::now();
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -112,6 +191,9 @@ int run(int argc, char** argv) {
             return app.exit(error);
         throw explain(error, app);
     }
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    spdlog::debug("done in {:.2f} s, with at most {} of memory", time.count(),
+                  formatGiB(static_cast<double>(tool::peakMemoryBytes())));
     return 0;
 }
 

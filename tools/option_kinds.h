@@ -41,6 +41,13 @@ CLI::Option* addCount(CLI::App& command, const std::string& name, std::optional<
     return addParsed(command, name, value, parse, help)->type_name("COUNT");
 }
 
+/// The end of a command's help: lines that work as they are.
+inline std::string examplesText(const std::vector<std::string>& examples) {
+    std::string text = "Examples:";
+    for (const std::string& line : examples) text += "\n  " + line;
+    return text;
+}
+
 /// The place of `word` among the words `known`.
 inline std::size_t indexOfWord(const std::string& word, const std::vector<std::string>& known) {
     const auto found = std::find(known.begin(), known.end(), word);

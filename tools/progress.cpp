@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "progress.h"
 
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -43,6 +44,8 @@ void Progress::start(const RenderSettings& settings) {
 }
 
 void Progress::update(const RenderProgress& progress) {
+    spdlog::trace("render: {:.1f} %, {} samples a pixel, {} left", 100 * progress.fraction,
+                  progress.samples, formatDuration(progress.secondsLeft));
     if (style_ == ProgressStyle::Json) {
         printLine({{"event", "progress"},
                    {"fraction", progress.fraction},
@@ -79,8 +82,10 @@ WorkProgress::~WorkProgress() {
 void WorkProgress::update(double fraction) {
     const auto now = std::chrono::steady_clock::now();
     constexpr std::chrono::milliseconds pause(200);
-    if (style_ == ProgressStyle::None || now - shown_ < pause) return;
+    if (now - shown_ < pause) return;
     shown_ = now;
+    spdlog::trace("{}: {:.1f} %", name_, 100 * fraction);
+    if (style_ == ProgressStyle::None) return;
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const double left = fraction > 0 ? seconds * (1 - fraction) / fraction : 0;
     if (style_ == ProgressStyle::Json) {

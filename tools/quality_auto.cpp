@@ -57,8 +57,9 @@ ParseScene parser(const RenderOptions& options) {
 /// Absent where interrupted; nothing in it where the budget was too small.
 std::optional<TradeResult> measure(const SceneDescription& scene, const RenderOptions& options,
                                    double budget) {
-    WorkProgress progress(options.quiet ? ProgressStyle::None : progressStyle(options.progress),
-                          "choose");
+    WorkProgress progress(
+        options.reports.quiet ? ProgressStyle::None : progressStyle(options.reports.progress),
+        "choose");
     TradeSettings settings;
     settings.budget = budget;
     settings.threads = options.threads.value_or(0);

@@ -5,6 +5,7 @@
 #include <climits>
 
 #include "option_kinds.h"
+#include "output_folders.h"
 #include "scene_input.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/image/write_exr.h"
@@ -16,24 +17,31 @@ namespace {
 
 void addOutput(CLI::App& command, RenderOptions& o) {
     std::vector<CLI::Option*> options{
-        addList(command, "-o,--output", o.outputs, "Image to write: .exr, .png or .jpg")
+        addList(command, "-o,--output", o.outputs,
+                "Image to write: .exr, or a picture: .png, .jpg, .tif (16 bits), .webp")
             ->type_name("FILE"),
         addList(command, "--layers", o.layers, "Further EXR layers: " + joinNames(layerNames()))
             ->delimiter(',')
             ->type_name("LAYER,..."),
-        command.add_flag("--half", o.half, "EXR colour in half precision"),
-        command.add_option("--display", o.display, "OpenColorIO display of PNG and JPEG files")
+        command.add_flag("--half", o.half, "Write EXR colour in half precision"),
+        command.add_option("--display", o.display, "OpenColorIO display of pictures (all but EXR)")
             ->type_name("NAME"),
-        command.add_option("--view", o.view, "OpenColorIO view")->type_name("NAME"),
-        command.add_option("--look", o.look, "OpenColorIO look, instead of the view's own")
+        command.add_option("--view", o.view, "OpenColorIO view of pictures")->type_name("NAME"),
+        command
+            .add_option("--look", o.look,
+                        "OpenColorIO look, instead of the view's own; none: no look")
             ->type_name("NAME"),
         addParsed(
             command, "--exposure", o.exposure,
             [](const std::string& text) { return parseNumber(text, -100, 100); },
-            "Stops, before the display transform")
+            "Brighten pictures by so many stops, such as +1 or -0.5")
             ->type_name("NUMBER"),
-        command.add_option("--ocio", o.ocio, "OpenColorIO config, before the scene's and $OCIO")
-            ->type_name("FILE")};
+        command
+            .add_option("--ocio", o.ocio,
+                        "OpenColorIO config; without it, the scene's, else that of $OCIO, else "
+                        "Woodcock's own")
+            ->type_name("FILE"),
+        addMkdir(command, o.mkdir)};
     for (CLI::Option* option : options) option->group("Output");
 }
 
@@ -42,8 +50,8 @@ void addRendering(CLI::App& command, RenderOptions& o) {
     qualities.push_back("auto");
     std::vector<CLI::Option*> options{
         addChoice(command, "--quality", o.quality, qualities,
-                  "Instead of the scene's choices; auto: the best for the --time-limit or --noise, "
-                  "measured on the scene:")
+                  "Trade accuracy for speed, instead of what the scene says (auto: measure what is "
+                  "best for --time-limit or --noise):")
             ->type_name("QUALITY"),
         addParsed(command, "--res", o.size, parseImageSize,
                   "Image size; a width alone keeps the scene's shape")
@@ -53,10 +61,13 @@ void addRendering(CLI::App& command, RenderOptions& o) {
             ->type_name("X0,Y0,X1,Y1"),
         addCount(command, "--spp", o.spp, 1, INT_MAX,
                  "Samples per pixel; adaptive renders do as much work with other numbers"),
-        addParsed(command, "--samples", o.samples, parseSampleRange,
-                  "Samples FIRST to END - 1 of each pixel, for farms that merge")
+        addParsed(
+            command, "--samples", o.samples, parseSampleRange,
+            "Draw only samples FIRST to END - 1 of each pixel; there is no command yet that merges "
+            "such parts with their depth, samples and error")
             ->type_name("FIRST:END"),
-        addCount(command, "--seed", o.seed, 0, INT64_MAX, "Of the random numbers"),
+        addCount(command, "--seed", o.seed, 0, INT64_MAX,
+                 "Start of the random numbers: another seed gives other noise (0)"),
         addParsed(command, "--time-limit", o.timeLimit, parseDuration,
                   "Stop after this long, such as 90s, 5m, 2h")
             ->type_name("TIME"),
@@ -67,7 +78,8 @@ void addRendering(CLI::App& command, RenderOptions& o) {
         command.add_flag_function(
             "--adaptive,!--no-adaptive", [&o](std::int64_t times) { o.adaptive = times > 0; },
             "More samples where the error is larger, fewer elsewhere, in the same time"),
-        addCount(command, "--threads", o.threads, 0, 4096, "0: one for each core")};
+        addCount(command, "--threads", o.threads, 0, 4096,
+                 "How many processor threads to use (0: all cores)")};
     for (CLI::Option* option : options) option->group("Rendering");
 }
 
@@ -76,6 +88,16 @@ void addScene(CLI::App& command, RenderOptions& o) {
         addList(command, "--set", o.overrides,
                 "Set a value of the scene, such as volume[0].scale=2")
             ->type_name("KEY=VALUE"),
+        addParsed(command, "--sun", o.sun, parseAngles,
+                  "Where the sun stands, in degrees: above the horizon, and clockwise from above")
+            ->type_name("ELEVATION,AZIMUTH"),
+        addParsed(
+            command, "--orbit", o.orbit,
+            [](const std::string& text) { return parseNumber(text, -1e6, 1e6); },
+            "Turn the camera to its right around what it looks at, for turntables; a camera that "
+            "is chosen then frames all sides")
+            ->type_name("DEGREES"),
+        addOverlay(command, o.overlay),
         command
             .add_option("--write-scene", o.writeScene,
                         "Save the scene with all that was chosen, and render only where -o is "
@@ -83,22 +105,29 @@ void addScene(CLI::App& command, RenderOptions& o) {
             ->type_name("FILE"),
         command.add_flag("--repair", o.repair,
                          "Set NaN, infinite and negative voxels to zero instead of stopping"),
-        addEnum(command, "--storage", o.storage, storageNames, "Of voxels in memory:")
+        addEnum(command, "--storage", o.storage, storageNames, "Precision of voxels in memory:")
             ->type_name("KIND")};
     for (CLI::Option* option : options) option->group("Scene");
 }
 
 void addReports(CLI::App& command, RenderOptions& o) {
-    const std::vector<std::string> styles{"auto", "bar", "json", "none"};
-    const std::vector<std::string> levels{"trace", "debug", "info", "warning", "error", "off"};
-    std::vector<CLI::Option*> options{
-        addChoice(command, "--progress", o.progress, styles, "How to show it:")->type_name("STYLE"),
-        command.add_option("--stats", o.stats, "Write counts and times as JSON; - is stdout")
-            ->type_name("FILE"),
-        addChoice(command, "--log-level", o.logLevel, levels, "The least to report:")
-            ->type_name("LEVEL"),
-        command.add_flag("-q,--quiet", o.quiet, "Report warnings and errors only")};
-    for (CLI::Option* option : options) option->group("Reports");
+    o.reports.addTo(command, "Print counts, times and the files as a JSON object on stdout");
+    command.add_option("--stats", o.stats, "Write the same to a file; - is stdout")
+        ->type_name("FILE")
+        ->group("Reports");
+}
+
+/// Options that other programs have, which are named so that what to do instead can be said.
+void refuse(CLI::App& command, const std::string& names, const std::string& instead) {
+    command
+        .add_option_function<std::string>(names,
+                                          [=](const std::string&) {
+                                              throw usageError("there is no option {}: {}",
+                                                               names.substr(0, names.find(',')),
+                                                               instead);
+                                          })
+        ->expected(0, 1)
+        ->group("");
 }
 
 bool hasExtension(const std::filesystem::path& file, const char* extension) {
@@ -119,6 +148,9 @@ void exclude(bool first, bool second, const char* names) {
 }  // namespace
 
 void RenderOptions::addTo(CLI::App& command) {
+    command.footer(examplesText({"woodcock render smoke.vdb -o smoke.png --res 640 --spp 64",
+                                 "woodcock render scene.toml -o scene.exr --noise 1% "
+                                 "--time-limit 10m"}));
     command.add_option("INPUT", inputs, "A scene (.toml), or one or more volumes (.vdb, .nvdb)")
         ->required()
         ->type_name("FILE");
@@ -126,10 +158,19 @@ void RenderOptions::addTo(CLI::App& command) {
     addRendering(command, *this);
     addScene(command, *this);
     addReports(command, *this);
+    refuse(command, "--frames,--frame",
+           "one call draws one frame. Save a scene by --write-scene shot.toml, and loop: for FRAME "
+           "in 0001 0002 0003; do woodcock render shot.toml --set "
+           "\"volume[0].file=smoke.${FRAME}.vdb\" -o \"smoke.${FRAME}.png\"; done");
+    refuse(
+        command, "--denoise",
+        "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for (README, "
+        "For denoisers)");
 }
 
 SceneInput RenderOptions::sceneInput() const {
-    SceneInput input{inputs, overrides, size};
+    SceneInput input{inputs, overrides, size, sun, overlay};
+    if (orbit) input.overrides.push_back(fmt::format("camera.orbit={}", *orbit));
     if (quality && !choosesQuality())
         input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);
     return input;
@@ -144,27 +185,28 @@ void RenderOptions::check() const {
             "--quality auto needs to know what for: give --time-limit, such as 60s, or --noise, "
             "such as 1%");
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
-    exclude(quiet, logLevel.has_value(), "--quiet and --log-level");
-    exclude(quiet, progress == "bar" || progress == "json", "--quiet and --progress");
+    exclude(reports.json, stats == "-", "--json and --stats -");
+    exclude(reports.json, writeScene == "-", "--json and --write-scene -");
     for (auto layer = layers.begin(); layer != layers.end(); ++layer)
         if (std::find(layers.begin(), layer, *layer) != layer)
             throw usageError("--layers names '{}' twice", *layer);
-    if (!stats.empty() && !rendersImages())
+    if ((!stats.empty() || reports.json) && !rendersImages())
         throw usageError(
-            "--stats tells of a render, but --write-scene only saves the scene where no -o names "
-            "an "
-            "image");
+            "{} tells of a render, but --write-scene only saves the scene where no -o names an "
+            "image",
+            reports.json ? "--json" : "--stats");
 }
 
 void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) const {
     const bool exr = std::any_of(files.begin(), files.end(), isExrFile);
     const bool picture = !std::all_of(files.begin(), files.end(), isExrFile);
+    constexpr const char* pictures = "PNG, JPEG, TIFF and WebP";
     demandFile(!layers.empty(), "--layers", "EXR", exr);
     demandFile(half, "--half", "EXR", exr);
-    demandFile(display.has_value(), "--display", "PNG and JPEG", picture);
-    demandFile(view.has_value(), "--view", "PNG and JPEG", picture);
-    demandFile(look.has_value(), "--look", "PNG and JPEG", picture);
-    demandFile(exposure.has_value(), "--exposure", "PNG and JPEG", picture);
+    demandFile(display.has_value(), "--display", pictures, picture);
+    demandFile(view.has_value(), "--view", pictures, picture);
+    demandFile(look.has_value(), "--look", pictures, picture);
+    demandFile(exposure.has_value(), "--exposure", pictures, picture);
 }
 
 }  // namespace woodcock::tool

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "report_options.h"
 #include "scene_input.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/scene/description.h"
@@ -38,9 +39,7 @@ struct RenderOptions {
     std::vector<std::string> layers;
     bool half = false;
 
-    std::string progress = "auto";
-    std::optional<std::string> logLevel;
-    bool quiet = false;
+    ReportOptions reports;
 
     void addTo(CLI::App& command);
     /// The scene, of the quality that is asked for unless that is to be chosen.

@@ -10,21 +10,21 @@
 
 namespace woodcock::tool {
 
-namespace {
-
 std::uint64_t peakMemoryBytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kilobytes
 }
 
-}  // namespace
-
 std::string statsText(const RenderResult& result, const RenderSettings& settings,
-                      const std::string& sceneDigest, double loadSeconds) {
+                      const std::string& sceneDigest, double loadSeconds,
+                      const std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> names;
+    for (const std::filesystem::path& file : files) names.push_back(file.string());
     const Film::Window crop = result.film.crop();
     const RenderCounters& counters = result.counters;
     const nlohmann::ordered_json stats{{"version", version()},
+                                       {"files", names},
                                        {"scene_digest", sceneDigest},
                                        {"width", settings.width},
                                        {"height", settings.height},

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "woodcock/render/session.h"
 
 namespace woodcock::tool {
 
-/// The JSON of --stats.
+/// The most memory that the program held at once.
+std::uint64_t peakMemoryBytes();
+
+/// The JSON of --stats and --json. `files` are the images that the render wrote.
 std::string statsText(const RenderResult& result, const RenderSettings& settings,
-                      const std::string& sceneDigest, double loadSeconds);
+                      const std::string& sceneDigest, double loadSeconds,
+                      const std::vector<std::filesystem::path>& files);
 
 }  // namespace woodcock::tool

@@ -11,6 +11,7 @@
 #include "option_kinds.h"
 #include "print.h"
 #include "progress.h"
+#include "report_options.h"
 #include "scene_input.h"
 #include "trade_output.h"
 #include "trade_parts.h"
@@ -32,8 +33,8 @@ struct TradeOptions {
     std::optional<int> threads;
     std::optional<std::uint64_t> seed;
     std::filesystem::path report, candidates;
-    std::string progress = "auto";
-    bool json = false, needs = false, scaling = false;
+    bool needs = false, scaling = false;
+    ReportOptions reports;
 };
 
 std::string joinedFiles(const std::vector<std::filesystem::path>& files) {
@@ -43,13 +44,13 @@ std::string joinedFiles(const std::vector<std::filesystem::path>& files) {
 }
 
 std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription& complete,
-                                   const std::vector<Candidate>& given) {
+                                   const std::vector<Candidate>& given, ProgressStyle style) {
     const ParseScene parse = [&](const std::vector<std::string>& more) {
         SceneInput input = o.input;
         input.overrides.insert(input.overrides.end(), more.begin(), more.end());
         return parseInput(input);
     };
-    WorkProgress progress(progressStyle(o.progress), "trade");
+    WorkProgress progress(style, "trade");
     TradeSettings settings;
     settings.budget = o.budget.value_or(defaultBudget);
     settings.threads = o.threads.value_or(0);
@@ -62,7 +63,7 @@ std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription
     return runTrade(complete, parse, given, settings);
 }
 
-void weighCandidates(const TradeOptions& o, const std::string& commandLine) {
+void weighCandidates(const TradeOptions& o, const std::string& commandLine, ProgressStyle style) {
     checkInput(o.input);
     const std::vector<Candidate> given =
         o.candidates.empty() ? std::vector<Candidate>() : readCandidates(o.candidates);
@@ -75,7 +76,7 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine) {
         if (!o.report.empty()) refuseOverwriting(std::array{o.report / name}, read);
     loadAndComplete(complete);
 
-    std::optional<TradeResult> result = measure(o, complete, given);
+    std::optional<TradeResult> result = measure(o, complete, given, style);
     if (!result) throw CLI::RuntimeError(interruptedCode);
     TradeReport report{commandLine, joinedFiles(o.input.files), sceneDigest(complete),
                        RenderCommand(o.input, complete.output.files.empty())};
@@ -88,9 +89,9 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine) {
     const std::string text =
         tradeJson(report, false).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
         "\n";
-    if (o.json)
+    if (o.reports.json)
         printData(text);
-    else
+    else if (o.reports.printsText())
         printText(tradeText(report));
     if (o.report.empty()) return;
     writeReport(o.report / "trade.json", text);
@@ -105,7 +106,6 @@ void check(const TradeOptions& o) {
     if (o.needs || o.scaling) {
         if (!o.candidates.empty())
             throw usageError("{} contradicts --candidates: it compares none", mode);
-        if (o.json) throw usageError("{} contradicts --json; --report DIR writes its JSON", mode);
         if (o.threads || o.seed)
             throw usageError("{} contradicts {}", mode, o.threads ? "--threads" : "--seed");
     }
@@ -117,27 +117,29 @@ void check(const TradeOptions& o) {
 }
 
 void run(const TradeOptions& o, const std::string& commandLine) {
+    const ProgressStyle style = o.reports.start();
     check(o);
     if (o.needs)
-        runNeeds(o.input, o.budget.value_or(60), o.report);
+        runNeeds(o.input, o.budget.value_or(60), o.report, o.reports);
     else if (o.scaling)
-        runScaling(o.budget.value_or(600), o.report);
+        runScaling(o.budget.value_or(600), o.report, o.reports);
     else
-        weighCandidates(o, commandLine);
+        weighCandidates(o, commandLine, style);
 }
 
 }  // namespace
 
 CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
     CLI::App* command = app.add_subcommand(
-        "trade", "Measures what each choice costs and brings on a scene, and tells which to take");
+        "trade", "Measure what each choice costs and brings on a scene, and tell which to take");
     const auto o = std::make_shared<TradeOptions>();
     command->add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
         ->type_name("FILE");
+    addOverlay(*command, o->input.overlay);
     command->add_flag("--needs", o->needs,
-                      "Measures what features that the scene does not need would cost it, instead");
+                      "Measure what features that the scene does not need would cost it, instead");
     command->add_flag("--scaling", o->scaling,
-                      "Measures how cost grows with voxels, optical depth, albedo, overlapping "
+                      "Measure how cost grows with voxels, optical depth, albedo, overlapping "
                       "volumes and threads, instead; takes no input");
     addParsed(*command, "--budget", o->budget, parseDuration,
               "The time it may take (2m; --needs: 1m; --scaling: 10m)")
@@ -149,21 +151,22 @@ CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
         ->type_name("FILE");
     command
         ->add_option("--report", o->report,
-                     "Writes DIR/trade.json, DIR/trade.csv and DIR/trade.html, a page that needs "
+                     "Write DIR/trade.json, DIR/trade.csv and DIR/trade.html, a page that needs "
                      "nothing else (--needs, --scaling: under their names)")
         ->type_name("DIR");
-    command->add_flag("--json", o->json, "One JSON document on stdout instead of the tables");
     addList(*command, "--set", o->input.overrides,
             "Set a value of the scene, such as volume[0].scale=2")
         ->type_name("KEY=VALUE");
     addParsed(*command, "--res", o->input.size, parseImageSize,
               "Image size; a width alone keeps the scene's shape")
         ->type_name("WIDTHxHEIGHT");
-    addChoice(*command, "--progress", o->progress, {"auto", "bar", "json", "none"},
-              "How to show it:")
-        ->type_name("STYLE");
-    addCount(*command, "--threads", o->threads, 0, 4096, "0: one for each core");
-    addCount(*command, "--seed", o->seed, 0, INT64_MAX / 2, "Of the random numbers");
+    addCount(*command, "--threads", o->threads, 0, 4096,
+             "How many processor threads to use (0: all cores)");
+    addCount(*command, "--seed", o->seed, 0, INT64_MAX / 2,
+             "Start of the random numbers: another seed gives other noise (0)");
+    command->footer(examplesText({"woodcock trade scene.toml --budget 2m --report trade",
+                                  "woodcock trade smoke.vdb --needs"}));
+    o->reports.addTo(*command, "Print one JSON document on stdout instead of the tables");
     command->callback([o, commandLine] { run(*o, commandLine); });
     return *command;
 }

@@ -94,7 +94,8 @@ std::string needsCsv(const std::vector<NeedCost>& costs) {
 
 }  // namespace
 
-void runNeeds(const SceneInput& input, double budget, const std::filesystem::path& report) {
+void runNeeds(const SceneInput& input, double budget, const std::filesystem::path& report,
+              const ReportOptions& reports) {
     checkInput(input);
     prepareReport(report, {"needs.json", "needs.csv", "needs.html"});
     SceneDescription description = parseInput(input);
@@ -104,6 +105,7 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
 
     bool first = true;
     const auto show = [&](const NeedCost& cost) {
+        if (!reports.printsText()) return;
         if (std::exchange(first, false))
             print("{:<22} {:>11} {:>11} {:>16} {:>16}\n", "need", "without [s]", "with [s]",
                   "ratio of times", "of variances");
@@ -111,12 +113,14 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
     };
     const auto costs = needsCost(scene, settings, {.budget = budget, .onResult = show});
     const std::vector<std::string> notes = notesOn(costs);
-    for (const std::string& note : notes) print("note: {}\n", note);
-    if (report.empty()) return;
     const std::string name = input.files.front().filename().string();
     const Json json = needsJson(name, costs, notes);
-    writeReport(report / "needs.json",
-                json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace);
+    if (reports.json) printJson(text);
+    if (reports.printsText())
+        for (const std::string& note : notes) print("note: {}\n", note);
+    if (report.empty()) return;
+    writeReport(report / "needs.json", text + "\n");
     writeReport(report / "needs.csv", needsCsv(costs));
     writeReport(report / "needs.html", needsPage(json));
 }

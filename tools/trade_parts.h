@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "report_options.h"
 #include "scene_input.h"
 #include "woodcock/trade/timing.h"
 
@@ -12,12 +13,13 @@ namespace woodcock::tool {
 
 // What `woodcock trade` does beside weighing candidates: a file for each.
 
-/// --needs: what unneeded features would cost this scene. A table on stdout; needs.json and
+/// --needs: what unneeded features would cost this scene. A table or JSON on stdout; needs.json and
 /// needs.csv in the directory `report` unless that is empty.
-void runNeeds(const SceneInput& input, double budget, const std::filesystem::path& report);
+void runNeeds(const SceneInput& input, double budget, const std::filesystem::path& report,
+              const ReportOptions& reports);
 
 /// --scaling: how the cost grows. Likewise; scaling.json and scaling.csv.
-void runScaling(double budget, const std::filesystem::path& report);
+void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports);
 
 /// Makes the directory of a report, and makes sure that these files can be written there. Throws
 /// Error{Usage}.

@@ -81,18 +81,19 @@ std::string scalingCsv(const ScalingReport& report) {
 
 }  // namespace
 
-void runScaling(double budget, const std::filesystem::path& report) {
+void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports) {
     prepareReport(report, {"scaling.json", "scaling.csv", "scaling.html"});
     const ScratchDirectory scratch;
     const ScalingReport found =
         measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
                             spdlog::info("{}", what);
                         }});
-    printReport(found);
-    if (report.empty()) return;
     const Json json = scalingJson(found);
-    writeReport(report / "scaling.json",
-                json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace);
+    if (reports.json) printJson(text);
+    if (reports.printsText()) printReport(found);
+    if (report.empty()) return;
+    writeReport(report / "scaling.json", text + "\n");
     writeReport(report / "scaling.csv", scalingCsv(found));
     writeReport(report / "scaling.html", scalingPage(json));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <unistd.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +11,7 @@
 #include "interrupt.h"
 #include "option_kinds.h"
 #include "print.h"
+#include "report_options.h"
 #include "tests/proof/proof.h"
 #include "verify_report.h"
 #include "woodcock/base/error.h"
@@ -28,7 +29,8 @@ using namespace proof;
 constexpr int exitFailed = 1, exitInterrupted = 130;
 
 struct VerifyOptions {
-    bool quick = false, full = false, json = false;
+    bool quick = false, full = false;
+    ReportOptions reports;
     std::string quality = "reference";
     std::uint64_t seed = 1;
     std::string only;
@@ -76,13 +78,15 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A line on stderr where that is a terminal. Checks differ too much for a good guess of the time
-/// that is left; the mean of those done is better than none.
+/// A line on stderr. Checks differ too much for a good guess of the time that is left; the mean of
+/// those done is better than none.
 class VerifyProgress {
 public:
-    explicit VerifyProgress(std::size_t checks) : checks_(checks) {}
-    void show(std::size_t done, const std::string& check) const {
-        if (!terminal_) return;
+    VerifyProgress(std::size_t checks, ProgressStyle style)
+        : checks_(checks), style_(style), events_(style, "verify") {}
+    void show(std::size_t done, const std::string& check) {
+        if (style_ != ProgressStyle::Bar)
+            return events_.update(static_cast<double>(done) / static_cast<double>(checks_));
         const double seconds = secondsSince(start_);
         std::string left;
         if (done > 0)
@@ -94,17 +98,19 @@ public:
                       left, check);
     }
     void clear() const {
-        if (terminal_) printProgress("\r\x1b[K");
+        if (style_ == ProgressStyle::Bar) printProgress("\r\x1b[K");
     }
 
 private:
     std::size_t checks_;
-    bool terminal_ = isatty(STDERR_FILENO);
+    ProgressStyle style_;
+    WorkProgress events_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report) {
-    const VerifyProgress progress(list.size());
+void runChecks(const std::vector<Check>& list, bool print, ProgressStyle style,
+               VerifyReport& report) {
+    VerifyProgress progress(list.size(), style);
     for (const Check& check : list) {
         const std::size_t done = report.times.size();
         report.options.stop = [&] {
@@ -115,6 +121,7 @@ void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report)
         const auto start = std::chrono::steady_clock::now();
         const std::vector<Case> cases = run(check, report.options);
         report.times.push_back({check.kind, check.name, secondsSince(start)});
+        spdlog::debug("{}: {} cases in {:.2f} s", check.name, cases.size(), secondsSince(start));
         report.cases.insert(report.cases.end(), cases.begin(), cases.end());
         progress.clear();
         if (print) printText(casesText(check.name, cases));
@@ -126,6 +133,7 @@ void runChecks(const std::vector<Check>& list, bool print, VerifyReport& report)
 }
 
 void runVerify(const VerifyOptions& o) {
+    const ProgressStyle style = o.reports.start();
     const std::vector<Check> list = chosenChecks(o.only);
     catchInterrupts();
     validate(o);
@@ -134,20 +142,23 @@ void runVerify(const VerifyOptions& o) {
         .full = o.full, .adaptive = o.quality == "final", .seed = o.seed, .volumes = o.volumes};
     report.only = o.only;
     report.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-    runChecks(list, !o.json, report);
-    if (o.json)
+    runChecks(list, o.reports.printsText(), style, report);
+    if (o.reports.json)
         printData(reportJson(report));
-    else
+    else if (o.reports.printsText())
         printText(summaryText(report));
+    std::fflush(stdout);
     if (!o.report.empty()) {
         write(o.jsonFile(), reportJson(report));
         write(o.htmlFile(), reportHtml(report));
-        if (!o.json) print("wrote {} and {}\n", o.jsonFile().string(), o.htmlFile().string());
+        spdlog::info("wrote {} and {}", o.jsonFile().string(), o.htmlFile().string());
     }
     if (!report.complete) throw CLI::RuntimeError(exitInterrupted);
-    if (std::any_of(report.cases.begin(), report.cases.end(),
-                    [](const Case& c) { return c.verdict() != Verdict::Pass; }))
-        throw CLI::RuntimeError(exitFailed);
+    const auto failed = std::count_if(report.cases.begin(), report.cases.end(),
+                                      [](const Case& c) { return c.verdict() != Verdict::Pass; });
+    if (failed == 0) return;
+    if (o.reports.quiet) spdlog::error("{} of {} cases fail", failed, report.cases.size());
+    throw CLI::RuntimeError(exitFailed);
 }
 
 }  // namespace
@@ -155,32 +166,35 @@ void runVerify(const VerifyOptions& o) {
 CLI::App& addVerifyCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "verify",
-        "Holds this build on this machine against closed forms, published tables and properties "
+        "Hold this build on this machine against closed forms, published tables and properties "
         "that any volume has");
     auto options = std::make_shared<VerifyOptions>();
-    command->add_flag("--quick", options->quick, "two digits, in about a minute (the default)");
+    command->add_flag("--quick", options->quick,
+                      "Prove two digits, in about a minute (the default)");
     command->add_flag("--full", options->full,
-                      "three digits for tables of slabs; takes an hour or more on two cores");
+                      "Prove three digits for tables of slabs; takes an hour or more on two cores");
     addChoice(*command, "--quality", options->quality, {"reference", "final"},
-              "whose samples to prove (final: adaptive ones; others are biased):")
+              "Whose samples to prove (final: adaptive ones; others are biased):")
         ->type_name("NAME");
     command
         ->add_option("--only", options->only,
-                     "checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")
+                     "Only checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")
         ->type_name("TEXT");
     command
         ->add_option("--report", options->report,
-                     "writes DIR/verify.json and DIR/verify.html, a page that needs nothing else")
+                     "Write DIR/verify.json and DIR/verify.html, a page that needs nothing else")
         ->type_name("DIR");
-    command->add_flag("--json", options->json, "one JSON document on stdout instead of the table");
+    options->reports.addTo(*command, "Print one JSON document on stdout instead of the table");
     command
         ->add_option("--seed", options->seed,
-                     "draws other random numbers; of 1000 cases, chance fails one in 16 runs")
+                     "Draw other random numbers; of 1000 cases, chance fails one in 16 runs")
         ->type_name("N");
     command
-        ->add_option("FILE", options->volumes,
+        ->add_option("INPUT", options->volumes,
                      "VDB files of your own, to hold the properties of any volume against")
         ->type_name("FILE");
+    command->footer(
+        examplesText({"woodcock verify", "woodcock verify smoke.vdb --only slab --report proof"}));
     command->callback([options] { runVerify(*options); });
     return *command;
 }
