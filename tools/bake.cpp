@@ -6,14 +6,19 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "bake_frames.h"
+#include "bake_report.h"
 #include "commands.h"
 #include "interrupt.h"
-#include "log.h"
 #include "option_kinds.h"
+#include "output_folders.h"
 #include "preview.h"
+#include "preview_sheet.h"
 #include "print.h"
 #include "progress.h"
+#include "report_options.h"
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/bake/baker.h"
 #include "woodcock/base/memory.h"
@@ -31,13 +36,15 @@ constexpr int interruptedCode = 130;
 
 struct BakeOptions {
     std::string input;
-    fs::path output, like, preview, writeRecipe;
+    fs::path output, like, preview, writeRecipe, sheet;
     std::string likeGrid;
-    bool list = false, describe = false, half = false, full = false, quiet = false;
-    std::optional<double> voxel, seed, time, mostVoxels, tolerance;
+    bool list = false, describe = false, half = false, full = false, mkdir = false;
+    ReportOptions reports;
+    std::optional<double> voxel, seed, mostVoxels, tolerance;
+    FrameOptions frames;
     std::optional<int> resolution, threads, levels;
     std::vector<std::string> settings;
-    std::string compression = "blosc", progress = "auto";
+    std::string compression = "blosc";
 };
 
 std::vector<std::string> presetNames() {
@@ -63,7 +70,7 @@ RecipeText findRecipe(const std::string& input) {
                      suggestName(input, "presets", names));
 }
 
-std::vector<ParameterSetting> settingsOf(const BakeOptions& options) {
+std::vector<ParameterSetting> settingsOf(const BakeOptions& options, const BakeFrame& frame) {
     std::vector<ParameterSetting> settings;
     for (const std::string& text : options.settings) {
         const std::string origin = "--set " + text;
@@ -78,7 +85,8 @@ std::vector<ParameterSetting> settingsOf(const BakeOptions& options) {
         }
     }
     if (options.seed) settings.push_back({"seed", *options.seed, "--seed"});
-    if (options.time) settings.push_back({"time", *options.time, "--time"});
+    if (frame.time)
+        settings.push_back({"time", *frame.time, options.frames.time ? "--time" : "--frames"});
     return settings;
 }
 
@@ -108,11 +116,11 @@ void writeRecipe(const fs::path& file, const RecipeText& text) {
 }
 
 /// Nothing that is read may be written over.
-void checkFiles(const Recipe& recipe, const BakeOptions& options) {
+void checkFiles(const Recipe& recipe, const BakeOptions& options, const BakeFrame& frame) {
     std::vector<fs::path> read = recipe.files;
     read.insert(read.end(), {options.input, options.like});
-    std::vector<fs::path> written = bakedFiles(options.output, options.levels.value_or(0));
-    written.push_back(options.preview);
+    std::vector<fs::path> written = bakedFiles(frameFile(options.output, frame), options.levels.value_or(0));
+    written.push_back(frameFile(options.preview, frame));
     refuseOverwriting(written, read);
 }
 
@@ -145,65 +153,26 @@ std::string describeParameters(const Recipe& recipe) {
     return text;
 }
 
-void report(const Bake& bake) {
-    constexpr const char* sides[]{"-x", "+x", "-y", "+y", "-z", "+z"};
-    for (const BakedGridStatistics& grid : bake.statistics) {
-        spdlog::info(
-            "{}: {} active voxels ({:.2g} % of the box) in {} leaves and {} tiles, {}, values {:g} "
-            "to {:g}",
-            grid.name, grid.activeVoxels,
-            100 * static_cast<double>(grid.activeVoxels) / bake.boxVoxels, grid.leaves, grid.tiles,
-            fmt::format("{:.1f} MB", static_cast<double>(grid.bytes) / 1e6), grid.least,
-            grid.greatest);
-        if (grid.activeVoxels == 0) spdlog::warn("{} is empty", grid.name);
-        std::string cut;
-        for (std::size_t i = 0; i < 6; ++i)
-            if (grid.atBounds[i])
-                cut += fmt::format("{}{} ({} voxels)", cut.empty() ? "" : ", ", sides[i],
-                                   grid.atBounds[i]);
-        if (!cut.empty())
-            spdlog::warn("{} reaches the recipe's bounds, which may cut it off: {}", grid.name,
-                         cut);
-    }
-    spdlog::info("evaluated {} voxels of {:.3g} in {}: {:.3g} million a second",
-                 bake.evaluatedVoxels, bake.boxVoxels, formatDuration(bake.seconds),
-                 static_cast<double>(bake.evaluatedVoxels) / std::max(bake.seconds, 1e-9) / 1e6);
+void refuseBeyondHalf(const Bake& bake) {
+    for (const BakedGridStatistics& grid : bake.statistics)
+        if (std::max(std::abs(grid.least), std::abs(grid.greatest)) > 65504)
+            throw inputError(
+                "output '{}' has values up to {:g}, and half precision ends at 65504; bake with "
+                "--float",
+                grid.name, std::max(std::abs(grid.least), grid.greatest));
 }
 
-void run(const BakeOptions& options) {
-    const ProgressStyle style =
-        options.quiet ? ProgressStyle::None : progressStyle(options.progress);
-    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
-             options.quiet ? "warning" : "info");
-    if (options.list) return printPresets();
-    if (options.input.empty())
-        throw usageError("name a preset ({}), a recipe (.toml) or a volume (.vdb)",
-                         joinNames(presetNames()));
-    const RecipeText text = findRecipe(options.input);
-    const std::vector<ParameterSetting> settings = settingsOf(options);
-    if (options.describe) return printParameters(text, settings);
-    if (!options.writeRecipe.empty()) {
-        writeRecipe(options.writeRecipe, text);
-        if (options.output.empty()) return;
-    }
-    if (options.output.empty())
-        throw usageError("there is no output; name a file with -o, such as -o {}.vdb",
-                         fs::path(options.input).stem().string());
-    if (options.output.extension() != ".vdb")
-        throw usageError(
-            "--output {}: bake writes .vdb files; woodcock convert makes others of them",
-            options.output.string());
-    checkWritable(options.output);
-    if (!options.preview.empty()) {
-        checkWritable(options.preview);
-        checkPreview(options.preview);
-    }
-    catchInterrupts();
-
-    Recipe recipe = makeRecipe(text, settings);
-    checkFiles(recipe, options);
+/// Bakes one frame, or what is all there is; the JSON of --json. Nothing where it was interrupted
+/// before anything of this frame was written.
+std::optional<nlohmann::ordered_json> bakeFrame(const RecipeText& text, const BakeOptions& options,
+                                                const BakeFrame& frame, ProgressStyle style) {
+    Recipe recipe = makeRecipe(text, settingsOf(options, frame));
+    checkFiles(recipe, options, frame);
     if (options.tolerance)
         for (RecipeOutput& output : recipe.outputs) output.tolerance = *options.tolerance;
+    const fs::path volume = frameFile(options.output, frame),
+                   preview = frameFile(options.preview, frame);
+    if (!preview.empty()) checkPreview(preview, recipe);
     const BakeSettings how = settingsFor(recipe, options);
     std::optional<Bake> bake;
     {
@@ -213,30 +182,106 @@ void run(const BakeOptions& options) {
             return !interrupted();
         });
     }
-    if (!bake || interrupted()) {
-        spdlog::warn("interrupted: nothing is written");
-        throw CLI::RuntimeError(interruptedCode);
-    }
-    report(*bake);
+    if (!bake || interrupted()) return std::nullopt;
+    reportBake(*bake);
     VdbWriteOptions writing;
     writing.half = options.half;
     writing.compression = compressionNamed(options.compression);
     writing.metadata = {{"creator", fmt::format("woodcock {} bake", version())},
                         {"recipe", text.name},
                         {"parameters", describeParameters(recipe)}};
-    if (options.half)
-        for (const BakedGridStatistics& grid : bake->statistics)
-            if (std::max(std::abs(grid.least), std::abs(grid.greatest)) > 65504)
-                throw inputError(
-                    "output '{}' has values up to {:g}, and half precision ends at "
-                    "65504; bake with --float",
-                    grid.name, std::max(std::abs(grid.least), grid.greatest));
-    for (const fs::path& file :
-         writeBake(options.output, *bake, writing, options.levels.value_or(0)))
+    if (options.half) refuseBeyondHalf(*bake);
+    const std::vector<fs::path> files =
+        writeBake(volume, *bake, writing, options.levels.value_or(0));
+    for (const fs::path& file : files)
         spdlog::info("wrote {} ({:.1f} MB)", file.string(),
                      static_cast<double>(bytesOfFile(file)) / 1e6);
-    if (!options.preview.empty() && !renderPreview(options.output, options.preview, style))
-        throw CLI::RuntimeError(interruptedCode);
+    nlohmann::ordered_json json = bakeJson(recipe, *bake, frame, files);
+    if (!preview.empty()) {
+        if (!writePreview(recipe, *bake, volume, preview, {.threads = how.threads}, style)) {
+            spdlog::warn("interrupted in the preview: {} is whole", volume.string());
+            throw CLI::RuntimeError(interruptedCode);
+        }
+        json["preview"] = preview.string();
+    }
+    return json;
+}
+
+/// The names that are written, checked before the work.
+void checkOutputs(const BakeOptions& options, const std::vector<BakeFrame>& frames) {
+    if (options.output.empty())
+        throw usageError("there is no output; name a file with -o, such as -o {}.vdb",
+                         fs::path(options.input).stem().string());
+    if (options.output.extension() != ".vdb")
+        throw usageError(
+            "--output {}: bake writes .vdb files; woodcock convert makes others of them",
+            options.output.string());
+    checkFrameFile(options.output, "--output", frames);
+    if (!options.preview.empty()) checkFrameFile(options.preview, "--preview", frames);
+    prepareFolder(options.output, options.mkdir);
+    if (!options.preview.empty()) prepareFolder(options.preview, options.mkdir);
+    checkWritable(frameFile(options.output, frames.front()));
+    if (!options.preview.empty()) checkWritable(frameFile(options.preview, frames.front()));
+}
+
+void makeSheet(const BakeOptions& options, ProgressStyle style) {
+    if (!options.input.empty() || !options.output.empty())
+        throw usageError("--sheet shows all presets; it goes without a recipe and -o");
+    checkSheet(options.sheet);
+    catchInterrupts();
+    SheetSettings settings;
+    settings.resolution = options.resolution.value_or(settings.resolution);
+    settings.threads = options.threads.value_or(0);
+    if (writeSheet(options.sheet, settings, style)) {
+        if (options.reports.json)
+            printJson(nlohmann::ordered_json{{"sheet", options.sheet.string()},
+                                             {"presets", presetNames()}}
+                          .dump(2));
+        return;
+    }
+    spdlog::warn("interrupted: nothing is written");
+    throw CLI::RuntimeError(interruptedCode);
+}
+
+void run(const BakeOptions& options) {
+    const ProgressStyle style = options.reports.start();
+    if (options.list) return printPresets();
+    if (!options.sheet.empty()) return makeSheet(options, style);
+    if (options.input.empty())
+        throw usageError("name a preset ({}), a recipe (.toml) or a volume (.vdb)",
+                         joinNames(presetNames()));
+    const std::vector<BakeFrame> frames = bakeFrames(options.frames);
+    const RecipeText text = findRecipe(options.input);
+    if (options.describe) return printParameters(text, settingsOf(options, frames.front()));
+    if (!options.writeRecipe.empty()) {
+        if (options.writeRecipe != "-") prepareFolder(options.writeRecipe, options.mkdir);
+        writeRecipe(options.writeRecipe, text);
+        if (options.output.empty()) return;
+    }
+    checkOutputs(options, frames);
+    catchInterrupts();
+
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const BakeFrame& frame : frames) {
+        if (frame.number)
+            spdlog::info("frame {} of {} to {}: time {:g}", *frame.number, *frames.front().number,
+                         *frames.back().number, *frame.time);
+        std::optional<nlohmann::ordered_json> json = bakeFrame(text, options, frame, style);
+        if (!json) {
+            const auto written = &frame - frames.data();
+            if (written == 0)
+                spdlog::warn("interrupted: nothing is written");
+            else
+                spdlog::warn("interrupted in frame {}: the {} before it are written", *frame.number,
+                             written);
+            throw CLI::RuntimeError(interruptedCode);
+        }
+        all.push_back(std::move(*json));
+    }
+    if (!options.reports.json) return;
+    const bool sequence = frames.front().number.has_value();
+    printJson((sequence ? nlohmann::ordered_json{{"frames", all}} : all[0])
+                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -257,6 +302,7 @@ CLI::App& addBakeCommand(CLI::App& app) {
                     "A preset's name, a recipe (.toml), or a volume (.vdb) to be sampled anew")
         ->type_name("RECIPE");
     command.add_option("-o,--output", o->output, "The volume to write")->type_name("FILE.vdb");
+    addMkdir(command, o->mkdir);
     command.add_flag("--list", o->list, "List the presets");
     command.add_flag("--describe", o->describe, "List the recipe's parameters");
     command
@@ -266,11 +312,22 @@ CLI::App& addBakeCommand(CLI::App& app) {
     command.add_option("--set", o->settings, "A parameter of the recipe; may be repeated")
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE");
-    number("--seed", o->seed, -9e15, 9e15, "Short for --set seed=NUMBER");
-    number("--time", o->time, -1e9, 1e9, "Short for --set time=NUMBER, seconds");
+    number("--seed", o->seed, -9e15, 9e15,
+           "Short for --set seed=NUMBER: another seed gives another shape");
+    command
+        .add_option("--time", o->frames.time,
+                    "Short for --set time=SECONDS; FROM:TO:STEP makes a frame at each of these "
+                    "times, numbered from 1")
+        ->type_name("SECONDS");
+    command
+        .add_option("--frames", o->frames.frames,
+                    "Make these frames; their numbers go where -o has ####")
+        ->type_name("FIRST-LAST");
+    number("--fps", o->frames.rate, 1e-3, 1e6,
+           "Frames a second, of --frames (24); frame 1 is at time 0");
     number("--voxel", o->voxel, 1e-12, 1e12, "Size of a voxel, world units");
     addCount(command, "--resolution", o->resolution, 1, 1000000,
-             "Voxels along the longest side of the recipe's bounds; 256 if nothing else is said");
+             "Voxels along the longest side of the recipe's bounds (256)");
     command.add_option("--like", o->like, "Take this volume's voxels: its grid's transform")
         ->type_name("FILE.vdb");
     command.add_option("--grid", o->likeGrid, "The grid of --like; the first if not given")
@@ -282,17 +339,22 @@ CLI::App& addBakeCommand(CLI::App& app) {
     CLI::Option* half = command.add_flag("--half", o->half, "Save values in half precision");
     command.add_flag("--float", o->full, "Save values in single precision (the default)")
         ->excludes(half);
-    addChoice(command, "--compression", o->compression, {"none", "zip", "blosc"}, "One of")
+    addChoice(command, "--compression", o->compression, {"none", "zip", "blosc"},
+              "Compress the file:")
         ->type_name("WORD");
     command
-        .add_option("--preview", o->preview, "Render a small picture of it at once: PNG, JPEG, EXR")
+        .add_option("--preview", o->preview,
+                    "Render a small picture of it at once, in a second or two: PNG, JPEG, EXR")
+        ->type_name("FILE");
+    command.add_option("--sheet", o->sheet, "Only make a picture of all presets: PNG, JPEG")
         ->type_name("FILE");
     number("--max-voxels", o->mostVoxels, 1, 1e15,
            "Refuse to evaluate more voxels; as many as fit into memory if not given");
-    addCount(command, "--threads", o->threads, 1, 1024, "Threads; all if not given");
-    addChoice(command, "--progress", o->progress, {"auto", "bar", "json", "none"}, "One of")
-        ->type_name("WORD");
-    command.add_flag("-q,--quiet", o->quiet, "Say only what goes wrong");
+    addCount(command, "--threads", o->threads, 1, 1024,
+             "Threads to bake with; as many as the machine has if not given");
+    o->reports.addTo(command, "Print a JSON object about the files that are written, on stdout");
+    command.footer(examplesText({"woodcock bake cumulus -o cumulus.vdb --preview cumulus.png",
+                                 "woodcock bake explosion -o explosion.####.vdb --frames 1-48"}));
     command.callback([o] { run(*o); });
     return command;
 }

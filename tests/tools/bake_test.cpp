@@ -11,8 +11,10 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "woodcock/bake/ax_expression.h"
 #include "woodcock/bake/recipe.h"
 #include "woodcock/grid/vdb_load.h"
+#include "woodcock/image/read_image.h"
 
 namespace woodcock::test {
 namespace {
@@ -168,6 +170,171 @@ TEST_F(BakeCommand, BlenderSeesTheSame) {
     EXPECT_GT(seen["values"].size(), 1000u);
     for (const auto& v : seen["values"])
         EXPECT_EQ(v[3].get<float>(), grid->tree().getValue(openvdb::Coord(v[0], v[1], v[2])));
+}
+
+TEST_F(BakeCommand, MakesAFrameAtEachTime) {
+    const std::string rolling =
+        std::string(ball) + "[node.unused]\ntype = \"sphere\"\nradius = 1\n";
+    std::string text = rolling;
+    text.replace(text.find("radius = \"size\""), 15, "radius = \"size + time / 4\"");
+    writeText(dir / "ball.toml", text);
+    const ProgramResult result = bake({file("ball.toml"), "-o", file("b.###.vdb"), "--time",
+                                       "0:1:0.25", "--resolution", "41", "--json", "-q"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto frames = nlohmann::json::parse(result.out).at("frames");
+    ASSERT_EQ(frames.size(), 5U);
+    for (int n = 1; n <= 5; ++n) {
+        const std::string name = fmt::format("b.{:03}.vdb", n);
+        const auto& frame = frames[static_cast<std::size_t>(n - 1)];
+        EXPECT_EQ(frame.at("frame"), n);
+        EXPECT_EQ(frame.at("parameters").at("time"), (n - 1) * 0.25);
+        EXPECT_EQ(frame.at("files")[0].at("file"), file(name));
+        EXPECT_EQ(frame.at("files")[0].at("bytes"), fs::file_size(file(name)));
+        ASSERT_EQ(bake({file("ball.toml"), "-o", file("one.vdb"), "--resolution", "41", "--time",
+                        fmt::format("{}", (n - 1) * 0.25)})
+                      .exitCode,
+                  0);
+        EXPECT_EQ(readText(file(name)), readText(file("one.vdb"))) << name;
+    }
+    EXPECT_FALSE(fs::exists(file("b.006.vdb")));
+
+    // Frame 7 is at (7 - 1) / 24 seconds.
+    ASSERT_EQ(bake({file("ball.toml"), "-o", file("f.##.vdb"), "--frames", "6-7", "--resolution",
+                    "41", "--preview", file("p.#.png")})
+                  .exitCode,
+              0);
+    ASSERT_EQ(
+        bake({file("ball.toml"), "-o", file("one.vdb"), "--resolution", "41", "--time", "0.25"})
+            .exitCode,
+        0);
+    EXPECT_EQ(readText(file("f.07.vdb")), readText(file("one.vdb")));
+    EXPECT_NE(readText(file("f.06.vdb")), readText(file("one.vdb")));
+    EXPECT_TRUE(fs::exists(file("p.6.png")));
+    EXPECT_TRUE(fs::exists(file("p.7.png")));
+}
+
+TEST_F(BakeCommand, WrongFramesAreNamed) {
+    const std::string in = file("ball.toml"), out = file("x.vdb"), many = file("x.####.vdb");
+    const auto wrong = [&](std::vector<std::string> more, const std::string& said) {
+        more.insert(more.begin(), in);
+        expectFailure(more, 2, said);
+    };
+    wrong({"-o", out, "--time", "0:1:0.5"},
+          "put #### where a frame's number goes, such as x.####.vdb");
+    wrong({"-o", out, "--frames", "1-2"}, "there are 2 frames and one file");
+    wrong({"-o", many}, "#### stands for a frame's number, but one volume is made");
+    wrong({"-o", many, "--time", "3"}, "#### stands for a frame's number");
+    wrong({"-o", file("x.#.#.vdb"), "--frames", "1-2"}, "one place only");
+    wrong({"-o", many, "--time", "0:1:0"}, "--time 0:1:0: the step is 0; it must be above 0");
+    wrong({"-o", many, "--time", "0:1:-0.5"}, "the step is -0.5");
+    wrong({"-o", many, "--time", "1:0:0.5"}, "it ends before it begins");
+    wrong({"-o", many, "--time", "0:1"}, "FROM:TO:STEP");
+    wrong({"-o", many, "--time", "0:1:x"}, "--time 0:1:x: 'x'");
+    wrong({"-o", many, "--time", "0:1:1e-6"}, "these are 1000001 frames; at most 100000");
+    wrong({"-o", many, "--frames", "9-8"}, "it ends before it begins");
+    wrong({"-o", many, "--frames", "1-"}, "FIRST-LAST");
+    wrong({"-o", many, "--frames", "0-99999999"}, "at most 100000");
+    wrong({"-o", many, "--frames", "1-2", "--time", "0:1:1"}, "contradict");
+    wrong({"-o", out, "--fps", "25"}, "--fps is for --frames");
+    wrong({"-o", many, "--frames", "1-2", "--preview", file("p.png")}, "--preview");
+}
+
+TEST_F(BakeCommand, AnInterruptKeepsTheFramesBefore) {
+    RunningProgram running({"bake", "cumulus", "-o", file("x.#.vdb"), "--frames", "1-1000",
+                            "--resolution", "40", "--progress", "json"});
+    EXPECT_NE(running.awaitLine("wrote"), "");
+    running.signal(SIGTERM);
+    const ProgramResult result = running.wait();
+    EXPECT_EQ(result.exitCode, 130);
+    EXPECT_NE(result.err.find("before it are written"), std::string::npos) << result.err;
+    EXPECT_FALSE(loadGrid(file("x.1.vdb"), "density").field.support().empty());
+}
+
+TEST_F(BakeCommand, AnInterruptEndsExpressions) {
+    if (!axAvailable()) GTEST_SKIP() << "this build has no OpenVDB AX";
+    writeText(dir / "loop.toml", R"([bounds]
+min = [-1, -1, -1]
+max = [1, 1, 1]
+[node.a]
+type = "ax"
+input = { type = "falloff", edge = 0.3, input = { type = "sphere", radius = 0.8 } }
+code = "for (int i = 0; i < 900000; ++i) @density = sin(@density + i);"
+[[output]]
+name = "density"
+node = "a"
+)");
+    RunningProgram running({"bake", file("loop.toml"), "-o", file("x.vdb"), "--resolution", "64",
+                            "--progress", "json"});
+    EXPECT_NE(running.awaitLine("\"fraction\""), "");
+    running.signal(SIGINT);
+    EXPECT_EQ(running.wait().exitCode, 130);
+    EXPECT_FALSE(fs::exists(file("x.vdb")));
+}
+
+/// Of a preview's middle, where the volume is; display values, 0 to 1.
+Rgb middle(const fs::path& picture) {
+    const Image image = readImage(picture);
+    Rgb sum(0.0f);
+    for (int y = -20; y < 20; ++y)
+        for (int x = -20; x < 20; ++x) sum += image.at(image.width / 2 + x, image.height / 2 + y);
+    return sum * (1 / 1600.0f);
+}
+
+TEST_F(BakeCommand, PreviewsShowWhatTheGridsAreFor) {
+    const std::string grids = R"(
+[[output]]
+name = "OTHER"
+mask = "density"
+node = THING
+)";
+    const auto preview = [&](std::string more) {
+        writeText(dir / "look.toml", ball + more);
+        const ProgramResult result = bake({file("look.toml"), "-o", file("look.vdb"),
+                                           "--resolution", "33", "--preview", file("look.png")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return middle(file("look.png"));
+    };
+    const auto with = [&](const std::string& name, const std::string& node) {
+        std::string text = grids;
+        text.replace(text.find("OTHER"), 5, name);
+        text.replace(text.find("THING"), 5, node);
+        return preview(text);
+    };
+    const Rgb white = preview("");
+    EXPECT_LT(white[0], 1.25f * white[2]) << "a sun that is a little warm";
+    const Rgb green = with("Cd", R"({ type = "vector", x = 0.1, y = 0.9, z = 0.1 })");
+    EXPECT_GT(green[1], 1.5f * green[0]);
+    const Rgb flame = with("flame", "0.5");
+    EXPECT_GT(flame[0], 1.25f * flame[2]);
+    const Rgb hot = with("temperature", "2000");
+    EXPECT_GT(hot[0], 1.25f * hot[2]);
+    const Rgb cold = with("temperature", "300");
+    EXPECT_LT(cold[0], 1.25f * cold[2]);
+    const Rgb own = preview(R"(
+[preview]
+scene = """
+[[volume]]
+file = "${VOLUME}"
+scale = $(50 / size)
+albedo = [0.05, 0.1, 0.9]
+[[light]]
+type = "environment"
+"""
+)");
+    EXPECT_GT(own[2], 1.5f * own[0]);
+}
+
+TEST_F(BakeCommand, APreviewsMistakesAreNamedBeforeTheBake) {
+    const auto refused = [&](const std::string& scene, const std::string& said) {
+        writeText(dir / "ball.toml",
+                  std::string(ball) + "[preview]\nscene = '''\n" + scene + "\n'''\n");
+        expectFailure({file("ball.toml"), "-o", file("x.vdb"), "--preview", file("x.png")}, 3,
+                      said);
+    };
+    refused("[[light]]\ntype = \"environment\"", "shows no volume");
+    refused("[[volume]]\nfile = \"${VOLUME}\"\nalbdo = 1", "albdo");
+    refused("[[volume]]\nfile = \"${VOLUME}\"\nscale = $(2 * nothing)", "nothing");
+    refused("[[volume]]\nfile = \"${VOLUME}\"\nscale = $(2", "$( without its )");
 }
 
 TEST_F(BakeCommand, WrongUseIsNamed) {

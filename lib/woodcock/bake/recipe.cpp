@@ -8,6 +8,7 @@
 #include "woodcock/bake/pointwise.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/printable.h"
+#include "woodcock/base/toml_text.h"
 
 namespace woodcock {
 
@@ -20,7 +21,8 @@ public:
           toml_(parseToml(source.text, source.name)),
           table_(toml_, ""),
           settings_(settings) {
-        table_.allowOnly({"about", "parameters", "let", "bounds", "node", "output"}, "the recipe");
+        table_.allowOnly({"about", "parameters", "let", "bounds", "node", "output", "preview"},
+                         "the recipe");
     }
 
     std::string about() const {
@@ -56,6 +58,7 @@ public:
         const auto nodes = table_.find("node");
         if (nodes) nodes_ = nodes->table();
         readOutputs();
+        readPreview();
         for (const std::string& name : nodeNames())
             if (!entryOf_.contains(name))
                 entryOf_[name] = addNode(*nodes_->find(name));  // unused, yet checked
@@ -85,6 +88,46 @@ private:
             if (!(recipe_->bounds.lower[i] <= recipe_->bounds.upper[i]))
                 throw high.error("lies below min along {}: {} < {}", "xyz"[i],
                                  recipe_ -> bounds.upper[i], recipe_->bounds.lower[i]);
+    }
+
+    /// The text, with each $(expression) replaced by its value.
+    std::string fillIn(const TomlValue& text) const {
+        const std::string source = text.text();
+        std::string filled;
+        for (std::size_t i = 0; i < source.size();) {
+            const std::size_t start = source.find("$(", i);
+            filled += source.substr(i, start - i);
+            if (start == std::string::npos) break;
+            std::size_t end = start + 1;
+            for (int open = 0; end < source.size(); ++end) {
+                open += source[end] == '(' ? 1 : source[end] == ')' ? -1 : 0;
+                if (open == 0) break;
+            }
+            if (end == source.size()) throw text.error("has a $( without its )");
+            toml::table expression;
+            expression.insert("expression", source.substr(start + 2, end - start - 2));
+            try {
+                filled += tomlNumber(
+                    recipe_->parameters.evaluate(TomlTable(expression, "").need("expression", "")));
+            } catch (const Error& e) {
+                throw text.error("has {}", e.what());
+            }
+            i = end + 1;
+        }
+        return filled;
+    }
+
+    void readPreview() {
+        const auto preview = table_.find("preview");
+        if (!preview) return;
+        const TomlTable table = preview->table();
+        table.allowOnly({"scene"}, "the preview");
+        const TomlValue scene = table.need("scene", "scene = \"\"\" ... \"\"\"");
+        recipe_->preview = fillIn(scene);
+        recipe_->previewPlace = scene.place();
+        if (recipe_->preview.find(previewVolume) == std::string::npos)
+            throw scene.error("shows no volume; it needs a [[volume]] with file = \"{}\"",
+                              previewVolume);
     }
 
     void readOutputs() {

@@ -24,6 +24,9 @@ struct RecipeOutput {
     std::string place;        ///< in the recipe's file
 };
 
+/// What stands for the baked file in a recipe's preview.
+inline constexpr const char* previewVolume = "${VOLUME}";
+
 /// Procedural media: functions of space, and what grids to make of them.
 struct Recipe {
     std::string name, about;
@@ -33,6 +36,9 @@ struct Recipe {
     std::vector<RecipeOutput> outputs;
     std::string boundsPlace;
     std::vector<std::filesystem::path> files;  ///< that its nodes read
+    /// A scene that shows what was baked, whose file is "${VOLUME}" there; empty: none is given.
+    std::string preview;
+    std::string previewPlace;
 };
 
 /// A recipe's text, and where it comes from.
