@@ -109,10 +109,26 @@ std::uint64_t parseCount(std::string_view text, std::uint64_t lowest, std::uint6
 }
 
 double parseNumber(std::string_view text, double lowest, double highest) {
-    const auto value = number<double>(text);
+    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+    const auto value = number<double>(text.substr(plus ? 1 : 0));
     if (!value || !(*value >= lowest && *value <= highest))
         throw usageError("'{}' is not a number from {} to {}", text, lowest, highest);
     return *value;
+}
+
+std::pair<double, double> parseAngles(std::string_view text) {
+    const std::size_t comma = text.find(',');
+    try {
+        if (comma == std::string_view::npos) throw usageError("");
+        return {parseNumber(text.substr(0, comma), -90, 90),
+                parseNumber(text.substr(comma + 1), -3600, 3600)};
+    } catch (const Error&) {
+        throw usageError(
+            "'{}' is no place of the sun; expected ELEVATION,AZIMUTH in degrees, such as 40,120: "
+            "elevation from -90 to 90, azimuth 0 towards -z (towards +y where z is up), 90 towards "
+            "+x",
+            text);
+    }
 }
 
 double parseFraction(std::string_view text) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace woodcock {
 
@@ -39,8 +40,11 @@ std::string formatDuration(double seconds);
 /// A whole number from `lowest` to `highest`.
 std::uint64_t parseCount(std::string_view text, std::uint64_t lowest, std::uint64_t highest);
 
-/// A number from `lowest` to `highest`.
+/// A number from `lowest` to `highest`; a plus before it is allowed.
 double parseNumber(std::string_view text, double lowest, double highest);
+
+/// "40,120": where a sun stands, elevation from -90 to 90 and azimuth, in degrees.
+std::pair<double, double> parseAngles(std::string_view text);
 
 /// "1%" or "0.01": positive, at most 1.
 double parseFraction(std::string_view text);

@@ -133,6 +133,8 @@ bool isPlainLook(const std::string& look) {
            !look.starts_with('-');
 }
 
+bool meansNoLook(const std::string& look) { return equalLetters(look, "none"); }
+
 OCIO::LegacyViewingPipelineRcPtr pipeline(const DisplaySettings& settings) {
     const auto toDisplay = OCIO::DisplayViewTransform::Create();
     toDisplay->setSrc(OCIO::ROLE_SCENE_LINEAR);
@@ -147,7 +149,7 @@ OCIO::LegacyViewingPipelineRcPtr pipeline(const DisplaySettings& settings) {
     pipeline->setDisplayViewTransform(toDisplay);
     pipeline->setLinearCC(exposure);
     pipeline->setLooksOverrideEnabled(!settings.look.empty());
-    pipeline->setLooksOverride(settings.look.c_str());
+    pipeline->setLooksOverride(meansNoLook(settings.look) ? "" : settings.look.c_str());
     return pipeline;
 }
 
@@ -196,9 +198,9 @@ DisplaySettings ColorConfig::Impl::complete(DisplaySettings s) const {
             "view '{}' not found for display '{}' in the OpenColorIO config {}; it has: {}", s.view,
             s.display, origin, joinNames(views));
     const std::vector<std::string> looks = lookNames(*config);
-    if (!s.look.empty() && isPlainLook(s.look) && !contains(looks, s.look))
-        throw usageError("look '{}' not found in the OpenColorIO config {}; it has: {}", s.look,
-                         origin, joinNames(looks));
+    if (!s.look.empty() && isPlainLook(s.look) && !contains(looks, s.look) && !meansNoLook(s.look))
+        throw usageError("look '{}' not found in the OpenColorIO config {}; it has: {}{}", s.look,
+                         origin, joinNames(looks), looks.empty() ? "" : ", or none for no look");
     if (!(std::abs(s.exposure) <= 100))
         throw usageError("exposure {} is out of range: -100 to 100 stops", s.exposure);
     return s;

@@ -16,7 +16,7 @@ namespace woodcock {
 /// default.
 struct DisplaySettings {
     std::string display, view;
-    std::string look;     ///< instead of the view's own looks
+    std::string look;     ///< instead of the view's own looks; "none": no look at all
     double exposure = 0;  ///< stops, applied in scene-linear before anything else
 };
 

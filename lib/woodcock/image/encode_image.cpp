@@ -16,6 +16,8 @@ OIIO::TypeDesc typeOf(PixelType type) {
     switch (type) {
         case PixelType::UInt8:
             return OIIO::TypeDesc::UINT8;
+        case PixelType::UInt16:
+            return OIIO::TypeDesc::UINT16;
         case PixelType::Half:
             return OIIO::TypeDesc::HALF;
         case PixelType::Float:

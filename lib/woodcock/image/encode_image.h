@@ -11,7 +11,7 @@
 
 namespace woodcock {
 
-enum class PixelType { UInt8, Half, Float };
+enum class PixelType { UInt8, UInt16, Half, Float };
 
 struct ImageChannel {
     std::string name;
@@ -22,7 +22,7 @@ using ImageAttribute = std::variant<int, float, std::string, std::vector<float>>
 
 /// What an image file says beside its pixels.
 struct ImageHeader {
-    std::string format;         ///< as OpenImageIO calls it: openexr, png, jpeg
+    std::string format;         ///< as OpenImageIO calls it: openexr, png, jpeg, tiff, webp
     Film::Window window;        ///< where the pixels lie in the whole image
     int width = 0, height = 0;  ///< of the whole image
     std::vector<ImageChannel> channels;
@@ -30,7 +30,8 @@ struct ImageHeader {
 };
 
 /// The bytes of an image file. `pixels` holds header.window row by row, channels innermost; UInt8
-/// rounds [0, 1] to 0 ... 255 and clamps. Throws Error{Failure} with OpenImageIO's reason.
+/// rounds [0, 1] to 0 ... 255 and clamps, UInt16 to 0 ... 65535. Throws Error{Failure} with
+/// OpenImageIO's reason.
 std::vector<unsigned char> encodeImage(const ImageHeader& header, std::span<const float> pixels);
 
 }  // namespace woodcock

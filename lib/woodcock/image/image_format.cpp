@@ -16,7 +16,10 @@ ImageFormat imageFormat(const std::filesystem::path& file) {
     if (extension == ".exr") return ImageFormat::Exr;
     if (extension == ".png") return ImageFormat::Png;
     if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::Jpeg;
-    throw usageError("cannot write '{}': {}; known: .exr, .png, .jpg, .jpeg", file.string(),
+    if (extension == ".tif" || extension == ".tiff") return ImageFormat::Tiff;
+    if (extension == ".webp") return ImageFormat::WebP;
+    throw usageError("cannot write '{}': {}; known: .exr, .png, .jpg, .jpeg, .tif, .tiff, .webp",
+                     file.string(),
                      extension.empty() ? "it has no extension to tell the format"
                                        : fmt::format("unknown image extension '{}'", extension));
 }

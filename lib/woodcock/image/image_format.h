@@ -5,9 +5,10 @@
 
 namespace woodcock {
 
-enum class ImageFormat { Exr, Png, Jpeg };
+enum class ImageFormat { Exr, Png, Jpeg, Tiff, WebP };
 
-/// By extension, letter case aside: .exr, .png, .jpg, .jpeg. Throws Error{Usage} on any other.
+/// By extension, letter case aside: .exr, .png, .jpg, .jpeg, .tif, .tiff, .webp. Throws
+/// Error{Usage} on any other.
 ImageFormat imageFormat(const std::filesystem::path& file);
 
 }  // namespace woodcock

@@ -33,15 +33,24 @@ double Outputs::bytesPerPixel() const {
     return most;
 }
 
-void Outputs::write(const Film& film, const RenderMetadata& metadata) const {
-    std::string failures;
+std::string Outputs::write(const Film& film, const RenderMetadata& metadata) const {
+    std::string failures, note;
     for (const std::filesystem::path& file : settings_.files) {
         try {
-            if (imageFormat(file) == ImageFormat::Exr)
+            if (imageFormat(file) == ImageFormat::Exr) {
                 writeExr(file, film, metadata,
                          {settings_.half, settings_.layers, settings_.colour.chromaticities()});
-            else
-                writeDisplay(file, film, *transform_, settings_.withAlpha);
+                continue;
+            }
+            const double raised =
+                writeDisplay(file, film, *transform_,
+                             {settings_.withAlpha, settings_.glows, settings_.display.exposure});
+            if (raised > 0 && note.empty())
+                note = fmt::format(
+                    "{}: {:.2g} % of the pixels shine more than they cover, as fire does. A "
+                    "picture cannot add light, so their alpha is raised to their brightest "
+                    "channel; an EXR keeps light and alpha as they are",
+                    file.string(), 100 * raised);
         } catch (const Error& e) {
             failures += (failures.empty() ? "" : "\n") + std::string(e.what());
         } catch (const std::bad_alloc&) {
@@ -50,6 +59,7 @@ void Outputs::write(const Film& film, const RenderMetadata& metadata) const {
         }
     }
     if (!failures.empty()) throw failure("{}", failures);
+    return note;
 }
 
 }  // namespace woodcock

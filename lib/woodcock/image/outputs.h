@@ -16,9 +16,10 @@ struct OutputSettings {
     std::vector<std::filesystem::path> files = {};  ///< each in the format of its extension
     bool half = false;                              ///< EXR colour in half instead of float
     ExrLayers layers = {};                          ///< of the EXR files
-    DisplaySettings display = {};                   ///< of the PNG and JPEG files
+    DisplaySettings display = {};                   ///< of all others, which are pictures
     ColorConfig colour;                             ///< for them, and for the EXR's chromaticities
-    bool withAlpha = false;  ///< PNG keeps alpha: for renders whose environment is not visible
+    bool withAlpha = false;  ///< pictures keep alpha: for renders whose environment is not visible
+    bool glows = false;      ///< there is light where nothing covers; see writeDisplay()
 };
 
 /// The files that one render writes. Made before it, so that what would fail at its end (an
@@ -35,7 +36,8 @@ public:
     double bytesPerPixel() const;
 
     /// Writes every file, the others too when one fails; then throws Error{Failure} of those.
-    void write(const Film& film, const RenderMetadata& metadata) const;
+    /// Returns what the user should know of what was written; empty: nothing.
+    std::string write(const Film& film, const RenderMetadata& metadata) const;
 
 private:
     OutputSettings settings_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/write_display.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "woodcock/base/error.h"
@@ -13,18 +15,50 @@ namespace woodcock {
 
 namespace {
 
-/// Scene-linear R, G, B, A of the crop; R, G, B divided by alpha where `straight`.
-std::vector<float> scenePixels(const Film& film, bool straight) {
-    std::vector<float> pixels;
+struct Encoding {
+    const char* format;  // as OpenImageIO calls it
+    PixelType type;
+    bool holdsAlpha;
+    std::vector<std::pair<std::string, ImageAttribute>> attributes;
+};
+
+Encoding encodingOf(ImageFormat format) {
+    switch (format) {
+        case ImageFormat::Jpeg:
+            return {"jpeg", PixelType::UInt8, false, {{"CompressionQuality", 95}}};
+        case ImageFormat::Tiff:
+            return {"tiff", PixelType::UInt16, true, {{"Compression", std::string("zip")}}};
+        case ImageFormat::WebP:
+            // OpenImageIO divides its bytes by alpha, whatever they are said to be; and it halves
+            // the resolution of colour even where it compresses without loss.
+            return {"webp", PixelType::UInt8, false, {{"Compression", std::string("webp:95")}}};
+        default:
+            return {"png", PixelType::UInt8, true, {{"CompressionQuality", 95}}};
+    }
+}
+
+struct ScenePixels {
+    std::vector<float> rgba;  ///< scene-linear, of the crop
+    std::size_t raised = 0;   ///< pixels of more light than their alpha covers
+};
+
+/// Not multiplied by alpha where that is kept.
+ScenePixels scenePixels(const Film& film, bool straight, const DisplayFileSettings& settings) {
+    ScenePixels pixels;
     const Film::Window crop = film.crop();
-    pixels.reserve(4 * static_cast<std::size_t>(crop.width()) *
+    pixels.rgba.reserve(4 * static_cast<std::size_t>(crop.width()) *
                    static_cast<std::size_t>(crop.height()));
+    const double gain = std::exp2(settings.exposure);
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
-            const float alpha = film.alpha(x, y);
+            const Rgb radiance = film.radiance(x, y);
+            float alpha = film.alpha(x, y);
+            const double light = std::min(1.0, gain * double{radiance.maximum()});
+            if (straight && settings.glows && light > double{alpha})
+                alpha = static_cast<float>(light), ++pixels.raised;
             const float unmultiply = straight && alpha > 0 ? 1 / alpha : 1.0f;
-            const Rgb colour = film.radiance(x, y) * unmultiply;
-            pixels.insert(pixels.end(), {colour[0], colour[1], colour[2], alpha});
+            const Rgb colour = radiance * unmultiply;
+            pixels.rgba.insert(pixels.rgba.end(), {colour[0], colour[1], colour[2], alpha});
         }
     return pixels;
 }
@@ -39,22 +73,24 @@ std::vector<float> withoutAlpha(const std::vector<float>& rgba) {
 
 }  // namespace
 
-void writeDisplay(const std::filesystem::path& file, const Film& film,
-                  const DisplayTransform& transform, bool withAlpha) {
-    const bool jpeg = imageFormat(file) == ImageFormat::Jpeg;
-    const bool alpha = withAlpha && !jpeg;
-    std::vector<float> pixels = scenePixels(film, alpha);
-    transform.apply(pixels);
+double writeDisplay(const std::filesystem::path& file, const Film& film,
+                    const DisplayTransform& transform, const DisplayFileSettings& settings) {
+    const Encoding encoding = encodingOf(imageFormat(file));
+    const bool alpha = settings.withAlpha && encoding.holdsAlpha;
+    ScenePixels pixels = scenePixels(film, alpha, settings);
+    transform.apply(pixels.rgba);
 
     // Pictures have no window in a larger image: the crop is all there is.
     const int width = film.crop().width(), height = film.crop().height();
-    ImageHeader header{jpeg ? "jpeg" : "png", {0, 0, width, height}, width, height, {}, {}};
-    for (const char* name : {"R", "G", "B"}) header.channels.push_back({name, PixelType::UInt8});
-    if (alpha) header.channels.push_back({"A", PixelType::UInt8});
+    ImageHeader header{encoding.format, {0, 0, width, height}, width, height, {}, {}};
+    for (const char* name : {"R", "G", "B"}) header.channels.push_back({name, encoding.type});
+    if (alpha) header.channels.push_back({"A", encoding.type});
     header.attributes = {{"Software", fmt::format("woodcock {}", version())},
-                         {"oiio:UnassociatedAlpha", 1},
-                         {"CompressionQuality", 95}};
-    writeWholeFile(file, encodeImage(header, alpha ? pixels : withoutAlpha(pixels)));
+                         {"oiio:UnassociatedAlpha", 1}};
+    header.attributes.insert(header.attributes.end(), encoding.attributes.begin(),
+                             encoding.attributes.end());
+    writeWholeFile(file, encodeImage(header, alpha ? pixels.rgba : withoutAlpha(pixels.rgba)));
+    return static_cast<double>(pixels.raised) / (double(width) * height);
 }
 
 }  // namespace woodcock
