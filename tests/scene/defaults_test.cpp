@@ -247,8 +247,12 @@ TEST(Defaults, LightFromTheCamerasUpperLeft) {
         const Vec3d sun =
             -normalize(std::get<SunDescription>(c.description.lights[0].light).direction);
         const Affine3d pose = c.scene().camera.worldFromCamera;
-        EXPECT_NEAR(std::asin(sun.y) * 180 / pi, 40, 1.5);
+        EXPECT_NEAR(std::asin(sun.y) * 180 / pi, 40, 1e-9);
         EXPECT_LT(dot(sun, pose.column[0]), -0.5);
+        const auto place = std::get<SunDescription>(c.description.lights[0].light).place.value();
+        EXPECT_EQ(place.azimuth, std::round(place.azimuth));
+        EXPECT_GE(place.azimuth, 0);
+        EXPECT_LT(place.azimuth, 360);
         EXPECT_TRUE(std::holds_alternative<EnvironmentDescription>(c.description.lights[1].light));
     }
 }
@@ -328,11 +332,37 @@ TEST(Defaults, SayHowFireGlows) {
         const auto [bright, none] = complete(file, {hint});
         EXPECT_EQ(none, "");
         if (file == std::string("fire.vdb")) {
-            EXPECT_EQ(bright.volumes[0].blackbody.value().scale, 1400);
+            // Its largest value, 0.25, is 2000 K.
+            EXPECT_EQ(bright.volumes[0].blackbody.value().scale, 8000);
         } else {
             EXPECT_EQ(bright.volumes[0].emission.value().grid, "Flames");
         }
     }
+}
+
+TEST(Defaults, SayHowHotAFireIs) {
+    const TempDir dir;
+    const auto hint = [&](double hottest, double size) {
+        GridSpec smoke = ball(Affine3d::scale(Vec3d{1, 1, 1} * size)), hot = smoke;
+        hot.name = "temperature";
+        hot.value = [=](Vec3i v) { return hottest * v.x / 24; };
+        writeVdb(dir / "fire.vdb", {smoke, hot});
+        SceneDescription scene = parseSceneText(defaultSceneText({dir / "fire.vdb"}), "", "");
+        scene.places.clear();
+        return completeScene(scene, loadScene(scene)).at(0);
+    };
+    const auto expect = [](const std::string& note, const std::string& words) {
+        EXPECT_NE(note.find(words), std::string::npos) << note << words;
+    };
+    expect(hint(2.94, 1), "blackbody={ scale = 680, ");
+    expect(hint(2.94, 1), "its largest value, 2.94, is 1999 K then");
+    expect(hint(1500, 1), "blackbody={ scale = 1, ");
+    expect(hint(1500, 1), "its largest value, 1500, is 1500 K then");
+    // Half as long a way through it asks for twice the light.
+    const auto intensity = [](const std::string& note) {
+        return std::stod(note.substr(note.find("intensity = ") + 12));
+    };
+    EXPECT_NEAR(intensity(hint(1, 0.01)) / intensity(hint(1, 0.1)), 10, 1e-6);
 }
 
 TEST(Defaults, NameTheDensityThatWasFound) {

@@ -95,6 +95,8 @@ SceneDescription fullScene() {
 
     scene.lights = {
         {SunDescription{{1.0 / 3, -2, 3}, Rgb(3, 2, 1), 0.53, true}},
+        {SunDescription{SunPlace{100.0 / 3, -7.7, UpAxis::Z}.direction(), Rgb(1), 0.0, false,
+                        SunPlace{100.0 / 3, -7.7, UpAxis::Z}}},
         {EnvironmentDescription{Rgb(0.1f), "sky.hdr", UpAxis::Z, 33.3, false}},
         {PointDescription{{1, 2, 1.0 / 3}, Rgb(0.1f, 0.2f, 0.3f)}},
         {SphereDescription{{1, 2, 3}, 1.0 / 7, Rgb(9), false}},
@@ -104,7 +106,8 @@ SceneDescription fullScene() {
                     33.3,
                     {},
                     {},
-                    {1.0 / 3, -2}};
+                    {1.0 / 3, -2},
+                    100.0 / 3};
     addSurfaces(scene);
     scene.render = {.width = 321,
                     .height = 123,
@@ -196,6 +199,18 @@ TEST(SceneDigest, IsTheSameForEveryWayOfWriting) {
     const auto b = parse("volume = [{g = 5e-1, scale = [2, 2, 2], file = './a.vdb'}]");
     EXPECT_EQ(sceneDigest(a), sceneDigest(b));
     EXPECT_EQ(sceneDigest(a).size(), 16u);
+}
+
+TEST(SceneDigest, OfASunIsOfItsDirection) {
+    const std::string sun = "[[volume]]\nfile = \"a.vdb\"\n[[light]]\ntype = \"sun\"\n";
+    EXPECT_EQ(sceneDigest(parseSceneText(sun + "elevation = 90", "x", ".")),
+              sceneDigest(parseSceneText(sun + "elevation = 90\nup = \"y\"", "x", ".")));
+    EXPECT_NE(sceneDigest(parseSceneText(sun + "elevation = 80", "x", ".")),
+              sceneDigest(parseSceneText(sun + "elevation = 80\nazimuth = 1", "x", ".")));
+    const Vec3d d = SunPlace{80, 1}.direction();
+    EXPECT_EQ(sceneDigest(parseSceneText(sun + "elevation = 80\nazimuth = 1", "x", ".")),
+              sceneDigest(parseSceneText(
+                  sun + fmt::format("direction = [{}, {}, {}]", d.x, d.y, d.z), "x", ".")));
 }
 
 TEST(SceneDigest, ChangesWithAllThatTheImageShows) {

@@ -199,6 +199,14 @@ bool isNamedFor(const GridListing& grid, GridRole role) {
     return std::find(names.begin(), names.end(), lowerCase(grid.name)) != names.end();
 }
 
+bool meansVelocity(const GridListing& grid) {
+    const std::string lower = lowerCase(grid.name);
+    const auto names = namesOf(GridRole::Velocity);
+    return grid.gridClass == GridClass::Staggered ||
+           std::find(names.begin(), names.end(), lower) != names.end() ||
+           lower.starts_with("vel.") || lower.starts_with("velocity");
+}
+
 bool hasRole(const VdbFile& file, GridRole role) { return findByRoleName(file, role) != nullptr; }
 
 }  // namespace woodcock

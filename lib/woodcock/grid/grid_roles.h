@@ -30,6 +30,9 @@ FoundGrid findGrid(const VdbFile& file, GridRole role);
 /// Whether the grid's name is one of the role's usual names, in any case.
 bool isNamedFor(const GridListing& grid, GridRole role);
 
+/// Whether a grid holds velocities, or a component of them, by its name or its staggered voxels.
+bool meansVelocity(const GridListing& grid);
+
 /// True when some grid of the file has one of the role's names.
 bool hasRole(const VdbFile& file, GridRole role);
 

@@ -76,6 +76,14 @@ std::vector<EmissionPart> emission(const VolumeDescription& volume, const Loaded
     return all;
 }
 
+/// The parts of a volume that do something to light.
+std::vector<Part> activeParts(const VolumeDescription& volume, const LoadedVolume& loaded) {
+    std::vector<Part> all =
+        std::visit([&](const auto& c) { return parts(volume, c, loaded); }, volume.coefficients);
+    std::erase_if(all, [](const Part& p) { return (p.absorption + p.scattering).maximum() == 0; });
+    return all;
+}
+
 }  // namespace
 
 Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
@@ -84,11 +92,7 @@ Medium buildMedium(const SceneDescription& description, const LoadedScene& loade
     for (size_t i = 0; i < description.volumes.size(); ++i) {
         const VolumeDescription& volume = description.volumes[i];
         if (volume.inside != inside) continue;
-        const auto all =
-            std::visit([&](const auto& c) { return parts(volume, c, loaded.volumes[i]); },
-                       volume.coefficients);
-        for (Part part : all) {
-            if ((part.absorption + part.scattering).maximum() == 0) continue;
+        for (Part part : activeParts(volume, loaded.volumes[i])) {
             part.g = volume.g;
             part.majorantScale = description.render.majorantScale;
             medium.parts.emplace_back(std::move(part));
@@ -97,6 +101,16 @@ Medium buildMedium(const SceneDescription& description, const LoadedScene& loade
             medium.emission.push_back(std::move(part));
     }
     return medium;
+}
+
+std::vector<size_t> volumesOfParts(const SceneDescription& description, const LoadedScene& loaded,
+                                   std::string_view inside) {
+    std::vector<size_t> volumes;
+    for (size_t i = 0; i < description.volumes.size(); ++i)
+        if (description.volumes[i].inside == inside)
+            volumes.insert(volumes.end(),
+                           activeParts(description.volumes[i], loaded.volumes[i]).size(), i);
+    return volumes;
 }
 
 }  // namespace woodcock

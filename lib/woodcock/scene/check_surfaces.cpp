@@ -169,6 +169,12 @@ private:
 
 }  // namespace
 
+bool anySurfaceEmits(const SceneDescription& scene) {
+    for (size_t i = 0; i < scene.surfaces.size(); ++i)
+        if (natureOf(scene, i).emits) return true;
+    return false;
+}
+
 SurfaceNature natureOf(const SceneDescription& scene, size_t index) {
     const SurfaceDescription& surface = scene.surfaces[index];
     const auto materials = materialsOf(scene, surface.material);

@@ -16,6 +16,7 @@ struct SurfaceNature {
     double ior = 1;  ///< of what it holds
 };
 SurfaceNature natureOf(const SceneDescription& scene, size_t surface);
+bool anySurfaceEmits(const SceneDescription& scene);
 
 /// "diffuse", as scene files write it.
 std::string_view typeName(const MaterialDescription& material);

@@ -8,29 +8,19 @@
 
 #include "woodcock/base/path_variables.h"
 #include "woodcock/base/toml_text.h"
+#include "woodcock/medium/blackbody.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/choose_camera.h"
+#include "woodcock/scene/light_changes.h"
 #include "woodcock/scene/outline.h"
+#include "woodcock/scene/rounding.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock {
 namespace {
 
 constexpr double typicalDepth = 10;
-constexpr double margin = 0.08;  // of the picture, on every side that is tight
-
-/// `v` to a multiple of 10^exponent.
-double roundTo(double v, int exponent) {
-    const double power = std::pow(10, std::abs(exponent));
-    return exponent < 0 ? std::round(v * power) / power : std::round(v / power) * power;
-}
-Vec3d roundTo(Vec3d v, int exponent) {
-    return {roundTo(v.x, exponent), roundTo(v.y, exponent), roundTo(v.z, exponent)};
-}
-int magnitude(double v) { return static_cast<int>(std::floor(std::log10(v))); }
-
-/// From a y-up frame to the one whose up axis is `up`; -z becomes +y.
-Vec3d withUp(Vec3d v, UpAxis up) { return up == UpAxis::Z ? Vec3d{v.x, 0 - v.z, v.y} : v; }
 
 /// Median of the line integrals of the field (world units, mean of channels) over a lattice of rays
 /// along its three index axes, of those that meet more than wisps. By sums at unit steps or
@@ -102,12 +92,37 @@ Choice chooseScale(VolumeDescription& volume, const LoadedVolume& loaded) {
                                 typicalDepth)};
 }
 
-/// A comment in TOML: how what may be fire is lit. Nobody but the user knows how bright it is.
+/// The brightness at which a fire of this size is seen beside the sun: where it is hottest, a tenth
+/// of its size has a radiance of twenty, and where it is half as hot, of one.
+std::string glowIntensity(const VolumeDescription& volume, const LoadedVolume& loaded,
+                          double hottest) {
+    if (!loaded.density) return "";
+    const Affine3d world = volume.worldFromObject * loaded.density.objectFromIndex;
+    const double size = length(world.box(loaded.density.field->support()).size());
+    const double intensity = 200 / (size * double{blackbodyRadiance(hottest).maximum()});
+    if (!(intensity > 0) || !std::isfinite(intensity) || intensity > 1e14) return "";
+    return fmt::format(", intensity = {}", tomlNumber(roundTo(intensity, magnitude(intensity))));
+}
+
+/// A comment in TOML: how what may be fire is lit. Nobody but the user knows how hot it is.
 std::string glowHint(const VolumeDescription& volume, const LoadedVolume& loaded, size_t index) {
     if (volume.emission || volume.blackbody) return {};
+    constexpr double kelvins = 200;  // what goes beyond is no relative number
+    constexpr double flame = 2000;
+    const double most = loaded.hottest;
+    if (!loaded.temperatures.empty() && most > 0) {
+        const bool inKelvins = most >= kelvins;
+        const double exact = inKelvins ? 1 : flame / most;
+        const double scale = inKelvins ? 1 : roundTo(exact, magnitude(exact) - 1);
+        return fmt::format(
+            "# '{}' glows with --set 'volume[{}].blackbody={{ scale = {}{} }}':\n# its largest "
+            "value, {:.4g}, is {:.0f} K then\n",
+            loaded.temperatures, index, tomlNumber(scale),
+            glowIntensity(volume, loaded, scale * most), most, scale * most);
+    }
     if (!loaded.temperatures.empty())
         return fmt::format(
-            "# '{}' glows with --set 'volume[{}].blackbody={{ scale = 1400 }}' where its values go "
+            "# '{}' glows with --set 'volume[{}].blackbody={{ scale = 2000 }}' where its values go "
             "up to 1 or so,\n# and with scale = 1 where they are kelvins\n",
             loaded.temperatures, index);
     if (!loaded.flames.empty())
@@ -129,156 +144,33 @@ std::optional<std::string> chooseVolume(SceneDescription& scene, const LoadedSce
     return fmt::format("chosen for volume[{}]{}:\n{}", index, scale.reason, toml);
 }
 
-/// What points span along an axis.
-struct Extent {
-    double lower = std::numeric_limits<double>::infinity();
-    double upper = -std::numeric_limits<double>::infinity();
-    void add(double v) { lower = std::min(lower, v), upper = std::max(upper, v); }
-    double centre() const { return (lower + upper) / 2; }
-};
-
-/// Half the width and height of the picture that are to be filled: at distance 1 (perspective), or
-/// of a picture of height 1 (orthographic).
-struct HalfPicture {
-    double x, y;
-    explicit HalfPicture(const SceneDescription& scene) {
-        const bool perspective = scene.camera.kind == CameraDescription::Kind::Perspective;
-        y = (1 - 2 * margin) * (perspective ? std::tan(scene.camera.fovY * pi / 360) : 0.5);
-        x = y * scene.render.width / scene.render.height;
-    }
-};
-
-/// Where a perspective camera of this picture stands closest with all points in it, in a frame that
-/// is turned as the camera is. A point is in it while |p.x - eye.x| <= half.x (eye.z - p.z), and so
-/// for y; the tightest points on either side give the planes that meet in the eye.
-Vec3d nearestEye(const std::vector<Vec3d>& points, const HalfPicture& half) {
-    Extent left, right, below, above;
-    for (const Vec3d& p : points) {
-        left.add(p.z * half.x - p.x), right.add(p.z * half.x + p.x);
-        below.add(p.z * half.y - p.y), above.add(p.z * half.y + p.y);
-    }
-    return {(right.upper - left.upper) / 2, (above.upper - below.upper) / 2,
-            std::max((right.upper + left.upper) / (2 * half.x),
-                     (above.upper + below.upper) / (2 * half.y))};
-}
-
-/// How far from the origin, on its z axis, such a camera stands closest that looks there.
-double nearestDistance(const std::vector<Vec3d>& points, const HalfPicture& half) {
-    double distance = 0;
-    for (const Vec3d& p : points)
-        distance = std::max({distance, p.z + std::abs(p.x) / half.x, p.z + std::abs(p.y) / half.y});
-    return distance;
-}
-
-/// From the eye that is given.
-LookAt lookAtFrom(const SceneDescription& scene, Vec3d target, Vec3d up) {
-    const Vec3d eye = *scene.camera.given.eye, view = target - eye;
-    const double across = length(cross(normalize(view), normalize(up)));
-    if (!(across > 1e-9))
-        inPlace(findPlace(scene.places, "camera.eye"), [&] {
-            throw inputError(
-                "camera.eye looks at the scene's centre, [{:.6g}, {:.6g}, {:.6g}], along up, "
-                "[{}, {}, {}], or stands in it; give a look_at or another up",
-                target.x, target.y, target.z, up.x, up.y, up.z);
-        });
-    return {eye, target, up};
-}
-
-/// A three-quarter view from slightly above that shows all points, unless what is given of the
-/// camera asks for another.
-LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& points, UpAxis up) {
-    const PartialPose& given = scene.camera.given;
-    Box3d bounds;
-    for (const Vec3d& p : points) bounds.add(p);
-    const double size = length(bounds.size());
-    const int grain = magnitude(size) - 3;
-    const Vec3d above = given.up.value_or(withUp({0, 1, 0}, up));
-    if (given.eye) return lookAtFrom(scene, roundTo(bounds.centre(), grain), above);
-    if (given.up) up = std::abs(above.z) > std::abs(above.y) ? UpAxis::Z : UpAxis::Y;
-    const Vec3d centre = given.target.value_or(bounds.centre());
-    const Affine3d camera = lookAtTransform(withUp({0.55, 0.35, 1}, up), {0, 0, 0}, above);
-    std::vector<Vec3d> turned;
-    Extent x, y, z;
-    for (const Vec3d& p : points) {
-        const Vec3d d = p - centre;
-        turned.push_back(
-            {dot(d, camera.column[0]), dot(d, camera.column[1]), dot(d, camera.column[2])});
-        x.add(turned.back().x), y.add(turned.back().y), z.add(turned.back().z);
-    }
-    Vec3d eye{x.centre(), y.centre(), z.upper + size};
-    if (scene.camera.kind == CameraDescription::Kind::Perspective) {
-        eye = nearestEye(turned, HalfPicture(scene));
-        if (given.target) eye.z = nearestDistance(turned, HalfPicture(scene));
-        eye.z = std::max(eye.z, z.upper + 0.2 * size);  // a wide angle would touch the volume
-    }
-    if (given.target) {
-        eye = {0, 0, std::max(eye.z, 0.2 * size)};
-        return {roundTo(centre + camera.vector(eye), grain), centre, above};
-    }
-    return {roundTo(centre + camera.vector(eye), grain),
-            roundTo(centre + camera.vector({eye.x, eye.y, z.centre()}), grain), above};
-}
-
-/// The height of picture that shows all points from where the camera stands.
-double chooseHeight(const SceneDescription& scene, const std::vector<Vec3d>& points) {
-    const Affine3d cameraFromWorld = worldFromCamera(*scene.camera.pose).inverse();
-    const HalfPicture half(scene);
-    double height = 0;
-    for (const Vec3d& point : points) {
-        const Vec3d p = cameraFromWorld.point(point);
-        height = std::max({height, std::abs(p.x) / half.x, std::abs(p.y) / half.y});
-    }
-    return roundTo(height, magnitude(height) - 2);
-}
-
-std::optional<std::string> chooseCamera(SceneDescription& scene, const std::vector<Vec3d>& points,
-                                        UpAxis up) {
-    CameraDescription& camera = scene.camera;
-    const bool fits = camera.height || camera.kind == CameraDescription::Kind::Perspective;
-    if (camera.pose && fits) return std::nullopt;
-    Box3d bounds;
-    for (const Vec3d& p : points) bounds.add(p);
-    const Vec3d size = bounds.size();
-    if (!(length(size) > 0 && std::isfinite(length(size))))
-        throw inputError(
-            "no camera can be chosen for what is {:.3g} x {:.3g} x {:.3g} units large; give a "
-            "transform that brings it to another scale",
-            size.x, size.y, size.z);
-    const bool upIsOpen = !camera.pose && !camera.given.up;
-    if (!camera.pose) camera.pose = chooseView(scene, points, up);
-    camera.given = {};
-    if (!fits) camera.height = chooseHeight(scene, points);
-    return fmt::format("chosen to frame the {}{}:\n{}",
-                       scene.surfaces.empty() ? "volumes" : "scene",
-                       !upIsOpen         ? ""
-                       : up == UpAxis::Z ? " (up is +z, as in Blender, which wrote them)"
-                                         : " (up is +y)",
-                       writeCamera(camera));
-}
-
-bool anySurfaceEmits(const SceneDescription& scene) {
-    for (size_t i = 0; i < scene.surfaces.size(); ++i)
-        if (natureOf(scene, i).emits) return true;
-    return false;
+/// Towards the sun: 40 degrees high, to the camera's left, as light from the side shows form.
+SunPlace chooseSun(const SceneDescription& scene, UpAxis up) {
+    const Vec3d above = upVector(up);
+    Vec3d side = -worldFromCamera(*scene.camera.pose).column[0];
+    side = side - above * dot(side, above);
+    if (!(length(side) > 1e-6)) side = {-1, 0, 0};
+    const double ahead = up == UpAxis::Y ? -side.z : side.y;
+    const double azimuth = std::round(std::atan2(side.x, ahead) * 180 / pi);
+    return {40, azimuth < 0 ? azimuth + 360 : azimuth, up};
 }
 
 std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up) {
     if (!scene.lights.empty() || anySurfaceEmits(scene)) return std::nullopt;
-    // From the camera's left: light from the side shows form.
-    const Vec3d above = withUp({0, 1, 0}, up);
-    Vec3d side = -worldFromCamera(*scene.camera.pose).column[0];
-    side = side - above * dot(side, above);
-    side = length(side) > 1e-6 ? normalize(side) : withUp({-1, 0, 0}, up);
-    constexpr double elevation = 40 * pi / 180;
     SunDescription sun;
-    sun.direction = roundTo(-(side * std::cos(elevation) + above * std::sin(elevation)), -2);
+    sun.place = chooseSun(scene, up);
+    sun.direction = sun.place->direction();
     sun.irradiance = Rgb(5.2f, 4.4f, 3.4f);
     sun.angularDiameter = 0.53;
     EnvironmentDescription sky;
     sky.radiance = Rgb(0.12f, 0.19f, 0.32f);
-    scene.lights = {{sun}, {sky}};
-    return fmt::format("chosen, a warm sun from the upper left and a blue sky:\n{}\n{}",
-                       writeLight(scene.lights[0]), writeLight(scene.lights[1]));
+    scene.lights = changedLights({{sun}, {sky}}, scene.lightChanges);
+    std::string text = scene.lightChanges.empty()
+                           ? "chosen, a warm sun from the upper left and a blue sky:"
+                           : "chosen, a warm sun and a blue sky, changed as --set says:";
+    scene.lightChanges.clear();
+    for (const LightDescription& light : scene.lights) text += "\n" + writeLight(light);
+    return text;
 }
 
 UpAxis upOf(const SceneDescription& scene, const LoadedScene& loaded) {
@@ -308,8 +200,12 @@ std::vector<std::string> completeScene(SceneDescription& description, const Load
     for (size_t i = 0; i < description.volumes.size(); ++i)
         add(chooseVolume(description, loaded, i));
     const UpAxis up = upOf(description, loaded);
-    add(chooseCamera(description, sceneOutline(description, loaded), up));
-    add(chooseLights(description, up));
+    const std::vector<Vec3d> outline = sceneOutline(description, loaded);
+    const std::optional<std::string> camera = chooseCamera(description, outline, up);
+    const std::optional<std::string> lights = chooseLights(description, up);
+    turnCamera(description.camera, outline);  // the lights stay where they are
+    if (camera) notes.push_back(*camera + "\n" + writeCamera(description.camera));
+    add(lights);
     return notes;
 }
 

@@ -96,14 +96,26 @@ struct VolumeDescription {
     bool operator==(const VolumeDescription&) const = default;
 };
 
+enum class UpAxis { Y, Z };
+
+/// Where the sun stands, in degrees: azimuth 0 is -z (y up) or +y (z up), 90 is +x.
+struct SunPlace {
+    double elevation = 0, azimuth = 0;
+    UpAxis up = UpAxis::Y;
+    bool operator==(const SunPlace&) const = default;
+
+    /// The way its light travels.
+    Vec3d direction() const;
+};
+
 struct SunDescription {
-    Vec3d direction{0, -1, 0};   ///< the way its light travels, of any length
-    Rgb irradiance{1.0f};        ///< on a surface perpendicular to it
-    double angularDiameter = 0;  ///< degrees; 0: parallel rays
-    bool visible = false;        ///< to camera rays (needs an angular diameter)
+    Vec3d direction{0, -1, 0};           ///< the way its light travels, of any length
+    Rgb irradiance{1.0f};                ///< on a surface perpendicular to it
+    double angularDiameter = 0;          ///< degrees; 0: parallel rays
+    bool visible = false;                ///< to camera rays (needs an angular diameter)
+    std::optional<SunPlace> place = {};  ///< where `direction` follows from it: so it is written
     bool operator==(const SunDescription&) const = default;
 };
-enum class UpAxis { Y, Z };
 struct EnvironmentDescription {
     Rgb radiance{1.0f};                ///< multiplies the image where there is one
     std::filesystem::path image = {};  ///< lat-long, scene-linear; empty: constant
@@ -261,6 +273,10 @@ struct CameraDescription {
     std::optional<double> height;   ///< world units from bottom to top (orthographic); absent: fits
     PartialPose given = {};         ///< where `pose` is absent
     std::array<double, 2> shift{};  ///< of the film, in heights of the picture: right, up
+    /// Degrees by which completeScene() turns the camera about the up axis, around what it looks
+    /// at; a positive angle takes it to its right. A camera that is chosen frames the volumes then
+    /// from all sides.
+    std::optional<double> orbit = {};
     bool operator==(const CameraDescription&) const = default;
 };
 
@@ -299,6 +315,8 @@ struct OutputDescription {
 struct SceneDescription {
     std::vector<VolumeDescription> volumes;
     std::vector<LightDescription> lights;
+    /// Overrides of lights ("light[0].azimuth=200") where there are none: of those that are chosen.
+    std::vector<std::string> lightChanges;
     std::vector<MaterialDescription> materials;
     std::vector<SurfaceDescription> surfaces;
     CameraDescription camera;

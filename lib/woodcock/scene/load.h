@@ -32,6 +32,11 @@ struct LoadedVolume {
     LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
     /// Grids of the file that usually mean fire, whether or not they are asked for; empty: none.
     std::string temperatures, flames;
+    /// The largest value of `temperatures`, where that is of use: the scene comes from the VDB file
+    /// alone, and the grid is small enough to be looked through; 0: unknown.
+    float hottest = 0;
+    std::string
+        velocities;  ///< the first grid of the file that means them and is not used; or empty
     UpAxis up = UpAxis::Y;  ///< Z where the file's metadata say that Blender wrote it
 };
 
@@ -47,5 +52,8 @@ struct LoadedScene {
 /// Reads the grids and meshes that the scene uses, each once, and its images. Throws Error{Input}
 /// that names the place in the scene, the file and the grid.
 LoadedScene loadScene(const SceneDescription& scene);
+
+/// The images of lights that completeScene() chose as --set asked for. Throws Error{Input}.
+void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded);
 
 }  // namespace woodcock

@@ -2,6 +2,7 @@
 #include "woodcock/scene/parse.h"
 
 #include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/light_changes.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/parse_sections.h"
 #include "woodcock/scene/quality.h"
@@ -51,8 +52,7 @@ SceneDescription readScene(const TomlTable& table, const std::string& name,
             "{}: the scene has no [[volume]] and no [[surface]]; the least is\n"
             "[[volume]]\nfile = \"smoke.vdb\"",
             name);
-    for (const TomlTable& light : tablesOf(table, "light"))
-        scene.lights.push_back(parseLight(light, base));
+    scene.lights = parseLights(table, base);
     if (const auto render = table.find("render")) scene.render = parseRender(render->table());
     const double aspect = double(scene.render.width) / scene.render.height;
     if (const auto camera = table.find("camera"))
@@ -62,21 +62,47 @@ SceneDescription readScene(const TomlTable& table, const std::string& name,
     return scene;
 }
 
+/// Overrides of lights that are still to be chosen; they are tried on stand-ins, for the mistakes.
+void checkLightChanges(const SceneDescription& scene) {
+    if (scene.lightChanges.empty()) return;
+    if (anySurfaceEmits(scene))
+        throw inputError(
+            "{}{}: the scene has no [[light]], and none is chosen where a surface emits light",
+            overrideMark, scene.lightChanges.front());
+    foreseenLights(scene);
+}
+
 }  // namespace
+
+std::vector<LightDescription> parseLights(const TomlTable& scene,
+                                          const std::filesystem::path& base) {
+    std::vector<LightDescription> lights;
+    for (const TomlTable& light : tablesOf(scene, "light"))
+        lights.push_back(parseLight(light, base));
+    return lights;
+}
 
 SceneDescription parseSceneText(std::string_view text, const std::string& name,
                                 const std::filesystem::path& baseDirectory,
                                 const std::vector<std::string>& overrides) {
     toml::table table = parseToml(text, name);
+    std::vector<std::string> lightChanges;
     for (const std::string& assignment : overrides) {
+        if (changesALight(assignment) && !table.contains("light")) {
+            lightChanges.push_back(assignment);
+            continue;
+        }
         if (overriddenKey(assignment) == "render.quality") eraseChoices(table);
         applyOverride(table, assignment);
     }
+    keepOverriddenSuns(table);
     expandQuality(table);
     SceneDescription scene = readScene(TomlTable(table, ""), name, baseDirectory);
     for (const auto& [key, value] : table)
         collectPlaces(value, std::string(key.str()), scene.places);
     checkSurfaces(scene);
+    scene.lightChanges = std::move(lightChanges);
+    checkLightChanges(scene);
     return scene;
 }
 

@@ -98,11 +98,11 @@ CameraDescription parseCamera(const TomlTable& table, double aspect) {
                           : CameraDescription::Kind::Orthographic;
     if (camera.kind == CameraDescription::Kind::Perspective) {
         table.allowOnly({"type", "eye", "look_at", "up", "matrix", "fov", "focal_length",
-                         "sensor_height", "sensor_width", "shift"},
+                         "sensor_height", "sensor_width", "shift", "orbit"},
                         "a perspective [camera]");
         camera.fovY = parseFov(table, aspect, camera.fovY);
     } else {
-        table.allowOnly({"type", "eye", "look_at", "up", "matrix", "height", "shift"},
+        table.allowOnly({"type", "eye", "look_at", "up", "matrix", "height", "shift", "orbit"},
                         "an orthographic [camera]");
         if (const auto v = table.find("height")) camera.height = v->number(positive);
     }
@@ -110,6 +110,7 @@ CameraDescription parseCamera(const TomlTable& table, double aspect) {
         const auto sides = v->elements("[right, up], in heights of the picture", 2);
         camera.shift = {sides[0].number({-1000, 1000}), sides[1].number({-1000, 1000})};
     }
+    if (const auto v = table.find("orbit")) camera.orbit = v->number({-1e6, 1e6});
     for (const char* key : {"eye", "look_at", "up"})
         table.exclude(key, "matrix", "the matrix places the camera alone");
     if (const auto v = table.find("matrix"))

@@ -12,26 +12,19 @@ UpAxis parseUp(const TomlTable& table) {
                                                                                   : UpAxis::Y;
 }
 
-/// The way light travels from a sun at these angles (degrees). Azimuth 0 is -z (y up) or +y (z up),
-/// 90 is +x.
-Vec3d sunDirection(double elevation, double azimuth, UpAxis up) {
-    const double e = elevation * pi / 180, a = azimuth * pi / 180;
-    const double ahead = std::cos(e) * std::cos(a), right = std::cos(e) * std::sin(a);
-    return up == UpAxis::Y ? Vec3d{-right, -std::sin(e), ahead}
-                           : Vec3d{-right, -ahead, -std::sin(e)};
-}
-
-Vec3d parseDirection(const TomlTable& table) {
+/// The direction, and the place that it comes from, where that is given.
+void parseDirection(const TomlTable& table, SunDescription& sun) {
     const std::string why = "both say where the sun stands";
     table.exclude("elevation", "direction", why);
     table.exclude("azimuth", "direction", why);
     table.exclude("up", "direction", "up is for elevation and azimuth");
     if (const auto direction = table.find("direction")) {
-        const Vec3d v = direction->vector();
-        const double size = length(v);
+        sun.direction = direction->vector();
+        const double size = length(sun.direction);
         if (!(size > 0) || !std::isfinite(size))
-            throw direction->error("is [{}, {}, {}], which points nowhere", v.x, v.y, v.z);
-        return v;
+            throw direction->error("is [{}, {}, {}], which points nowhere", sun.direction.x,
+                                   sun.direction.y, sun.direction.z);
+        return;
     }
     const auto elevation = table.find("elevation");
     if (!elevation)
@@ -39,8 +32,9 @@ Vec3d parseDirection(const TomlTable& table) {
             "is a sun without direction or elevation; give direction = [0, -1, 0] "
             "(the way its light travels) or elevation = 40, azimuth = 120");
     const auto azimuth = table.find("azimuth");
-    return sunDirection(elevation->number({-90, 90}), azimuth ? azimuth->number() : 0,
-                        parseUp(table));
+    sun.place =
+        SunPlace{elevation->number({-90, 90}), azimuth ? azimuth->number() : 0, parseUp(table)};
+    sun.direction = sun.place->direction();
 }
 
 SunDescription parseSun(const TomlTable& table) {
@@ -48,7 +42,7 @@ SunDescription parseSun(const TomlTable& table) {
                      "angular_diameter", "visible"},
                     "a [[light]] of type sun");
     SunDescription sun;
-    sun.direction = parseDirection(table);
+    parseDirection(table, sun);
     if (const auto v = table.find("irradiance")) sun.irradiance = v->colour(notNegative);
     if (const auto v = table.find("angular_diameter")) sun.angularDiameter = v->number({0, 90});
     if (const auto v = table.find("visible")) {
@@ -104,6 +98,13 @@ SphereDescription parseSphere(const TomlTable& table) {
 }
 
 }  // namespace
+
+Vec3d SunPlace::direction() const {
+    const double e = elevation * pi / 180, a = azimuth * pi / 180;
+    const double ahead = std::cos(e) * std::cos(a), right = std::cos(e) * std::sin(a);
+    return up == UpAxis::Y ? Vec3d{-right, -std::sin(e), ahead}
+                           : Vec3d{-right, -ahead, -std::sin(e)};
+}
 
 LightDescription parseLight(const TomlTable& table, const std::filesystem::path& base) {
     const std::array<std::string, 4> types{"sun", "point", "sphere", "environment"};

@@ -14,6 +14,9 @@ VolumeDescription parseVolume(const TomlTable& table, const std::filesystem::pat
 MaterialDescription parseMaterial(const TomlTable& table, const std::filesystem::path& base);
 SurfaceDescription parseSurface(const TomlTable& table, const std::filesystem::path& base);
 LightDescription parseLight(const TomlTable& table, const std::filesystem::path& base);
+/// All [[light]] sections.
+std::vector<LightDescription> parseLights(const TomlTable& scene,
+                                          const std::filesystem::path& base);
 /// `aspect` is the image's width over its height: a sensor's width needs it.
 CameraDescription parseCamera(const TomlTable& table, double aspect);
 RenderDescription parseRender(const TomlTable& table);

@@ -75,7 +75,13 @@ void write(SceneWriter& out, const VolumeDescription& volume) {
 
 void write(SceneWriter& out, const SunDescription& sun) {
     out.line("type", "\"sun\"");
-    out.line("direction", tomlVector(sun.direction), "the way its light travels");
+    if (sun.place) {
+        out.line("elevation", tomlNumber(sun.place->elevation), "degrees above the horizon");
+        out.line("azimuth", tomlNumber(sun.place->azimuth), "degrees, clockwise from above");
+        if (sun.place->up == UpAxis::Z) out.line("up", "\"z\"");
+    } else {
+        out.line("direction", tomlVector(sun.direction), "the way its light travels");
+    }
     out.line("irradiance", tomlColour(sun.irradiance));
     if (sun.angularDiameter != 0)
         out.line("angular_diameter", tomlNumber(sun.angularDiameter), "degrees");
@@ -140,6 +146,8 @@ void write(SceneWriter& out, const CameraDescription& camera) {
         out.line("shift",
                  fmt::format("[{}, {}]", tomlNumber(camera.shift[0]), tomlNumber(camera.shift[1])),
                  "of the film, in heights of the picture: right, up");
+    if (camera.orbit)
+        out.line("orbit", tomlNumber(*camera.orbit), "degrees to its right, around what it sees");
     if (camera.pose)
         std::visit([&](const auto& pose) { write(out, pose); }, *camera.pose);
     else
@@ -247,6 +255,9 @@ std::string sceneDigest(const SceneDescription& scene) {
     content.render.lookup = scene.render.lookup;
     content.render.levelOfDetail = scene.render.levelOfDetail;
     content.render.majorantScale = scene.render.majorantScale;
+    // However it is said where a sun stands.
+    for (LightDescription& light : content.lights)
+        if (auto* sun = std::get_if<SunDescription>(&light.light)) sun->place.reset();
     for (std::filesystem::path* file : sceneFiles(content))
         *file = std::filesystem::absolute(*file).lexically_normal();
     SceneWriter out(".", SceneWriter::Comments::No);
