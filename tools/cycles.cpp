@@ -7,8 +7,10 @@
 
 #include "commands.h"
 #include "cycles_render.h"
+#include "frames.h"
 #include "interrupt.h"
 #include "option_kinds.h"
+#include "output_folders.h"
 #include "progress.h"
 #include "report_options.h"
 #include "scene_input.h"
@@ -28,13 +30,17 @@ struct Options {
     std::optional<double> stepRate;
     std::filesystem::path image, blend;
     std::string blender;
+    bool mkdir = false;
     ReportOptions reports;
 };
 
-void checkOutput(const std::filesystem::path& file, const char* option, const char* extension) {
+void checkOutput(const std::filesystem::path& file, const char* option, const char* extension,
+                 bool mkdir) {
     if (file.empty()) return;
     if (file.extension() != extension)
         throw usageError("{} '{}' is no {} file", option, file.string(), extension);
+    checkNoPattern(file, option);
+    prepareFolder(file, mkdir, option);
     checkWritable(file);
 }
 
@@ -44,8 +50,8 @@ void check(const Options& options) {
         throw usageError(
             "there is no output; name an image with -o, such as -o cycles.exr, or a "
             "file to save the scene in, with --save");
-    checkOutput(options.image, "-o", ".exr");
-    checkOutput(options.blend, "--save", ".blend");
+    checkOutput(options.image, "-o", ".exr", options.mkdir);
+    checkOutput(options.blend, "--save", ".blend", options.mkdir);
     if (options.stepRate && options.mode == "null")
         throw usageError("--step-rate is for --mode biased, which marches");
 }
@@ -112,6 +118,7 @@ CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
     command.add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
         ->required()
         ->type_name("FILE");
+    addOverlay(command, o->input.overlay);
     command.add_option("-o,--output", o->image, "Image to write")->type_name("FILE.exr");
     command.add_option("--save", o->blend, "Save the scene for Blender; renders only with -o")
         ->type_name("FILE.blend");
@@ -119,6 +126,7 @@ CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
         .add_option("--blender", o->blender,
                     "Blender's program, or a Python with bpy; else $BLENDER, else on the PATH")
         ->type_name("PROGRAM");
+    addMkdir(command, o->mkdir);
     addChoice(command, "--mode", o->mode, {"null", "biased"},
               "Null-collision tracking (from Blender 5.0 on, and the default there) or ray "
               "marching:")
@@ -139,9 +147,9 @@ CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
         ->type_name("WIDTHxHEIGHT");
     addCount(command, "--spp", o->spp, 1, 16777216, "Samples per pixel");
     addCount(command, "--seed", o->seed, 0, INT64_MAX,
-             "Start of the random numbers: another seed gives other noise");
+             "Start of the random numbers: another seed gives other noise (0)");
     addCount(command, "--threads", o->threads, 0, 1024,
-             "Threads to render with; 0, the default: as many as the machine has");
+             "How many processor threads to use (0: all cores)");
     addList(command, "--set", o->input.overrides,
             "Set a value of the scene, such as volume[0].scale=2")
         ->type_name("KEY=VALUE");

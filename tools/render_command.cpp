@@ -16,6 +16,7 @@ std::string shellWord(const std::string& word) {
 RenderCommand::RenderCommand(const SceneInput& input, bool namesOutput)
     : start_("woodcock render") {
     for (const auto& file : input.files) start_ += " " + shellWord(file.string());
+    if (input.overlay) start_ += " --overlay";
     if (namesOutput) end_ = " -o " + shellWord(input.files.front().stem().string() + ".exr");
     if (input.size) {
         start_ += fmt::format(" --res {}", input.size->width);

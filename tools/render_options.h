@@ -30,14 +30,16 @@ struct RenderOptions {
     std::optional<std::string> quality;  ///< one of qualityNames, or "auto"
     std::optional<int> threads;
     std::vector<std::string> overrides;
+    std::optional<std::pair<double, double>> sun;  ///< elevation, azimuth; degrees
+    std::optional<double> orbit;                   ///< degrees
     std::optional<Storage> storage;
-    bool repair = false;
+    bool repair = false, overlay = false;
 
     std::optional<std::string> display, view, look;
     std::optional<double> exposure;
     std::filesystem::path ocio;
     std::vector<std::string> layers;
-    bool half = false;
+    bool half = false, mkdir = false;
 
     ReportOptions reports;
 

@@ -95,7 +95,7 @@ TEST_F(Cli, AdaptiveSamplesAreAskedFor) {
 TEST_F(Cli, SaysWhatItChoseAsTheSceneThatWouldFixIt) {
     const ProgramResult result = runProgram(quick({"--write-scene", file("scene.toml")}));
     EXPECT_EQ(result.exitCode, 0) << result.err;
-    for (const char* said : {"scale = ", "[camera]", "[[light]]", "left out"})
+    for (const char* said : {"scale = ", "[camera]", "[[light]]", "uses scattering"})
         EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
 
     // Two ways to the same picture, but for the command and the time in its header.
@@ -276,7 +276,7 @@ TEST_F(Cli, ContradictoryOptions) {
     expectFailure({"render", file("smoke.vdb"), "-o", file("out.png"), "--half"}, 2,
                   {"--half is for EXR files"});
     for (const char* option : {"--display", "--view", "--look", "--exposure"})
-        wrong({option, "1"}, {std::string(option) + " is for PNG and JPEG files"});
+        wrong({option, "1"}, {std::string(option) + " is for PNG, JPEG, TIFF and WebP files"});
     wrong({file("scene.toml")}, {"a scene file is rendered alone"});
     wrong({"--stats", file("out.exr")}, {"out.exr", "named twice"});
     wrong({"-o", file("smoke.vdb")}, {"smoke.vdb", "an input and an output"});

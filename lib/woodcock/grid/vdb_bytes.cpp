@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "woodcock/base/frame_names.h"
+
 namespace woodcock {
 
 namespace {
@@ -18,8 +20,16 @@ constexpr std::uint64_t usualWindow = 1 << 16;
 std::uint64_t sizeOfRegularFile(const std::filesystem::path& file, std::string_view expected) {
     struct stat status {};
     if (::stat(file.c_str(), &status) != 0) {
-        if (errno == ENOENT || errno == ENOTDIR)
-            throw inputError("{} does not exist", file.string());
+        if (errno == ENOENT || errno == ENOTDIR) {
+            const std::string pattern = framePattern(file.string());
+            throw inputError("{} does not exist{}", file.string(),
+                             pattern.empty() ? ""
+                                             : fmt::format("; '{}' is not filled in with frame "
+                                                           "numbers: name one frame's file, or "
+                                                           "write ${{FRAME}} in a scene and set "
+                                                           "FRAME for each frame",
+                                                           pattern));
+        }
         throw inputError("cannot open {}: {}", file.string(), std::strerror(errno));
     }
     if (S_ISDIR(status.st_mode))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
+#include "woodcock/render/needs_text.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock {
@@ -33,21 +34,36 @@ Needs findNeeds(const Scene& scene) {
     return n;
 }
 
-std::string Needs::describe() const {
-    std::string with, without;
+namespace {
+
+/// Names of the parts that are used, or of those that are not.
+std::string namesOf(const Needs& n, bool used) {
+    std::string list;
     const auto tell = [&](bool needed, const char* what) {
-        std::string& list = needed ? with : without;
-        list += (list.empty() ? "" : ", ") + std::string(what);
+        if (needed == used) list += (list.empty() ? "" : ", ") + std::string(what);
     };
-    tell(chromatic, "three colour channels");
-    tell(overlap, "overlapping media");
-    tell(scattering, "scattering");
-    tell(emission, "emission");
-    tell(lightSampling, "light sampling");
-    tell(localLights, "equiangular sampling");
-    tell(surfaces, "surfaces");
-    return "needs " + (with.empty() ? std::string("absorption only") : with) +
-           (without.empty() ? "" : "; left out: " + without);
+    tell(n.chromatic, "three colour channels");
+    tell(n.overlap, "overlapping media");
+    tell(n.scattering, "scattering");
+    tell(n.emission, "emission");
+    tell(n.lightSampling, "light sampling");
+    tell(n.localLights, "equiangular sampling");
+    tell(n.surfaces, "surfaces");
+    return list;
 }
+
+}  // namespace
+
+std::string usedOf(const Needs& needs) {
+    const std::string names = namesOf(needs, true);
+    return "uses " + (names.empty() ? "absorption only" : names);
+}
+
+std::string unusedOf(const Needs& needs) {
+    const std::string names = namesOf(needs, false);
+    return names.empty() ? "" : "has no use for " + names;
+}
+
+std::string Needs::describe() const { return usedOf(*this); }
 
 }  // namespace woodcock

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/base/frame_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <regex>
+
+namespace woodcock {
+namespace {
+
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+/// Texts and numbers in turn, beginning with a text: "a.", "0009", ".vdb". A minus behind a dot or
+/// an underscore belongs to the number.
+std::vector<std::string> splitAtNumbers(const std::string& name) {
+    std::vector<std::string> parts{""};
+    for (size_t i = 0; i < name.size();) {
+        if (!isDigit(name[i])) {
+            parts.back() += name[i++];
+            continue;
+        }
+        size_t end = i;
+        while (end < name.size() && isDigit(name[end])) ++end;
+        std::string number = name.substr(i, end - i);
+        std::string& text = parts.back();
+        if (text.ends_with(".-") || text.ends_with("_-")) text.pop_back(), number = '-' + number;
+        parts.push_back(std::move(number));
+        parts.emplace_back();
+        i = end;
+    }
+    return parts;
+}
+
+/// What is the same in all names that differ in numbers alone.
+std::string skeleton(const std::vector<std::string>& parts) {
+    std::string text;
+    for (size_t i = 0; i < parts.size(); i += 2) text += parts[i] + '\0';
+    return text;
+}
+
+std::optional<long long> valueOf(std::string_view number) {
+    long long value = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc() || end != number.data() + number.size()) return std::nullopt;
+    return value;
+}
+
+/// By value, then by spelling.
+bool isBefore(const std::string& a, const std::string& b) {
+    const auto x = valueOf(a), y = valueOf(b);
+    return x && y && *x != *y ? *x < *y : a < b;
+}
+
+void sortNumbers(std::vector<std::string>& numbers) {
+    std::sort(numbers.begin(), numbers.end(), isBefore);
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+}  // namespace
+
+std::string framePattern(std::string_view name) {
+    // A single '#' or '@' is a pattern where it stands alone, as in "x.#.png"; "c#.png" has a name.
+    static const std::array<std::regex, 6> patterns{
+        std::regex(R"(#{2,}|@{2,})"),
+        std::regex(R"((^|[/._-])([#@])(?=[._-]|$))"),
+        std::regex(R"(%[0-9]*d(?![A-Za-z]))"),
+        std::regex(R"(\$(F[0-9]*|FF|FRAME|frame)(?![A-Za-z0-9_])|\$\{(F[0-9]*|FF|FRAME|frame)\})"),
+        std::regex(R"(<(f|F|frame|Frame|FRAME)[0-9]*>|\{(f|frame|FRAME)(:[^{}]*)?\})"),
+        std::regex(R"(\{[0-9]+\.\.[0-9]+\}|\*)")};
+    std::cmatch match;
+    for (size_t i = 0; i < patterns.size(); ++i)
+        if (std::regex_search(name.data(), name.data() + name.size(), match, patterns[i]))
+            return i == 1 ? match[2].str() : match[0].str();
+    return {};
+}
+
+FrameSeries seriesOfPattern(const std::string& name) {
+    namespace fs = std::filesystem;
+    FrameSeries series;
+    const std::string pattern = framePattern(name);
+    const size_t at = name.rfind(pattern);
+    if (pattern.empty()) return series;
+    series.before = name.substr(0, at);
+    series.after = name.substr(at + pattern.size());
+    if (series.after.find('/') != std::string::npos) return series;  // folders of frames
+    const fs::path directory = fs::path(series.before + "x").parent_path();
+    const std::string start = fs::path(series.before + "x").filename().string();
+    const std::string_view prefix = std::string_view(start).substr(0, start.size() - 1);
+    std::error_code none;
+    for (fs::directory_iterator file(directory.empty() ? "." : directory, none), end;
+         !none && file != end; file.increment(none)) {
+        const std::string found = file->path().filename().string();
+        if (found.size() <= prefix.size() + series.after.size() || !found.starts_with(prefix) ||
+            !found.ends_with(series.after))
+            continue;
+        std::string number =
+            found.substr(prefix.size(), found.size() - prefix.size() - series.after.size());
+        const size_t digits = number.front() == '-' ? 1 : 0;
+        if (number.size() > digits &&
+            std::all_of(number.begin() + static_cast<long>(digits), number.end(), isDigit))
+            series.numbers.push_back(std::move(number));
+    }
+    sortNumbers(series.numbers);
+    return series;
+}
+
+std::vector<std::filesystem::path> framesAmong(std::span<const std::filesystem::path> files) {
+    std::vector<std::string> names, skeletons;
+    for (const auto& file : files) {
+        names.push_back(file.lexically_normal().string());
+        skeletons.push_back(skeleton(splitAtNumbers(names.back())));
+    }
+    for (size_t i = 0; i < names.size(); ++i) {
+        std::vector<std::filesystem::path> group{names[i]};
+        for (size_t k = i + 1; k < names.size(); ++k)
+            if (skeletons[k] == skeletons[i] &&
+                std::find(group.begin(), group.end(), names[k]) == group.end())
+                group.emplace_back(names[k]);
+        if (group.size() > 1) return group;
+    }
+    return {};
+}
+
+std::optional<FrameSeries> seriesOf(std::span<const std::filesystem::path> frames) {
+    if (frames.size() < 2) return std::nullopt;
+    const std::vector<std::string> first = splitAtNumbers(frames.front().string());
+    std::optional<size_t> changing;
+    FrameSeries series;
+    for (const auto& frame : frames) {
+        const std::vector<std::string> parts = splitAtNumbers(frame.string());
+        if (parts.size() != first.size()) return std::nullopt;
+        for (size_t i = 1; i < parts.size(); i += 2) {
+            if (parts[i] == first[i]) continue;
+            if (changing && *changing != i) return std::nullopt;
+            changing = i;
+        }
+    }
+    if (!changing) return std::nullopt;
+    for (size_t i = 0; i < first.size(); ++i)
+        if (i != *changing) (i < *changing ? series.before : series.after) += first[i];
+    for (const auto& frame : frames)
+        series.numbers.push_back(splitAtNumbers(frame.string())[*changing]);
+    sortNumbers(series.numbers);
+    return series;
+}
+
+std::string shellNumbers(const std::vector<std::string>& numbers) {
+    constexpr size_t few = 6;
+    const bool long_ = numbers.size() > few;
+    bool even = long_ && valueOf(numbers.front()).value_or(-1) >= 0;
+    for (size_t i = 1; even && i < numbers.size(); ++i) {
+        const auto a = valueOf(numbers[i - 1]), b = valueOf(numbers[i]);
+        even = a && b && *b == *a + 1 && numbers[i].size() >= numbers[i - 1].size();
+    }
+    // Numbers without leading zeros may grow by a digit; those with them keep their width.
+    even = even && (numbers.front().size() == numbers.back().size() || numbers.front()[0] != '0');
+    if (even) return fmt::format("{{{}..{}}}", numbers.front(), numbers.back());
+    return fmt::format("{}", fmt::join(numbers, " "));
+}
+
+}  // namespace woodcock

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/paths.h"
+#include "tests/support/read_back.h"
+#include "tests/support/run_program.h"
+#include "tests/support/write_vdb.h"
+#include "woodcock/scene/parse.h"
+
+namespace woodcock::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+GridSpec cube(const std::string& name = "density") {
+    GridSpec grid;
+    grid.name = name;
+    grid.box = {{0, 0, 0}, {15, 15, 15}};
+    grid.value = [](Vec3i p) { return 0.5 + 0.03 * p.x; };
+    return grid;
+}
+
+/// Runs in a directory of its own that holds smoke.vdb.
+class Render : public testing::Test {
+protected:
+    void SetUp() override { writeVdb(dir / "smoke.vdb", {cube()}); }
+
+    std::string file(const std::string& name) const { return (dir / name).string(); }
+    void copyOfSmoke(const std::string& name) const {
+        fs::create_directories((dir / name).parent_path());
+        fs::copy_file(dir / "smoke.vdb", dir / name);
+    }
+
+    /// `render` of inputs in the directory, small and quick.
+    ProgramResult render(const Words& inputs, const Words& more) const {
+        Words arguments{"render"};
+        for (const std::string& input : inputs) arguments.push_back(file(input));
+        for (const char* word : {"--res", "16x8", "--spp", "2", "--threads", "2"})
+            arguments.emplace_back(word);
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runProgram(arguments);
+    }
+    ProgramResult renderScene(const std::string& text, const Words& more = {}) const {
+        writeText(dir / "scene.toml", text);
+        Words all{"-o", file("out.exr")};
+        all.insert(all.end(), more.begin(), more.end());
+        return render({"scene.toml"}, all);
+    }
+
+    static void expectSaid(const ProgramResult& result, int exitCode, const Words& said) {
+        EXPECT_EQ(result.exitCode, exitCode) << result.err;
+        for (const std::string& words : said)
+            EXPECT_NE(result.err.find(words), std::string::npos)
+                << "says:     " << result.err << "expected: " << words;
+    }
+    static void expectNotSaid(const ProgramResult& result, const std::string& words) {
+        EXPECT_EQ(result.err.find(words), std::string::npos) << result.err;
+    }
+    std::size_t files() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator()));
+    }
+
+    const TempDir dir;
+};
+
+TEST_F(Render, FramesAreNotPiledUp) {
+    for (const char* frame : {"f.0009.vdb", "f.0010.vdb", "f.0011.vdb"}) copyOfSmoke(frame);
+    const Words frames{"f.0010.vdb", "f.0009.vdb", "f.0011.vdb"};
+    expectSaid(render(frames, {"-o", file("x.png")}), 2,
+               {"f.0010.vdb', '", "f.0009.vdb' and 1 more differ only in a number", "--overlay",
+                "render " + file("f.0011.vdb") + " --write-scene shot.toml",
+                "for FRAME in 0009 0010 0011; do",
+                "--set \"volume[0].file=" + file("f.${FRAME}.vdb") + "\" -o \"f.${FRAME}.png\""});
+    EXPECT_FALSE(fs::exists(dir / "x.png"));
+    EXPECT_EQ(render(frames, {"-o", file("x.png"), "--overlay"}).exitCode, 0);
+    for (const char* command : {"trade", "cycles"})
+        expectSaid(runProgram({command, file("f.0009.vdb"), file("f.0010.vdb")}), 2,
+                   {"differ only in a number"});
+}
+
+TEST_F(Render, TheLoopThatIsSaidWorks) {
+    for (const char* frame : {"f 1.vdb", "f 2.vdb"}) copyOfSmoke(frame);
+    const std::string said = render({"f 1.vdb", "f 2.vdb"}, {"-o", file("x.png")}).err;
+    const std::size_t begin = said.find("  woodcock render"), end = said.find("\nIf they");
+    ASSERT_NE(end, std::string::npos) << said;
+    // As a shell runs it, small.
+    writeText(dir / "loop.sh", "set -e\ncd \"" + dir.path().string() + "\"\nwoodcock() { \"" +
+                                   program().string() +
+                                   "\" \"$@\" --res 16x8 --quiet --set render.spp=1; }\n" +
+                                   said.substr(begin, end - begin) + "\n");
+    const ProgramResult loop = runProgram({file("loop.sh")}, {}, "/bin/sh");
+    EXPECT_EQ(loop.exitCode, 0) << loop.err;
+    EXPECT_TRUE(fs::exists(dir / "f 1.png") && fs::exists(dir / "f 2.png")) << said;
+}
+
+TEST_F(Render, SeveralVolumesOfOtherNamesAreOnePicture) {
+    copyOfSmoke("fire.0001.vdb");
+    copyOfSmoke("density.0001.vdb");
+    EXPECT_EQ(
+        render({"smoke.vdb", "fire.0001.vdb", "density.0001.vdb"}, {"-o", file("x.exr")}).exitCode,
+        0);
+}
+
+TEST_F(Render, PatternsForFramesAreRefusedWithTheWayThatWorks) {
+    copyOfSmoke("f.0009.vdb");
+    copyOfSmoke("f.0010.vdb");
+    for (const char* name : {"f.####.vdb", "f.%04d.vdb", "f.$F4.vdb", "f.<frame04>.vdb"})
+        expectSaid(
+            render({name}, {"-o", file("x.exr")}), 2,
+            {std::string("there is no file '") + file(name), "is not filled in with frame numbers",
+             "for FRAME in 0009 0010; do", file("f.${FRAME}.vdb")});
+    expectSaid(render({"none.####.vdb"}, {"-o", file("x.exr")}), 2,
+               {"and no file has a number in its place", "for FRAME in 0001"});
+    expectSaid(render({"f.0009.vdb"}, {"-o", file("x.exr"), "--frames", "9-10"}), 2,
+               {"there is no option --frames: one call draws one frame", "for FRAME in"});
+    expectSaid(renderScene("[[volume]]\nfile = \"f.####.vdb\"\n"), 3,
+               {"scene.toml:2:8: ", "'####' is not filled in with frame numbers", "${FRAME}"});
+    expectSaid(runProgram({"info", file("f.%04d.vdb")}), 3, {"'%04d' is not filled in"});
+    // One that is called so is drawn.
+    copyOfSmoke("a.####.vdb");
+    EXPECT_EQ(render({"a.####.vdb"}, {"-o", file("x.exr")}).exitCode, 0);
+}
+
+TEST_F(Render, FoldersAreToldOf) {
+    fs::create_directory(dir / "empty");
+    for (const char* frame : {"seq/f.1.vdb", "seq/f.2.vdb", "mixed/a.vdb", "mixed/b.vdb"})
+        copyOfSmoke(frame);
+    expectSaid(render({"empty"}, {"-o", file("x.exr")}), 2,
+               {"is a directory; name a scene", "it holds no .vdb file"});
+    expectSaid(render({"mixed"}, {"-o", file("x.exr")}), 2, {"it holds 2 .vdb files, such as"});
+    expectSaid(render({"seq"}, {"-o", file("x.exr")}), 2,
+               {"It holds 2 frames", "for FRAME in 1 2; do", file("seq/f.${FRAME}.vdb")});
+}
+
+TEST_F(Render, OutputsAreNotNamedByPatterns) {
+    for (const char* name : {"x.####.png", "x.%04d.exr", "x.$F4.png"}) {
+        expectSaid(render({"smoke.vdb"}, {"-o", file(name)}), 2,
+                   {"is not filled in with a frame number, and the file would be called so",
+                    file("x.0001."), file("x.${FRAME}.")});
+        expectSaid(renderScene("[[volume]]\nfile = \"smoke.vdb\"\n", {"--stats", file(name)}), 2,
+                   {"--stats: '", "is not filled in"});
+    }
+    expectSaid(renderScene("[[volume]]\nfile = \"smoke.vdb\"\n", {"-o", file("x.####.png")}), 2,
+               {"is not filled in"});
+    writeText(dir / "files.toml",
+              "[[volume]]\nfile = \"smoke.vdb\"\n[output]\nfiles = [\"x.####.png\"]\n");
+    expectSaid(render({"files.toml"}, {}), 2, {"files.toml:4:10: '", "is not filled in"});
+    EXPECT_EQ(files(), 3u);
+}
+
+TEST_F(Render, VelocitiesThatNothingUsesAreSaid) {
+    GridSpec velocity = cube("vel");
+    velocity.type = VdbType::Vec3s;
+    velocity.value = {};
+    velocity.colour = [](Vec3i) { return Vec3d{1, 2, 3}; };
+    velocity.gridClass = "staggered";
+    writeVdb(dir / "moving.vdb", {cube(), velocity});
+    const std::string said = "moving.vdb: its velocities ('vel') are not used: there is no motion";
+    expectSaid(render({"moving.vdb"}, {"-o", file("x.exr")}), 0, {"info: ", said});
+    expectNotSaid(render({"smoke.vdb"}, {"-o", file("x.exr")}), "velocities");
+    // As a colour they are used.
+    expectNotSaid(renderScene("[[volume]]\nfile = \"moving.vdb\"\nscale = 1\nrepair = true\n"
+                              "albedo_grid = \"vel\"\n"),
+                  "velocities");
+}
+
+TEST_F(Render, ACameraInsideOfDenseSmokeIsSaid) {
+    const std::string scene =
+        "[[volume]]\nfile = \"smoke.vdb\"\nscale = 100\nalbedo = 0.5\n"
+        "[camera]\neye = [7, 7, 7]\nlook_at = [7, 7, 0]\n";
+    const ProgramResult inside = renderScene(scene);
+    expectSaid(inside, 0,
+               {"warning: the camera stands inside volume[0] (smoke.vdb)",
+                "units between two collisions", "camera.eye", "lower the volume's scale"});
+    expectSaid(inside, 0,
+               {"warning: the picture is black: the camera stands inside volume[0] "
+                "(smoke.vdb), and no light comes through",
+                "noise unknown (no pixel has any light)"});
+    expectNotSaid(renderScene(scene, {"--set", "camera.eye=[7,7,60]"}), "stands inside");
+}
+
+TEST_F(Render, BlackPicturesAreExplained) {
+    const std::string box =
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nscale = 1\n";
+    const std::string camera = "[camera]\neye = [0, 0, 9]\nlook_at = [0, 0, 0]\n";
+    const std::string sun = "[[light]]\ntype = \"sun\"\nelevation = 30\n";
+    expectSaid(renderScene(box + camera,
+                           {"--set", "light[0].irradiance=0", "--set", "light[1].radiance=0"}),
+               0, {"warning: the picture is black: the scene has no light"});
+    expectSaid(renderScene(box + sun + camera, {"--set", "camera.look_at=[0,0,99]"}), 0,
+               {"the picture is black: nothing of the scene is in the picture", "camera.look_at"});
+    expectSaid(renderScene(box + "albedo = 0\n" + sun + camera), 0,
+               {"the picture is black: the volumes only absorb"});
+    expectSaid(renderScene(box + sun + camera, {"--set", "render.max_scatterings=0"}), 0,
+               {"the picture is black: render.max_scatterings is 0"});
+    expectSaid(
+        renderScene(box + sun + camera, {"-o", file("x.png"), "--exposure", "-30"}), 0,
+        {"the picture is black, as its brightest pixel is", "the exposure -30", "--exposure +"});
+    expectNotSaid(renderScene(box + sun + camera, {"-o", file("x.png")}), "black");
+    expectSaid(runProgram({"render", file("scene.toml"), "-o", file("x.exr"), "--res", "8x8",
+                           "--spp", "1"}),
+               0, {"noise unknown (it takes two samples a pixel)"});
+}
+
+TEST_F(Render, FireIsSeenInAPicture) {
+    const std::string fire =
+        "[[volume]]\nbox = { min = [-0.5, -0.5, -0.5], max = [0.5, 0.5, 0.5] }\nsigma_a = 0\n"
+        "sigma_s = 0\nemission = [1, 0.5, 0.2]\n[[light]]\ntype = \"sun\"\nelevation = 30\n"
+        "[camera]\ntype = \"orthographic\"\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nheight = 3\n";
+    const ProgramResult result = renderScene(fire, {"-o", file("f.png"), "-o", file("f.webp"), "-o",
+                                                    file("f.tif"), "--view", "Standard"});
+    expectSaid(result, 0, {"f.png: ", "of the pixels shine more than they cover, as fire does"});
+    const ReadBack exr = readBack(dir / "out.exr");
+    EXPECT_NEAR(exr.at(8, 4, "G"), 0.5, 0.01);
+    EXPECT_EQ(exr.at(8, 4, "A"), 0.0f);
+    const ReadBack png = readBack(dir / "f.png");
+    EXPECT_EQ(png.at(8, 4, "R"), 255.0f);
+    EXPECT_NEAR(png.at(8, 4, "G"), 188, 2);  // 0.5
+    EXPECT_EQ(readBack(dir / "f.png").at(8, 4, "A"), 255.0f);
+    EXPECT_EQ(readBack(dir / "f.png").at(0, 0, "A"), 0.0f);
+    EXPECT_EQ(readBack(dir / "f.tif").at(8, 4, "A"), 1.0f);
+}
+
+TEST_F(Render, SkiesThatSetHidesGivePicturesAlpha) {
+    EXPECT_EQ(render({"smoke.vdb"}, {"-o", file("x.png")}).exitCode, 0);
+    EXPECT_EQ(readBack(dir / "x.png").channels.size(), 3u);
+    const ProgramResult hidden =
+        render({"smoke.vdb"}, {"-o", file("x.png"), "--set", "light[1].visible=false"});
+    expectSaid(hidden, 0, {"changed as --set says"});
+    EXPECT_EQ(readBack(dir / "x.png").channels.size(), 4u);
+}
+
+TEST_F(Render, TheSunIsMovedByEveryWayAlike) {
+    const auto digest = [&](const std::string& input, Words options) {
+        for (const char* word : {"-o", "x.exr", "--stats", "s.json", "--quiet"})
+            options.emplace_back(word[0] == '-' ? word : file(word));
+        const ProgramResult result = render({input}, options);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return nlohmann::json::parse(readText(file("s.json"))).at("scene_digest");
+    };
+    const auto chosen = digest("smoke.vdb", {});
+    const auto moved = digest("smoke.vdb", {"--set", "light[0].azimuth=200"});
+    EXPECT_NE(moved, chosen);
+    EXPECT_EQ(render({"smoke.vdb"}, {"--write-scene", file("saved.toml")}).exitCode, 0);
+    EXPECT_EQ(digest("saved.toml", {}), chosen);
+    EXPECT_EQ(digest("saved.toml", {"--set", "light[0].azimuth=200"}), moved);
+    EXPECT_EQ(digest("smoke.vdb", {"--sun", "40,200"}), moved);
+    EXPECT_EQ(digest("saved.toml", {"--sun", "+40,+200"}), moved);
+}
+
+TEST_F(Render, TheSunThatIsThereIsMoved) {
+    const auto sunOf = [&](const std::string& lights, const std::string& angles) {
+        writeText(dir / "lit.toml", "[[volume]]\nfile = \"smoke.vdb\"\n" + lights);
+        const ProgramResult result =
+            render({"lit.toml"}, {"--sun", angles, "--write-scene", file("moved.toml")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        const SceneDescription scene = parseScene(dir / "moved.toml");
+        for (const LightDescription& light : scene.lights)
+            if (const auto* sun = std::get_if<SunDescription>(&light.light))
+                return sun->place.value();
+        return SunPlace{};
+    };
+    const std::string sky = "[[light]]\ntype = \"environment\"\n";
+    const std::string sun = "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\n";
+    EXPECT_EQ(sunOf(sky + sun, "10,20"), (SunPlace{10, 20, UpAxis::Y}));
+    EXPECT_EQ(sunOf(sun + "[camera]\nup = [0, 0, 1]\n", "10,20"), (SunPlace{10, 20, UpAxis::Z}));
+    writeText(dir / "lit.toml", "[[volume]]\nfile = \"smoke.vdb\"\n" + sky);
+    expectSaid(render({"lit.toml"}, {"-o", file("x.exr"), "--sun", "1,2"}), 2,
+               {"--sun: the scene has no sun"});
+    for (const char* wrong : {"40", "91,0", "40;10", "a,b", "40,"})
+        expectSaid(render({"smoke.vdb"}, {"-o", file("x.exr"), "--sun", wrong}), 2,
+                   {"--sun: '", "expected ELEVATION,AZIMUTH"});
+}
+
+TEST_F(Render, OrbitTurnsTheCamera) {
+    const auto eye = [&](const std::string& input, const std::string& degrees) {
+        const ProgramResult result =
+            render({input}, {"--orbit", degrees, "--write-scene", file("turned.toml")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return std::get<LookAt>(*parseScene(dir / "turned.toml").camera.pose).eye;
+    };
+    writeText(dir / "seen.toml",
+              "[[volume]]\nfile = \"smoke.vdb\"\n"
+              "[camera]\neye = [0, 0, 9]\nlook_at = [0, 0, 0]\n");
+    EXPECT_LT(length(eye("seen.toml", "+90") - Vec3d{9, 0, 0}), 1e-9);
+    EXPECT_LT(length(eye("seen.toml", "-90") - Vec3d{-9, 0, 0}), 1e-9);
+    const Vec3d middle{7.5, 7.5, 7.5}, a = eye("smoke.vdb", "0"), b = eye("smoke.vdb", "180");
+    EXPECT_NEAR(a.x - middle.x, middle.x - b.x, 0.1);
+    EXPECT_NEAR(a.z - middle.z, middle.z - b.z, 0.1);
+}
+
+TEST_F(Render, SmallNumbersAndWordsAreTaken) {
+    const auto picture = [&](const Words& options) {
+        Words all{"-o", file("x.png")};
+        all.insert(all.end(), options.begin(), options.end());
+        const ProgramResult result = render({"smoke.vdb"}, all);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return readBack(dir / "x.png").values;
+    };
+    const auto brighter = picture({"--exposure", "1"});
+    EXPECT_EQ(picture({"--exposure=+1"}), brighter);
+    EXPECT_EQ(picture({"--exposure", "+1"}), brighter);
+    EXPECT_NE(picture({"--exposure", "-1"}), brighter);
+    EXPECT_EQ(picture({"--look", "none"}), picture({}));  // the views that come along have none
+    EXPECT_EQ(picture({"--look", "None"}), picture({}));
+    expectSaid(render({"smoke.vdb"}, {"-o", file("x.png"), "--exposure=+-1"}), 2,
+               {"'+-1' is not a number"});
+}
+
+TEST_F(Render, FoldersOfOutputsAreMadeWhereAskedFor) {
+    const Words outputs{
+        "-o", file("new/a/x.png"), "--stats", file("st/s.js"), "--write-scene", file("sc/s.toml")};
+    expectSaid(render({"smoke.vdb"}, outputs), 2, {"there is no directory", "give --mkdir"});
+    EXPECT_EQ(files(), 1u);
+    Words made = outputs;
+    made.push_back("--mkdir");
+    EXPECT_EQ(render({"smoke.vdb"}, made).exitCode, 0);
+    for (const char* name : {"new/a/x.png", "st/s.js", "sc/s.toml"})
+        EXPECT_TRUE(fs::exists(dir / name)) << name;
+    writeText(dir / "file", "");
+    expectSaid(render({"smoke.vdb"}, {"-o", file("file/b/x.png"), "--mkdir"}), 2,
+               {"cannot make the directory"});
+    // Of other commands.
+    for (const Words& command :
+         {Words{"convert", file("smoke.vdb"), file("c/smoke.npy"), "--quiet"},
+          Words{"bake", "turbulent_sphere", "--resolution", "8", "-o", file("b/x.vdb"), "-q"}}) {
+        expectSaid(runProgram(command), 2, {"there is no directory", "give --mkdir"});
+        Words with = command;
+        with.push_back("--mkdir");
+        EXPECT_EQ(runProgram(with).exitCode, 0) << command.front();
+    }
+}
+
+TEST_F(Render, ASavedSceneSaysWhatWasChosen) {
+    expectSaid(
+        render({"smoke.vdb"}, {"--write-scene", file("s.toml")}), 0,
+        {"s.toml: the scene with every value that it uses. Chosen were the grid 'density' of "
+         "smoke.vdb, its density scale ",
+         "a camera that frames what is there", "a sun 40 degrees high at azimuth ", "an even sky",
+         "--set"});
+    expectSaid(render({"s.toml"}, {"--write-scene", file("t.toml")}), 0,
+               {"nothing was left to choose"});
+}
+
+TEST_F(Render, WhatASceneDoesNotUseIsNoNews) {
+    const ProgramResult plain = render({"smoke.vdb"}, {"-o", file("x.exr")});
+    expectSaid(plain, 0, {"info: the scene uses scattering, light sampling\n"});
+    expectNotSaid(plain, "emission");
+    expectSaid(render({"smoke.vdb"}, {"-o", file("x.exr"), "--log-level", "debug"}), 0,
+               {"has no use for three colour channels, overlapping media, emission"});
+}
+
+TEST_F(Render, NothingThatSetNamesIsWrittenOver) {
+    writeFloats(dir / "sky.exr", 4, 2, 3, std::vector<float>(24, 1.0f));
+    const std::string before = readText(file("sky.exr"));
+    expectSaid(render({"smoke.vdb"},
+                      {"-o", file("sky.exr"), "--set", "light[1].image=" + file("sky.exr")}),
+               2, {"an input and an output"});
+    EXPECT_EQ(readText(file("sky.exr")), before);
+    EXPECT_EQ(
+        render({"smoke.vdb"}, {"-o", file("x.exr"), "--set", "light[1].image=" + file("sky.exr"),
+                               "--set", "light[0].irradiance=0"})
+            .exitCode,
+        0);
+    EXPECT_NEAR(readBack(dir / "x.exr").at(0, 0, "R"), 0.12, 1e-3);  // the sky's radiance x 1
+}
+
+}  // namespace
+}  // namespace woodcock::test

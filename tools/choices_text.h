@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "woodcock/scene/description.h"
+
+namespace woodcock::tool {
+
+/// What a scene leaves open, before it is completed.
+struct Openings {
+    std::vector<bool> density, scale;  ///< of each volume
+    bool camera = false, lights = false;
+};
+Openings openingsOf(const SceneDescription& scene);
+
+/// What was chosen, in one sentence: "chosen were the density scale 51 of smoke.vdb, a camera that
+/// frames it, and ...".
+std::string describeChoices(const Openings& open, const SceneDescription& complete);
+
+}  // namespace woodcock::tool
