@@ -209,12 +209,11 @@ Slices readNumbered(const std::map<std::uint64_t, fs::path>& files, const fs::pa
     return slices;
 }
 
-/// Pages of a file, as OpenImageIO counts them. It is bounded, as a file may say anything.
-std::uint64_t countPages(OIIO::ImageInput& input) {
+/// Pages of a file; it is left at none of them. Bounded, as a file may say anything.
+std::uint64_t countPages(OpenImage& input) {
     constexpr int most = 1 << 20;
     int pages = 0;
-    while (pages < most && input.seek_subimage(pages, 0)) ++pages;
-    input.geterror();  // of the page that there is not
+    while (pages < most && input.goTo(pages)) ++pages;
     return static_cast<std::uint64_t>(pages);
 }
 
@@ -230,11 +229,11 @@ Slices readSliceFiles(const std::vector<fs::path>& files,
 }
 
 Slices readPages(const fs::path& file, const std::function<void(double)>& report) {
-    const auto input = open(file);
+    OpenImage input(file, "stack of slices");
+    const std::string imageJ = input.spec().get_string_attribute("ImageDescription");
     Slices slices;
-    slices.count = countPages(*input);
+    slices.count = countPages(input);
     if (slices.count < 2) {
-        const std::string imageJ = input->spec(0).get_string_attribute("ImageDescription");
         if (imageJ.starts_with("ImageJ=") && imageJ.find("images=") != imageJ.npos)
             throw inputError(
                 "'{}' is a stack that ImageJ wrote beyond TIFF's own limits, as one page and bare "
@@ -245,21 +244,17 @@ Slices readPages(const fs::path& file, const std::function<void(double)>& report
             "all, as slice.####{}",
             file.string(), file.extension().string());
     }
-    OIIO::ImageSpec spec = input->spec(0);
-    prepare(slices, spec, file);
-    const std::size_t size = slices.values.size() / slices.count;
     for (std::uint64_t page = 0; page < slices.count; ++page) {
-        spec = input->spec(static_cast<int>(page));
+        input.goTo(static_cast<int>(page));
+        const OIIO::ImageSpec& spec = input.spec();
+        if (page == 0) prepare(slices, spec, file);
         if (spec.width != slices.width || spec.height != slices.height ||
-            spec.nchannels != slices.channels || spec.depth > 1 || spec.deep)
+            spec.nchannels != slices.channels)
             throw inputError(
                 "page {} of '{}' is {} x {} with {} channels; its first is {} x {} with {}",
                 page + 1, file.string(), spec.width, spec.height, spec.nchannels, slices.width,
                 slices.height, slices.channels);
-        if (!input->read_image(static_cast<int>(page), 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
-                               slices.values.data() + page * size))
-            throw inputError("cannot read page {} of '{}': {}", page + 1, file.string(),
-                             input->geterror());
+        input.read(slices.values.data() + page * (slices.values.size() / slices.count));
         if (report) report(static_cast<double>(page + 1) / static_cast<double>(slices.count));
     }
     return slices;
