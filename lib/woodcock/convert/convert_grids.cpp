@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/base/error.h"
 #include "woodcock/convert/openvdb_convert_source.h"
+#include "woodcock/convert/point_grid_read.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/openvdb_grids.h"
 #include "woodcock/grid/openvdb_transform.h"
@@ -40,7 +41,12 @@ void requireNoPlacement(const ConvertOptions& options) {
         throw usageError("--voxel, --size, --origin and --channel are for sources that are no VDB");
 }
 
-/// The grids that are asked for, or all that hold numbers; a warning names each of the others.
+bool holdsPoints(const VdbFile& file, const GridListing& grid) {
+    return !file.nanoVdb && isPointGrid(grid);
+}
+
+/// The grids that are asked for, or all that hold numbers or points; a warning names each of the
+/// others.
 std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& options) {
     if (options.grid) {
         FoundGrid found = findGrid(file, *options.grid);
@@ -49,7 +55,7 @@ std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& 
     }
     std::vector<GridListing> chosen;
     for (const GridListing& grid : file.grids) {
-        if (isReadable(grid))
+        if (isReadable(grid) || holdsPoints(file, grid))
             chosen.push_back(grid);
         else
             say(options.warn, fmt::format("grid '{}' of {} is left out: {}", grid.uniqueName,
@@ -64,9 +70,12 @@ std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& 
 }  // namespace
 
 Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
-    requireNoPlacement(options);
     const VdbFile file = listGrids(in);
-    const std::vector<GridListing> chosen = chooseGrids(file, options);
+    say(options.warn, file.warning);
+    std::vector<GridListing> chosen, points;
+    for (GridListing& grid : chooseGrids(file, options))
+        (holdsPoints(file, grid) ? points : chosen).push_back(std::move(grid));
+    if (points.empty()) requireNoPlacement(options);
     std::vector<std::string> names;
     for (const GridListing& grid : chosen) names.push_back(grid.uniqueName);
     Source source{readVdbGrids(file, names), {}, names};
@@ -75,6 +84,10 @@ Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
         say(options.info,
             fmt::format("read '{}' ({}) from {}: {} active voxels", names[i], chosen[i].valueType,
                         in.string(), source.grids.grids[i]->activeVoxelCount()));
+    for (const GridListing& grid : points) {
+        addPointGrid(source.grids, file, grid, options);
+        source.uniqueNames.push_back(grid.uniqueName);
+    }
     const double loss = useFloatingPoint(source.grids);
     if (loss > 0)
         say(options.warn,
