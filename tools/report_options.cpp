@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report_options.h"
 
-#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include <thread>
@@ -9,6 +8,7 @@
 #include "about.h"
 #include "log.h"
 #include "option_kinds.h"
+#include "print.h"
 
 namespace woodcock::tool {
 
@@ -47,8 +47,7 @@ ProgressStyle ReportOptions::start() const {
 }
 
 void printJson(const std::string& document) {
-    fmt::print("{}\n", document);
-    if (std::fflush(stdout) != 0) throw failure("cannot write to stdout");
+    printData(document + "\n");
 }
 
 }  // namespace woodcock::tool
