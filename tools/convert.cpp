@@ -216,16 +216,20 @@ void stopWhereInterrupted() {
     if (interrupted()) throw CLI::RuntimeError(interruptedCode);
 }
 
-/// What was written, of which OUTPUT is all or the first file.
+/// What was read and written.
 nlohmann::ordered_json resultJson(const ConvertWords& words, const std::vector<std::string>& notes,
                                   const std::vector<std::string>& warnings, double seconds) {
-    nlohmann::ordered_json result{{"input", words.in.string()}, {"output", words.out.string()}};
+    const std::filesystem::path& out = words.files.back();
+    std::vector<std::string> inputs;
+    for (const std::filesystem::path& file : words.files) inputs.push_back(file.string());
+    inputs.pop_back();
+    nlohmann::ordered_json result{{"inputs", inputs}, {"output", out.string()}};
     std::error_code unknown;
-    const std::uintmax_t bytes = std::filesystem::file_size(words.out, unknown);
+    const std::uintmax_t bytes = std::filesystem::file_size(out, unknown);
     result["bytes"] = unknown ? nlohmann::ordered_json() : nlohmann::ordered_json(bytes);
     result.update({{"seconds", seconds}, {"notes", notes}, {"warnings", warnings}});
-    if (words.out.extension() == ".vdb")
-        result["grids"] = infoJson({inspectFile(words.out, "")})["files"][0]["grids"];
+    if (out.extension() == ".vdb")
+        result["grids"] = infoJson({inspectFile(out, "")})["files"][0]["grids"];
     return result;
 }
 

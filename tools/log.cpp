@@ -20,13 +20,6 @@ namespace {
 // What a command printed on stdout stands before what it logs later, where both end in one file.
 void orderStdout() { std::fflush(stdout); }
 
-class TextSink : public spdlog::sinks::stderr_color_sink_mt {
-    void log(const spdlog::details::log_msg& message) override {
-        orderStdout();
-        spdlog::sinks::stderr_color_sink_mt::log(message);
-    }
-};
-
 class JsonSink : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg& message) override {
         orderStdout();
@@ -45,6 +38,7 @@ class JsonSink : public spdlog::sinks::base_sink<std::mutex> {
 class TextSink : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg& message) override {
         constexpr std::size_t longest = 16000, end = 2000;
+        orderStdout();
         const std::string_view said(message.payload.data(), message.payload.size());
         std::string text = printableLines(said.substr(0, longest));
         if (said.size() > longest)
