@@ -85,7 +85,7 @@ Error folder(const fs::path& directory) {
     std::sort(volumes.begin(), volumes.end());
     const std::string is = fmt::format(
         "'{}' is a directory; name a scene (.toml) or a volume (.vdb)", directory.string());
-    if (volumes.empty()) return usageError("{}; it holds no .vdb file", is);
+    if (volumes.empty()) return inputError("{}; it holds no .vdb file", is);
     const std::vector<fs::path> frames = framesAmong(volumes);
     if (frames.size() == volumes.size())
         return usageError("{}. It holds {} frames. {}\n{}", is, frames.size(), oneFrame,

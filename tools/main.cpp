@@ -71,9 +71,6 @@ std::string describeMistake(const CLI::ParseError& error, const CLI::App& comman
 /// What stands for options that other programs have and this one has not.
 std::string answerFor(std::string_view option) {
     constexpr std::pair<std::string_view, std::string_view> answers[]{
-        {"--denoise",
-         "there is no denoiser; --layers albedo,normal,error of render writes what "
-         "denoisers need"},
         {"--width", "the image's size is --res WIDTHxHEIGHT"},
         {"--height", "the image's size is --res WIDTHxHEIGHT"},
         {"--size", "the image's size is --res WIDTHxHEIGHT"},

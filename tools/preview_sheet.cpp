@@ -3,7 +3,6 @@
 
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "interrupt.h"
 #include "preview.h"
+#include "scratch_directory.h"
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
@@ -23,27 +23,7 @@ namespace woodcock::tool {
 namespace {
 
 constexpr int columns = 4, cellWidth = 300, cellHeight = 260;
-
-/// A directory that is gone with everything in it at the end.
-class Scratch {
-public:
-    Scratch() {
-        std::string name =
-            (std::filesystem::temp_directory_path() / "woodcock-sheet-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw failure("cannot make the directory '{}'", name);
-        path_ = name;
-    }
-    ~Scratch() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
+constexpr double cellSeconds = 15;
 
 /// The pictures side by side, scene-linear.
 class Sheet {
@@ -98,7 +78,7 @@ void checkSheet(const std::filesystem::path& picture) {
 
 bool writeSheet(const std::filesystem::path& picture, const SheetSettings& settings,
                 ProgressStyle style) {
-    const Scratch scratch;
+    const ScratchDirectory scratch;
     const std::filesystem::path volume = scratch.path() / "preset.vdb";
     Sheet sheet(presets().size());
     WorkProgress progress(style, "sheet");
@@ -119,7 +99,7 @@ bool writeSheet(const std::filesystem::path& picture, const SheetSettings& setti
         if (!bake) return false;
         writeBake(volume, *bake, {}, 0);
         const std::optional<Film> film =
-            renderPreview(recipe, *bake, volume, {cellWidth, cellHeight, 4, settings.threads},
+            renderPreview(recipe, *bake, volume, {cellWidth, cellHeight, cellSeconds, settings.threads},
                           ProgressStyle::None);
         if (!film || interrupted()) return false;
         sheet.put(index, *film);

@@ -121,8 +121,8 @@ TEST(Options, UnknownOnesNameTheNearestOnly) {
     EXPECT_EQ(said("--nosie"),
               "error: woodcock render: unknown option --nosie; did you mean '--noise'?\n");
     EXPECT_EQ(said("--denoise"),
-              "error: woodcock render: unknown option --denoise; there is no denoiser; --layers "
-              "albedo,normal,error of render writes what denoisers need\n");
+              "error: there is no option --denoise: Woodcock does not denoise; --layers "
+              "albedo,normal writes what denoisers ask for (README, For denoisers)\n");
     EXPECT_EQ(said("--width=300"),
               "error: woodcock render: unknown option --width=300; the image's size is --res "
               "WIDTHxHEIGHT\n");

@@ -130,7 +130,7 @@ TEST_F(Render, FoldersAreToldOf) {
     fs::create_directory(dir / "empty");
     for (const char* frame : {"seq/f.1.vdb", "seq/f.2.vdb", "mixed/a.vdb", "mixed/b.vdb"})
         copyOfSmoke(frame);
-    expectSaid(render({"empty"}, {"-o", file("x.exr")}), 2,
+    expectSaid(render({"empty"}, {"-o", file("x.exr")}), 3,
                {"is a directory; name a scene", "it holds no .vdb file"});
     expectSaid(render({"mixed"}, {"-o", file("x.exr")}), 2, {"it holds 2 .vdb files, such as"});
     expectSaid(render({"seq"}, {"-o", file("x.exr")}), 2,

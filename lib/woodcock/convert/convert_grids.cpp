@@ -84,10 +84,11 @@ Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
         say(options.info,
             fmt::format("read '{}' ({}) from {}: {} active voxels", names[i], chosen[i].valueType,
                         in.string(), source.grids.grids[i]->activeVoxelCount()));
-    for (const GridListing& grid : points) {
-        addPointGrid(source.grids, file, grid, options);
-        source.uniqueNames.push_back(grid.uniqueName);
-    }
+    for (const GridListing& grid : points)
+        if (addPointGrid(source.grids, file, grid, options))
+            source.uniqueNames.push_back(grid.uniqueName);
+    if (source.grids.grids.empty())
+        throw inputError("{} holds nothing but grids without points", in.string());
     const double loss = useFloatingPoint(source.grids);
     if (loss > 0)
         say(options.warn,

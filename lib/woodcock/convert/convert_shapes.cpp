@@ -164,15 +164,18 @@ std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptio
 
 }  // namespace
 
-void addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
+bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
                   const ConvertOptions& options) {
     if (options.placement.size || options.placement.origin || options.channel)
         throw usageError(
             "--size, --origin and --channel are for grids of voxels; points lie where "
             "they are");
     const PointCloud cloud = readPointGrid(file, points);
-    if (cloud.points.empty())
-        throw inputError("grid '{}' of {} holds no points", points.uniqueName, file.path.string());
+    if (cloud.points.empty()) {
+        say(options.warn, fmt::format("grid '{}' of {} is left out: it holds no points",
+                                      points.uniqueName, file.path.string()));
+        return false;
+    }
     const Vec3d sides = points.voxelSize;
     PointsToDensityOptions how;
     how.voxel = options.placement.voxel.value_or(std::min({sides.x, sides.y, sides.z}));
@@ -191,6 +194,7 @@ void addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& point
     const VdbGrids density = made(file.path, [&] { return pointsToDensity(cloud, how, notes); });
     for (const std::string& note : notes) say(options.warn, note);
     grids.grids.push_back(density.grids.front());
+    return true;
 }
 
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {

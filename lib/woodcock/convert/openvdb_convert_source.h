@@ -47,8 +47,9 @@ Source readPlySource(const std::filesystem::path& in, const ConvertOptions& opti
 /// Those of the grids that are level sets become fog.
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options);
 
-/// The density of a grid of points becomes one of the grids.
-void addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
+/// The density of a grid of points becomes one of the grids; false, with a warning, where it holds
+/// none.
+bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
                   const ConvertOptions& options);
 
 }  // namespace woodcock

@@ -52,6 +52,7 @@ public:
     PointCloud read() {
         readRoot();
         const auto passes = file_.value<std::uint16_t>();
+        if (leaves_.empty()) return finish();
         file_.skip(2 * leaves_.size());  // the sizes of counts, which stand there again
         for (PointLeaf& leaf : leaves_) readArrays(leaf);
         if (passes != 2 * attributes_.size() + 4)

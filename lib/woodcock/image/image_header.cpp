@@ -177,8 +177,10 @@ void checkPnm(const RegularFile& file, std::string_view head) {
     Words words(head.substr(2));
     const double width = words.number(), height = words.number();
     if (width < 1 || height < 1) throw damaged(file, "its header names no size");
-    const bool bits = head[1] == '1' || head[1] == '4', colour = head[1] == '3' || head[1] == '6';
-    requirePlausible(file, width, height, bits ? 0.125 : colour ? 3 : 1, 1);
+    const char kind = head[1];
+    const double channels = kind == '3' || kind == '6' || kind == 'F' ? 3 : 1;
+    const bool bits = kind == '1' || kind == '4', floats = kind == 'F' || kind == 'f';
+    requirePlausible(file, width, height, channels * (bits ? 0.125 : floats ? 4 : 1), 1);
 }
 
 /// libtiff walks its own directories in bounds, and what they say is known before anything is
@@ -209,9 +211,9 @@ const std::array<KnownFormat, 9> known{{
     {"WebP", "webp",
      [](auto h) { return h.starts_with("RIFF"sv) && h.substr(0, 12).ends_with("WEBP"sv); },
      checkWebp},
-    {"PNM", "pnm",
+    {"PNM, PFM", "pnm",
      [](auto h) {
-         return h.size() > 2 && h[0] == 'P' && h[1] >= '1' && h[1] <= '6' &&
+         return h.size() > 2 && h[0] == 'P' && "123456Ff"sv.find(h[1]) != h.npos &&
                 std::isspace(static_cast<unsigned char>(h[2]));
      },
      checkPnm},
