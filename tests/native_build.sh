@@ -31,7 +31,7 @@ for build in plain native; do
     "${!build}" bake explosion --resolution 64 -o "$scratch/$build/explosion.vdb" --quiet
 done
 cloud=(--set "volume[0].file=$scratch/plain/cloud.vdb")
-for scene in demo chromatic environment; do draw data/scenes/$scene.toml "${cloud[@]}"; done
+for scene in demo chromatic; do draw data/scenes/$scene.toml "${cloud[@]}"; done
 draw data/scenes/overlap.toml "${cloud[@]}" --set "volume[1].file=$scratch/plain/cloud.vdb"
 draw data/scenes/fire.toml --set "volume[0].file=$scratch/plain/explosion.vdb"
 for scene in box_of_fog gems glass tea window; do draw data/scenes/$scene.toml; done
