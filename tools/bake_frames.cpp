@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/frame_names.h"
 #include "woodcock/base/parse.h"
 
 namespace woodcock::tool {
@@ -111,6 +112,12 @@ void checkFrameFile(const std::filesystem::path& file, const char* option,
     const std::string name = file.filename().string();
     std::size_t digits = 0;
     const std::size_t place = placeOfNumber(name, digits);
+    if (const std::string pattern = framePattern(name);
+        pattern.find_first_not_of('#') != pattern.npos)
+        throw usageError(
+            "{} {}: {} is not filled in, and the file would be called so; put #### where a frame's "
+            "number goes",
+            option, file.string(), pattern);
     if (!frames.front().number) {
         if (place != name.npos)
             throw usageError(

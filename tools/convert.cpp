@@ -19,6 +19,7 @@
 #include "progress.h"
 #include "report_options.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/frame_names.h"
 #include "woodcock/base/parse.h"
 
 namespace woodcock::tool {
@@ -257,6 +258,12 @@ void run(const ConvertWords& words) {
     if (words.files.size() < 2)
         throw usageError("'{}' is given alone: name an input and an output",
                          words.files.empty() ? "" : words.files.front().string());
+    if (const std::string pattern = framePattern(words.files.back().filename().string());
+        !pattern.empty())
+        throw usageError(
+            "'{}': {} is not filled in, and the file would be called so; one call writes one file, "
+            "so name it, or call convert for each in a shell's loop",
+            words.files.back().string(), pattern);
     prepareFolder(words.files.back(), words.mkdir);
     const auto start = std::chrono::steady_clock::now();
     convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(), options);

@@ -225,6 +225,11 @@ TEST_F(BakeCommand, WrongFramesAreNamed) {
     wrong({"-o", many}, "#### stands for a frame's number, but one volume is made");
     wrong({"-o", many, "--time", "3"}, "#### stands for a frame's number");
     wrong({"-o", file("x.#.#.vdb"), "--frames", "1-2"}, "one place only");
+    for (const char* pattern : {"%04d", "$F4", "<frame04>"}) {
+        const std::string name = file(std::string("x.") + pattern + ".vdb");
+        wrong({"-o", name}, std::string(pattern) + " is not filled in");
+        wrong({"-o", name, "--frames", "1-2"}, "put #### where a frame's number goes");
+    }
     wrong({"-o", many, "--time", "0:1:0"}, "--time 0:1:0: the step is 0; it must be above 0");
     wrong({"-o", many, "--time", "0:1:-0.5"}, "the step is -0.5");
     wrong({"-o", many, "--time", "1:0:0.5"}, "it ends before it begins");

@@ -122,6 +122,12 @@ TEST_F(Convert, RefusesWrongUsage) {
                   {"--dims", "12,10,9", "--type", "f32", "--grid", "x"});
 }
 
+TEST_F(Convert, NamesNoFileAfterAPattern) {
+    for (const char* pattern : {"####", "%04d", "$F4"})
+        expectRefused(2, std::string(pattern) + " is not filled in", "a.raw",
+                      std::string("b.") + pattern + ".vdb", layout);
+}
+
 TEST_F(Convert, RefusesBadInput) {
     expectRefused(3, "4320", "a.raw", "a.vdb", {"--dims", "12,10,9", "--type", "f64"});
     expectRefused(3, "12 x 10 x 9 would fit", "a.raw", "a.vdb",
