@@ -146,6 +146,8 @@ public:
         : background_(part.background()),
           homogeneous_(!part.field()),
           end_(tMax),
+          enter_(0),
+          leave_(tMax),
           cells_(enters(part, ray) && !homogeneous_
                      ? CellWalk(cells, part.support(), ray, enter_, leave_)
                      : CellWalk()) {}
