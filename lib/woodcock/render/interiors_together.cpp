@@ -72,7 +72,7 @@ bool Interiors::nextLayer(const SurfaceHit& hit, Vec3d direction, const Interior
             interior[side > 0] = true;
             continue;
         }
-        for (const std::size_t seenFrom : {0, 1})
+        for (std::size_t seenFrom = 0; seenFrom < 2; ++seenFrom)
             (sheet_[s.object] ? sheet : solid)[seenFrom].add(s,
                                                              rank(s, seenFrom == 0 ? side : -side));
     }
