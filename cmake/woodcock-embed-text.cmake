@@ -21,3 +21,13 @@ const std::string_view @symbol@ =
 ]])
     target_sources(${target} PRIVATE ${source})
 endfunction()
+
+# woodcock_embed_texts(target folder file:symbol...)
+function(woodcock_embed_texts target folder)
+    foreach(entry IN LISTS ARGN)
+        string(REPLACE ":" ";" entry ${entry})
+        list(GET entry 0 file)
+        list(GET entry 1 symbol)
+        woodcock_embed_text(${target} ${folder}/${file} ${symbol})
+    endforeach()
+endfunction()

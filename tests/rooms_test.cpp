@@ -33,6 +33,9 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"scene",
      {"compare", "bake", "convert", "render", "image", "light", "surface", "camera", "medium",
       "mesh", "grid", "base"}},
+    {"proof",
+     {"scene", "compare", "bake", "convert", "render", "image", "light", "surface", "camera",
+      "medium", "mesh", "grid", "base"}},
     {"trade",
      {"scene", "compare", "bake", "convert", "render", "image", "light", "surface", "camera",
       "medium", "mesh", "grid", "base"}}};
@@ -40,13 +43,13 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
 /// that bear the library's name, which only .cpp files and each other include.
 const std::map<std::string, std::set<std::string>> roomsOfLibrary{
-    {"openvdb", {"grid", "mesh", "convert", "bake"}},
+    {"openvdb", {"grid", "mesh", "convert", "bake", "proof"}},
     {"openvdb_ax", {"bake"}},
     {"nanovdb", {"grid", "convert"}},
     {"assimp", {"mesh"}},
     {"embree3", {"surface"}},
     {"embree4", {"surface"}},
-    {"OpenImageIO", {"image"}},
+    {"OpenImageIO", {"image", "proof"}},
     {"OpenColorIO", {"image"}}};
 bool bearsName(const fs::path& header) {
     const std::string name = header.filename().string();

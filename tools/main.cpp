@@ -8,11 +8,11 @@
 #include <new>
 #include <vector>
 
-#include "about.h"
-#include "commands.h"
-#include "log.h"
-#include "print.h"
-#include "stats.h"
+#include "tools/common/about.h"
+#include "tools/commands.h"
+#include "tools/common/log.h"
+#include "tools/common/print.h"
+#include "tools/common/stats.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/nearest_name.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "tests/support/expect_error.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

@@ -5,7 +5,7 @@
 #include "tests/bake/recipe_text.h"
 #include "woodcock/bake/ax_expression.h"
 #include "woodcock/base/error.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

@@ -12,7 +12,7 @@
 #include "woodcock/bake/program.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "tests/support/statistics.h"
+#include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::test {
 namespace {

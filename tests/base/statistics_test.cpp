@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/statistics.h"
+#include "woodcock/proof/support/statistics.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "woodcock/base/error.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace {
 

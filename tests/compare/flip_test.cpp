@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "tests/support/run_program.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 namespace {

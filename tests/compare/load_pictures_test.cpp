@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "tests/support/write_image.h"
 #include "woodcock/compare/comparison.h"
 

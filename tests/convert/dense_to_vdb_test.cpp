@@ -9,7 +9,7 @@
 #include <random>
 
 #include "tests/support/expect_error.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "tests/support/expect_error.h"
 #include "woodcock/convert/level_set_to_fog.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

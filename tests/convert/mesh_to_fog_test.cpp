@@ -7,7 +7,7 @@
 #include "tests/support/box_shapes.h"
 #include "tests/support/expect_error.h"
 #include "woodcock/convert/mesh_to_fog.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/nanovdb_write.h"
+#include "woodcock/convert/formats/nanovdb_write.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
-#include "woodcock/grid/nanovdb_file.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/grid/nanovdb/file.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace woodcock::test {
 namespace {

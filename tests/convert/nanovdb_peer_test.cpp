@@ -11,14 +11,14 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
-#include "woodcock/convert/nanovdb_write.h"
+#include "woodcock/convert/formats/nanovdb_write.h"
 #include "woodcock/grid/grid_roles.h"
-#include "woodcock/grid/nanovdb_file.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/vdb_file.h"
+#include "woodcock/grid/nanovdb/file.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/file.h"
 
 namespace woodcock::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/random.h"
 #include "woodcock/convert/point_grid_read.h"
 

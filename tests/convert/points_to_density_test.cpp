@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/random.h"
 #include "woodcock/convert/points_to_density.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock::test {
 namespace {

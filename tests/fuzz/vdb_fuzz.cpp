@@ -7,7 +7,7 @@
 #include "tests/fuzz/memory_file.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/majorants.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace {
 

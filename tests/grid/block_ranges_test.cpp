@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/support/plain_grid.h"
+#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/plain_grid.h"
+#include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/plain_grid.h"
-#include "tests/support/statistics.h"
+#include "woodcock/proof/support/plain_grid.h"
+#include "woodcock/proof/support/statistics.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {

@@ -9,12 +9,12 @@
 #include "tests/medium/media.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "tests/support/plain_grid.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/plain_grid.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/grid/majorants.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/medium/optical_depth.h"
 
 namespace woodcock::test {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
-#include "woodcock/grid/vdb_file.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/grid/vdb/file.h"
 
 namespace woodcock::test {
 namespace {

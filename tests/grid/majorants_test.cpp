@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/plain_grid.h"
+#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/base/random.h"
 #include "woodcock/grid/block_ranges.h"
 

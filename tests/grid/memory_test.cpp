@@ -2,10 +2,10 @@
 // A field is no larger than the tree that it was read from.
 #include <gtest/gtest.h>
 
-#include "tests/oracle/vdb_values.h"
+#include "woodcock/proof/oracles/vdb_values.h"
 #include "tests/support/paths.h"
-#include "tests/support/write_vdb.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/proof/support/write_vdb.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace woodcock::test {
 namespace {

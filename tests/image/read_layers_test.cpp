@@ -9,7 +9,7 @@
 
 #include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "tests/support/write_image.h"
 
 namespace woodcock::test {

@@ -8,7 +8,7 @@
 #include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 
 namespace woodcock {
 namespace {

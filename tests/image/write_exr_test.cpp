@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/support/paths.h"
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
 

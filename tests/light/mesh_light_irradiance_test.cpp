@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/light/emissive_triangles.h"
-#include "tests/oracle/surfaces.h"
+#include "woodcock/proof/oracles/surfaces.h"
 #include "woodcock/base/statistics.h"
 
 namespace woodcock::test {

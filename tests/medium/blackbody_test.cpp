@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "tests/support/plain_grid.h"
+#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/medium/blackbody_field.h"
 
 namespace woodcock::test {

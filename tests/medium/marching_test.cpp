@@ -8,7 +8,7 @@
 #include "tests/medium/media.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_mean.h"
-#include "tests/support/statistics.h"
+#include "woodcock/proof/support/statistics.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/medium/similar_medium.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tests/support/plain_medium.h"
+#include "woodcock/proof/support/plain_medium.h"
 
 namespace woodcock::test {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "tests/support/expect_mean.h"
-#include "tests/support/plain_medium.h"
-#include "tests/support/statistics.h"
+#include "woodcock/proof/support/plain_medium.h"
+#include "woodcock/proof/support/statistics.h"
 #include "woodcock/medium/refined_walk.h"
 #include "woodcock/medium/tracking.h"
 

@@ -3,7 +3,7 @@
 
 #include "tests/medium/media.h"
 #include "tests/support/expect_mean.h"
-#include "tests/support/statistics.h"
+#include "woodcock/proof/support/statistics.h"
 #include "woodcock/medium/tracking.h"
 
 namespace woodcock::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/mesh/surface_mesh.h"
 
 namespace woodcock::test {

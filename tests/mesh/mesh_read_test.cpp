@@ -9,7 +9,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/mesh_volume.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/random.h"
 #include "woodcock/mesh/triangle_mesh.h"
 

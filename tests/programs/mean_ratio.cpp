@@ -8,7 +8,7 @@
 #include <cmath>
 #include <exception>
 
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 
 namespace woodcock::test {
 namespace {

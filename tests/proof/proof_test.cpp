@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The proof, quickly: what `woodcock verify` runs.
-#include "tests/proof/proof.h"
+#include "woodcock/proof/proof.h"
 
 #include <gtest/gtest.h>
 

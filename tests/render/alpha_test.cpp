@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

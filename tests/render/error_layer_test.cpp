@@ -6,7 +6,7 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/peer_scene.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_estimate.h"
-#include "tests/support/plain_grid.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/plain_grid.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

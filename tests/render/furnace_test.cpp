@@ -5,8 +5,8 @@
 
 #include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
-#include "tests/support/read_back.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/read_back.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

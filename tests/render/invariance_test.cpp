@@ -5,8 +5,8 @@
 
 #include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
-#include "tests/support/render_scene.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/render_scene.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {

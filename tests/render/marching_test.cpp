@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/proof/measure.h"
+#include "woodcock/proof/checks/measure.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

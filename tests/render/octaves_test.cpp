@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/oracle/closed_forms.h"
-#include "tests/oracle/quadrature.h"
+#include "woodcock/proof/oracles/closed_forms.h"
+#include "woodcock/proof/oracles/quadrature.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

@@ -2,12 +2,12 @@
 // The same scenes as other renderers have drawn them.
 #include <gtest/gtest.h>
 
-#include "tests/oracle/brute_force.h"
+#include "tests/support/brute_force.h"
 #include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
 #include "tests/support/peer_scene.h"
-#include "tests/support/read_back.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/read_back.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
-#include "tests/support/render_scene.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/render_scene.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"

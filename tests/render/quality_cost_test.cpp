@@ -2,8 +2,8 @@
 // Qualities are named in the order of what they cost, counted and not timed.
 #include <gtest/gtest.h>
 
-#include "tests/support/temp_dir.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"

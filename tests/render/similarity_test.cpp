@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/medium/media.h"
-#include "tests/oracle/adding_doubling.h"
-#include "tests/proof/measure.h"
+#include "woodcock/proof/oracles/adding_doubling.h"
+#include "woodcock/proof/checks/measure.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
 #include "woodcock/render/stand_ins.h"

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/proof/measure.h"
+#include "woodcock/proof/checks/measure.h"
 #include "tests/support/expect_estimate.h"
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
 
 namespace woodcock::test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_estimate.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/oracle/line_integral.h"
-#include "tests/oracle/vdb_values.h"
+#include "woodcock/proof/oracles/line_integral.h"
+#include "woodcock/proof/oracles/vdb_values.h"
 #include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
-#include "tests/support/render_scene.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/render_scene.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/medium/optical_depth.h"
 

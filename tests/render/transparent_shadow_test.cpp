@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/oracle/adding_doubling.h"
-#include "tests/oracle/plates.h"
+#include "woodcock/proof/oracles/adding_doubling.h"
+#include "woodcock/proof/oracles/plates.h"
 #include "tests/support/expect_estimate.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/error.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"

@@ -5,7 +5,7 @@
 
 #include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/error.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/scene/defaults.h"

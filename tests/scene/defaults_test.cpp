@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"

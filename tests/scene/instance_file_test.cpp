@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/error.h"
 
 namespace woodcock {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "tests/support/expect_estimate.h"
-#include "tests/support/render_scene.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/render_scene.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"

@@ -10,10 +10,10 @@
 #include <random>
 
 #include "tests/support/paths.h"
-#include "tests/support/write_vdb.h"
-#include "woodcock/grid/vdb_grid_head.h"
-#include "woodcock/grid/vdb_header.h"
-#include "woodcock/grid/vdb_layout.h"
+#include "woodcock/proof/support/write_vdb.h"
+#include "woodcock/grid/vdb/check_grid_head.h"
+#include "woodcock/grid/vdb/check_header.h"
+#include "woodcock/grid/vdb/check_tree.h"
 
 namespace woodcock::test {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/estimate.h"
+#include "woodcock/proof/support/estimate.h"
 
 namespace woodcock::test {
 

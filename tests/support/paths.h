@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 

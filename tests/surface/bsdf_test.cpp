@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/oracle/quadrature.h"
-#include "tests/support/statistics.h"
+#include "woodcock/proof/oracles/quadrature.h"
+#include "woodcock/proof/support/statistics.h"
 #include "tests/surface/one_bsdf.h"
 #include "woodcock/surface/fresnel.h"
 

@@ -13,7 +13,7 @@
 #include "tests/support/run_program.h"
 #include "woodcock/bake/ax_expression.h"
 #include "woodcock/bake/recipe.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/image/read_image.h"
 
 namespace woodcock::test {

@@ -8,11 +8,11 @@
 #include <tuple>
 
 #include "tests/support/paths.h"
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
-#include "tests/support/write_vdb.h"
-#include "woodcock/grid/nanovdb_file.h"
-#include "woodcock/grid/vdb_file.h"
+#include "woodcock/proof/support/write_vdb.h"
+#include "woodcock/grid/nanovdb/file.h"
+#include "woodcock/grid/vdb/file.h"
 #include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock::test {

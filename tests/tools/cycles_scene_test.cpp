@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/cycles_scene.h"
+#include "tools/cycles/scene.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "tests/tools/fog_scene.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"

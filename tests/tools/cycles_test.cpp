@@ -8,9 +8,9 @@
 
 #include "tests/support/environment_variable.h"
 #include "tests/support/paths.h"
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "tests/tools/fog_scene.h"
 #include "woodcock/camera/camera.h"
 #include "woodcock/scene/parse.h"

@@ -8,7 +8,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tests/support/write_image.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/paths.h"
-#include "tests/support/read_back.h"
+#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
-#include "tests/support/write_vdb.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {

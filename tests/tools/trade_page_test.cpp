@@ -6,8 +6,8 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
-#include "tests/support/temp_dir.h"
-#include "tools/trade_report.h"
+#include "woodcock/proof/support/temp_dir.h"
+#include "tools/trade/report_html.h"
 
 namespace woodcock::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "tests/support/run_program.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 namespace {

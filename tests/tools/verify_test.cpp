@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_program.h"
-#include "tests/support/write_vdb.h"
-#include "tools/verify_report.h"
+#include "woodcock/proof/support/write_vdb.h"
+#include "tools/verify/report.h"
 
 namespace woodcock::test {
 namespace {

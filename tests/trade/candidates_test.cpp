@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
-#include "tests/support/temp_dir.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {

@@ -5,7 +5,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
-#include "tests/support/render_scene.h"
+#include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "woodcock/bake/openvdb_ax_program.h"
 #include "woodcock/base/error.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 #ifdef WOODCOCK_AX_LIBRARY
 #include <dlfcn.h>

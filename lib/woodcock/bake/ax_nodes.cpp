@@ -8,8 +8,8 @@
 #include "woodcock/bake/grid_node.h"
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/bake/openvdb_field.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/grid/voxel_scan.h"
 
 namespace woodcock {

@@ -11,7 +11,7 @@
 #include "woodcock/base/toml_text.h"
 #include "woodcock/grid/grid_info.h"
 #include "woodcock/grid/grid_roles.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock {
 

@@ -8,7 +8,7 @@
 
 #include "woodcock/bake/baker.h"
 #include "woodcock/bake/recipe.h"
-#include "woodcock/grid/vdb_write.h"
+#include "woodcock/grid/vdb/write.h"
 
 namespace woodcock {
 

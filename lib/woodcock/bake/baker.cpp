@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "woodcock/bake/openvdb_baker.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 
 namespace woodcock {
 

@@ -8,9 +8,9 @@
 #include "woodcock/bake/openvdb_field.h"
 #include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/grid/block_ranges.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace woodcock {
 

@@ -8,11 +8,11 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
-#include "woodcock/convert/nanovdb_write.h"
+#include "woodcock/convert/formats/nanovdb_write.h"
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/grid/foreign_format.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "woodcock/convert/dense_formats.h"
+#include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/dense_to_vdb.h"
-#include "woodcock/grid/vdb_write.h"
+#include "woodcock/grid/vdb/write.h"
 
 namespace woodcock {
 

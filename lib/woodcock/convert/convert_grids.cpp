@@ -3,9 +3,9 @@
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/convert/point_grid_read.h"
 #include "woodcock/grid/grid_roles.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
-#include "woodcock/grid/vdb_grids_read.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/read_grids.h"
 
 namespace woodcock {
 

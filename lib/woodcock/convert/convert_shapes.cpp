@@ -11,7 +11,7 @@
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/convert/point_grid_read.h"
 #include "woodcock/convert/points_to_density.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/mesh/ply_file.h"
 
 namespace woodcock {

@@ -7,8 +7,8 @@
 
 #include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/base/error.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 
 namespace woodcock {
 

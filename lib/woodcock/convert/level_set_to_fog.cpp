@@ -8,8 +8,8 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/convert/openvdb_fog.h"
-#include "woodcock/grid/openvdb_exact_copy.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_exact_copy.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock {
 

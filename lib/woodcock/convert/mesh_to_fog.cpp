@@ -19,8 +19,8 @@
 #include "woodcock/convert/mesh_inside.h"
 #include "woodcock/convert/openvdb_fog.h"
 #include "woodcock/convert/openvdb_lattice.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 
 namespace woodcock {
 

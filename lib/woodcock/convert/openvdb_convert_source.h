@@ -6,8 +6,8 @@
 #include <string>
 
 #include "woodcock/convert/convert.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/vdb_file.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/file.h"
 
 namespace woodcock {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "woodcock/base/vec.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 
 namespace woodcock {
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "woodcock/grid/half.h"
-#include "woodcock/grid/vdb_grid_head.h"
-#include "woodcock/grid/vdb_header.h"
+#include "woodcock/grid/vdb/check_grid_head.h"
+#include "woodcock/grid/vdb/check_header.h"
 
 namespace woodcock {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "woodcock/convert/points_to_density.h"
-#include "woodcock/grid/vdb_file.h"
+#include "woodcock/grid/vdb/file.h"
 
 namespace woodcock {
 

@@ -14,7 +14,7 @@
 #include "woodcock/base/memory.h"
 #include "woodcock/convert/limits.h"
 #include "woodcock/convert/openvdb_lattice.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock {

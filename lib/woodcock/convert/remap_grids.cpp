@@ -9,8 +9,8 @@
 #include "woodcock/convert/dense_to_vdb.h"
 #include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/grid/half.h"
-#include "woodcock/grid/openvdb_exact_copy.h"
-#include "woodcock/grid/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_exact_copy.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock {
 

@@ -5,8 +5,8 @@
 #include "woodcock/base/memory.h"
 #include "woodcock/convert/dense_to_vdb.h"
 #include "woodcock/convert/openvdb_each_type.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
 
 namespace woodcock {
 

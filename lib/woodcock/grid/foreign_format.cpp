@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "woodcock/grid/vdb_bytes.h"
+#include "woodcock/grid/vdb/file_bytes.h"
 
 namespace woodcock {
 

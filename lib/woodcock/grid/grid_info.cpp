@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "woodcock/base/error.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace woodcock {
 

@@ -7,8 +7,8 @@
 
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
-#include "woodcock/grid/vdb_file.h"
-#include "woodcock/grid/vdb_read.h"
+#include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/vdb/read_voxels.h"
 
 namespace woodcock {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "woodcock/grid/vdb_file.h"
+#include "woodcock/grid/vdb/file.h"
 
 namespace woodcock {
 

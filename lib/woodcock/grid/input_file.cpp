@@ -3,7 +3,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
-#include "woodcock/grid/vdb_bytes.h"
+#include "woodcock/grid/vdb/file_bytes.h"
 
 namespace woodcock {
 

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "woodcock/base/error.h"
-#include "woodcock/grid/openvdb_exact_copy.h"
-#include "woodcock/grid/openvdb_grids.h"
-#include "woodcock/grid/openvdb_transform.h"
-#include "woodcock/grid/vdb_file.h"
-#include "woodcock/grid/vdb_grids_read.h"
+#include "woodcock/grid/vdb/openvdb_exact_copy.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/vdb/read_grids.h"
 #include "woodcock/mesh/surface_mesh.h"
 
 namespace woodcock {

@@ -7,7 +7,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/grid_roles.h"
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/image/read_image.h"
 #include "woodcock/medium/blackbody_field.h"
 #include "woodcock/scene/load_albedo.h"

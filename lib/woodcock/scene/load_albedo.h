@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "woodcock/grid/vdb_load.h"
+#include "woodcock/grid/vdb/load_field.h"
 
 namespace woodcock {
 

@@ -7,8 +7,8 @@
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/bake/baker.h"
 #include "woodcock/base/error.h"
-#include "woodcock/grid/vdb_load.h"
-#include "woodcock/grid/vdb_peer.h"
+#include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/grid/vdb/read_by_openvdb.h"
 #include "woodcock/medium/optical_depth.h"
 
 namespace woodcock {

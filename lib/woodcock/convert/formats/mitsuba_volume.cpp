@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "woodcock/base/printable.h"
+#include "woodcock/convert/formats/dense_formats.h"
+#include "woodcock/convert/formats/source_bytes.h"
+
+namespace woodcock {
+
+namespace {
+
+constexpr std::uint64_t headerBytes = 48;
+
+template <class T>
+T littleEndian(FileBytes& file) {
+    const T value = file.value<T>();
+    return std::endian::native == std::endian::little ? value : swapBytes(value);
+}
+
+SampleType typeOf(std::int32_t encoding, const std::filesystem::path& file) {
+    switch (encoding) {
+        case 1:
+            return SampleType::F32;
+        case 2:
+            return SampleType::F16;
+        case 3:
+            return SampleType::U8;
+        default:
+            throw inputError(
+                "{}: its values have encoding {}; known: 1 (float), 2 (half), 3 (byte)",
+                file.string(), encoding);
+    }
+}
+
+/// Mitsuba fills the unit cube and does not look at the box unless `use_grid_bbox` is set: so
+/// nobody notices that some writers leave it empty, and others write whole numbers there, which are
+/// next to nothing as floats.
+void placeInBox(DenseVolume& volume, Vec3d lower, Vec3d upper, const std::filesystem::path& file) {
+    constexpr double least = 1e-30;
+    bool usable = isFinite(lower) && isFinite(upper);
+    for (int i = 0; i < 3; ++i) usable = usable && upper[i] - lower[i] > least;
+    if (!usable) {
+        volume.unitCube = true;
+        fillUnitCube(volume);
+        volume.notes.push_back(fmt::format(
+            "{}: its box, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), is "
+            "empty or none: it fills the unit cube, as in Mitsuba without "
+            "use_grid_bbox, where --voxel, --size or --origin do not place it",
+            file.string(), lower.x, lower.y, lower.z, upper.x, upper.y, upper.z));
+        return;
+    }
+    Vec3d voxel;
+    for (int i = 0; i < 3; ++i)
+        voxel[i] = (upper[i] - lower[i]) / static_cast<double>(volume.dims[static_cast<size_t>(i)]);
+    volume.worldFromIndex = Affine3d::translate(lower + voxel * 0.5) * Affine3d::scale(voxel);
+    volume.placed = true;
+}
+
+}  // namespace
+
+DenseVolume readMitsubaVolume(const std::filesystem::path& file) {
+    auto bytes = std::make_shared<FileBytes>(file, "a Mitsuba volume");
+    const std::span<const char> magic = bytes->bytes(3);
+    if (std::string_view(magic.data(), 3) != "VOL")
+        throw inputError("{} is no Mitsuba volume: it begins with '{}' instead of 'VOL'",
+                         file.string(), printable(std::string(magic.data(), 3)));
+    if (const int version = bytes->value<unsigned char>(); version != 3)
+        throw inputError("{}: Mitsuba volume of version {}; known: 3", file.string(), version);
+    DenseVolume volume;
+    volume.type = typeOf(littleEndian<std::int32_t>(*bytes), file);
+    if (volume.type == SampleType::U8) volume.unit = 1 / 255.0;
+    volume.swapped = std::endian::native == std::endian::big;
+    for (std::int64_t& n : volume.dims) n = littleEndian<std::int32_t>(*bytes);
+    volume.channels = littleEndian<std::int32_t>(*bytes);
+    requireDims(volume, file);
+    Vec3d lower, upper;
+    for (int i = 0; i < 3; ++i) lower[i] = static_cast<double>(littleEndian<float>(*bytes));
+    for (int i = 0; i < 3; ++i) upper[i] = static_cast<double>(littleEndian<float>(*bytes));
+    placeInBox(volume, lower, upper, file);
+    loadSamples(volume, std::move(bytes), headerBytes);
+    volume.setStridesXFirst();
+    return volume;
+}
+
+}  // namespace woodcock

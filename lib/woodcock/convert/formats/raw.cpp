@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/formats/dense_formats.h"
+#include "woodcock/convert/formats/source_bytes.h"
+
+namespace woodcock {
+
+DenseVolume readRaw(const std::filesystem::path& file, const RawLayout& layout) {
+    DenseVolume volume;
+    volume.dims = layout.dims;
+    volume.channels = layout.channels;
+    volume.type = layout.type;
+    volume.swapped = layout.bigEndian != (std::endian::native == std::endian::big);
+    auto bytes = std::make_shared<FileBytes>(file, "a file of numbers");
+    if (layout.headerBytes > bytes->size())
+        throw inputError("{}: a header of {} bytes is expected, and the file has {} bytes in all",
+                         file.string(), layout.headerBytes, bytes->size());
+    loadSamples(volume, std::move(bytes), layout.headerBytes);
+    volume.setStridesXFirst();
+    return volume;
+}
+
+}  // namespace woodcock

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "woodcock/grid/vdb/file.h"
+
+namespace woodcock {
+
+struct VdbGrids;
+
+/// Whether readVdbGrids() can read the grid: any grid of numbers with an affine transform, level
+/// sets too.
+bool isReadable(const GridListing& grid);
+
+/// The grids of these unique names, in this order, as OpenVDB has them: values, active states,
+/// transform and metadata as they stand in the file; halves become floats. As safe with damaged
+/// files as loadGrid(); the values may be anything that a number can be. Errors: Input, naming file
+/// and grid.
+VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqueNames);
+
+}  // namespace woodcock

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "woodcock/grid/field_source.h"
+#include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/voxel_scan.h"
+
+namespace woodcock {
+
+/// What a grid holds, once its voxels have been read.
+struct GridStatistics {
+    VoxelScan voxels;
+    std::size_t activeTiles = 0, leaves = 0;
+    Box3i activeBounds;  ///< of active voxels and tiles, index space
+    std::array<float, 3> background{};
+    std::size_t openVdbBytes = 0;  ///< memory of the tree in OpenVDB
+};
+
+/// Values that are set to zero on the way: NaN and infinite ones, and negative ones too.
+struct Repair {
+    bool faulty = false;
+    bool negative = false;
+};
+
+/// The grid as a source for buildField(); holds OpenVDB's tree as long as it lives.
+struct GridSource {
+    FieldSource field;  ///< leaves that are constant come as tiles, or not at all where background
+    GridStatistics statistics;  ///< of the values before any repair
+};
+
+/// Reads the voxels of one grid (channels > 0), in parallel. Errors: Input when the file cannot be
+/// read.
+GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair repair);
+
+}  // namespace woodcock

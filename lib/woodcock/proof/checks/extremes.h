@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "woodcock/proof/oracles/line_integral.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
+
+namespace woodcock::proof {
+
+// Parts of extremes(), one file each.
+std::vector<Check> extremeDepths();
+std::vector<Check> extremeGrids();
+std::vector<Check> extremeRays();
+std::vector<Check> extremeContrasts();
+
+/// Two digits quickly, more in full: extremes are many.
+Precision extremePrecision(const Lab& lab);
+
+/// How a picture is taken whose pixels all expect the same, and what it may cost.
+struct Watch {
+    std::vector<int> channels{0};
+    int side = 32;
+    std::optional<int> maxScatterings{};
+    /// Cells entered and collisions met, for each flight: of the camera, after a scattering, to a
+    /// light. Theory needs one collision at most.
+    double mostSteps = 200;
+};
+
+/// Like evenPicture(), and adds a case that tells of hangs: the steps per flight.
+test::RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene,
+                        const Precision& precision, const Watch& how = {});
+
+/// `sigma_a` or so of a float in a scene's text, to all digits.
+std::string digits(double value);
+
+inline constexpr const char* evenLight = "[[light]]\ntype = \"environment\"\nradiance = 1\n";
+
+/// A grid that is known as a function, and a scene that absorbs by it.
+struct KnownGrid {
+    test::VoxelFunction voxel;  ///< zero outside the box
+    Box3i box;
+    Affine3d worldFromIndex;
+    double sigma = 1;
+    /// Optical depth of a ray in index space, `direction` of any length, to its end.
+    double opticalDepth(Vec3d origin, Vec3d direction) const;
+};
+
+/// Adds the transmittance of `scene`'s medium (grey, one part) along a line in index space: as the
+/// estimator finds it, and the optical depth as the exact integrator does.
+void addTransmittance(Lab& lab, const std::string& name, const std::string& volume,
+                      const KnownGrid& grid, Vec3d origin, Vec3d direction);
+
+}  // namespace woodcock::proof

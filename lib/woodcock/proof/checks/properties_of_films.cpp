@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What no film may show: threads, ranges of samples, the unit of length.
+#include <cmath>
+#include <cstring>
+
+#include "woodcock/proof/checks/properties.h"
+#include "woodcock/proof/checks/volume.h"
+#include "woodcock/render/session.h"
+
+namespace woodcock::proof {
+
+namespace {
+
+/// Sun, sky and a lamp in the volume; all lengths in units of 1 / k.
+Scene sceneOf(const Volume& v, double k) {
+    MediumPart::Description d = v.part({0.01f, 0.1f, 0.5f}, {1, 0.8f, 0.2f}, 0.4).description();
+    d.worldFromIndex = Affine3d::scale({k, k, k}) * d.worldFromIndex;
+    d.absorption *= static_cast<float>(1 / k), d.scattering *= static_cast<float>(1 / k);
+    const double r = v.radius() * k;
+    const Vec3d centre = v.centre() * k;
+    const auto lamp = static_cast<float>(r * r);
+    return {{{MediumPart(d)}},
+            LightSet({Sun({1, -2, 0.5}, Rgb(4.0f), 5, false), Environment(Rgb(0.5f), true),
+                      PointLight{v.matter[2] * k, Rgb(lamp)}}),
+            Camera::perspective(centre + Vec3d{1, 0.5, 2} * r, centre, {0, 1, 0}, 50)};
+}
+
+RenderSettings settings(const Lab& lab) {
+    RenderSettings s;
+    s.width = 20, s.height = 16;
+    s.endSample = lab.pick(3, 40);
+    s.seed = lab.seed("films");
+    s.depthLayers = true;
+    return s;
+}
+
+/// Pixels of which `differs`.
+int countPixels(const Film& a, const Film& b,
+                const std::function<bool(const Film::Pixel&, const Film::Pixel&)>& differs) {
+    int count = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) count += differs(a.at(x, y), b.at(x, y));
+    return count;
+}
+
+bool otherBits(const Film::Pixel& a, const Film::Pixel& b) {
+    return std::memcmp(&a, &b, sizeof a) != 0;
+}
+
+/// Beyond the last place of a float, in any of the sums.
+bool otherFloats(const Film::Pixel& a, const Film::Pixel& b) {
+    const auto differ = [](double x, double y) {
+        const auto f = static_cast<float>(x);
+        return std::abs(f - static_cast<float>(y)) >
+               std::nextafter(std::abs(f), std::numeric_limits<float>::infinity()) - std::abs(f);
+    };
+    bool any = a.samples != b.samples || a.depthSamples != b.depthSamples ||
+               differ(a.alpha, b.alpha) || differ(a.weightedDepth, b.weightedDepth) ||
+               differ(a.depthWeight, b.depthWeight);
+    for (int c = 0; c < 3; ++c)
+        any |= differ(a.radiance[c], b.radiance[c]) ||
+               differ(a.radianceSquared[c], b.radianceSquared[c]) ||
+               differ(a.transmittance[c], b.transmittance[c]);
+    return any;
+}
+
+/// The same sums, but for the unit of a depth.
+bool otherRadiance(const Film::Pixel& a, const Film::Pixel& b) {
+    return std::memcmp(a.radiance, b.radiance, sizeof a.radiance) != 0 || a.alpha != b.alpha;
+}
+
+void films(Lab& lab) {
+    for (const Volume& v : volumes(lab, Endless::Too)) {
+        const Scene scene = sceneOf(v, 1);
+        RenderSettings s = settings(lab);
+        s.threads = 1;
+        const Film whole = render(scene, s).film;
+        const auto add = [&](const std::string& what, int pixels) {
+            lab.add({.name = "pixels that show " + what + ", " + v.name,
+                     .measured = static_cast<double>(pixels)});
+        };
+        for (const int threads : {2, 5}) {
+            s.threads = threads;
+            add(std::to_string(threads) + " threads",
+                countPixels(whole, render(scene, s).film, otherBits));
+        }
+        RenderSettings first = s, second = s;
+        first.endSample = second.firstSample = s.endSample / 3;
+        Film merged = render(scene, first).film;
+        merged.merge(render(scene, second).film);
+        add("two ranges of samples", countPixels(whole, merged, otherFloats));
+        // Powers of two round nothing.
+        for (const double k : {0x1p20, 0x1p-30})
+            add(k > 1 ? "a scale of 2^20" : "a scale of 2^-30",
+                countPixels(whole, render(sceneOf(v, k), s).film, otherRadiance));
+    }
+}
+
+}  // namespace
+
+std::vector<Check> propertiesOfFilms() { return {{Kind::Property, "what no film shows", films}}; }
+
+}  // namespace woodcock::proof

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/proof/support/temp_dir.h"
+
+#include <stdlib.h>
+
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace woodcock::test {
+
+TempDir::TempDir() {
+    std::string name = (std::filesystem::temp_directory_path() / "woodcock-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary directory: " + name);
+    path_ = name;
+}
+
+TempDir::~TempDir() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::string readText(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw std::runtime_error("cannot read " + file.string());
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void writeText(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream out(file, std::ios::binary);
+    if (!out.write(text.data(), static_cast<std::streamsize>(text.size())).flush())
+        throw std::runtime_error("cannot write " + file.string());
+}
+
+}  // namespace woodcock::test

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/common/progress.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/print.h"
+#include "woodcock/base/parse.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void printLine(const Json& json) { printProgress("{}\n", json.dump()); }
+
+std::string bar(double fraction) {
+    constexpr int width = 30;
+    const int full = static_cast<int>(fraction * width);
+    return fmt::format("[{:#<{}}{:.<{}}]", "", full, "", width - full);
+}
+
+}  // namespace
+
+ProgressStyle progressStyle(const std::string& name) {
+    if (name == "bar") return ProgressStyle::Bar;
+    if (name == "json") return ProgressStyle::Json;
+    if (name == "auto" && isatty(STDERR_FILENO)) return ProgressStyle::Bar;
+    return ProgressStyle::None;
+}
+
+void Progress::start(const RenderSettings& settings) {
+    if (style_ == ProgressStyle::Json)
+        printLine({{"event", "start"},
+                   {"width", settings.width},
+                   {"height", settings.height},
+                   {"first_sample", settings.firstSample},
+                   {"end_sample", settings.endSample},
+                   {"seed", settings.seed}});
+}
+
+void Progress::update(const RenderProgress& progress) {
+    spdlog::trace("render: {:.1f} %, {} samples a pixel, {} left", 100 * progress.fraction,
+                  progress.samples, formatDuration(progress.secondsLeft));
+    if (style_ == ProgressStyle::Json) {
+        printLine({{"event", "progress"},
+                   {"fraction", progress.fraction},
+                   {"seconds", progress.seconds},
+                   {"seconds_left", progress.secondsLeft},
+                   {"samples", progress.samples},
+                   {"noise", progress.noise}});
+    } else if (style_ == ProgressStyle::Bar) {
+        const std::string noise =
+            std::isfinite(progress.noise) ? ", " + noiseText(progress.noise) : "";
+        // Carriage return, and erase to the end of the line.
+        printProgress("\r{} {:3.0f} %, {} left, {} samples{}\x1b[K", bar(progress.fraction),
+                      100 * progress.fraction, formatDuration(progress.secondsLeft),
+                      progress.samples, noise);
+    }
+}
+
+void Progress::finish(const RenderResult& result) {
+    if (style_ == ProgressStyle::Json)
+        printLine({{"event", "done"},
+                   {"reason", stopReasonName(result.reason)},
+                   {"seconds", result.seconds},
+                   {"end_sample", result.endSample},
+                   {"noise", result.film.noise()},
+                   {"non_finite", result.film.nonFiniteCount()}});
+    else if (style_ == ProgressStyle::Bar)
+        printProgress("\r\x1b[K");
+}
+
+WorkProgress::~WorkProgress() {
+    if (style_ == ProgressStyle::Bar) printProgress("\r\x1b[K");
+}
+
+void WorkProgress::update(double fraction) {
+    const auto now = std::chrono::steady_clock::now();
+    constexpr std::chrono::milliseconds pause(200);
+    if (now - shown_ < pause) return;
+    shown_ = now;
+    spdlog::trace("{}: {:.1f} %", name_, 100 * fraction);
+    if (style_ == ProgressStyle::None) return;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double left = fraction > 0 ? seconds * (1 - fraction) / fraction : 0;
+    if (style_ == ProgressStyle::Json) {
+        printLine({{"event", name_},
+                   {"fraction", fraction},
+                   {"seconds", seconds},
+                   {"seconds_left", left}});
+        return;
+    }
+    printProgress("\r{} {} {:3.0f} %, {} left\x1b[K", name_, bar(fraction), 100 * fraction,
+                  formatDuration(left));
+}
+
+std::string noiseText(double noise) {
+    return std::isfinite(noise) ? fmt::format("noise {:.2f} %", 100 * noise) : "noise unknown";
+}
+
+std::string stopReasonName(StopReason reason) {
+    switch (reason) {
+        case StopReason::Complete:
+            return "complete";
+        case StopReason::TimeLimit:
+            return "time-limit";
+        case StopReason::NoiseReached:
+            return "noise-reached";
+        case StopReason::Interrupted:
+            return "interrupted";
+    }
+    return {};
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/common/report_options.h"
+
+#include <spdlog/spdlog.h>
+
+#include <thread>
+
+#include "tools/common/about.h"
+#include "tools/common/log.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/print.h"
+
+namespace woodcock::tool {
+
+void ReportOptions::addTo(CLI::App& command, const std::string& jsonHelp) {
+    const std::vector<std::string> styles{"auto", "bar", "json", "none"};
+    const std::vector<std::string> levels{"trace", "debug", "info", "warning", "error", "off"};
+    const std::vector<CLI::Option*> options{
+        addChoice(command, "--progress", progress, styles,
+                  "Show how far the work is, on stderr; auto is a bar on a terminal:")
+            ->type_name("STYLE"),
+        command.add_flag("--json", json, jsonHelp),
+        addParsed(
+            command, "--log-level", logLevel,
+            [levels](const std::string& word) {
+                const std::string name = word == "warn" ? "warning" : word;
+                return levels[indexOfWord(name, levels)];
+            },
+            "Print messages of this level and above: " + joinNames(levels))
+            ->type_name("LEVEL"),
+        command.add_flag("-q,--quiet", quiet, "Print warnings and errors only")};
+    for (CLI::Option* option : options) option->group("Reports");
+}
+
+ProgressStyle ReportOptions::start() const {
+    const auto exclude = [this](bool other, const char* name) {
+        if (quiet && other)
+            throw usageError("--quiet and {} contradict each other; give one of them", name);
+    };
+    exclude(logLevel.has_value(), "--log-level");
+    exclude(progress == "bar" || progress == "json", "--progress");
+    const ProgressStyle style = quiet ? ProgressStyle::None : progressStyle(progress);
+    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
+             quiet ? "warning" : logLevel.value_or("info"));
+    spdlog::debug("{}, {} threads at most", programVersion(), std::thread::hardware_concurrency());
+    return style;
+}
+
+void printJson(const std::string& document) {
+    printData(document + "\n");
+}
+
+}  // namespace woodcock::tool

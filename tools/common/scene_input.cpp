@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/common/scene_input.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/common/frames.h"
+#include "woodcock/base/error.h"
+#include "woodcock/image/image_format.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/defaults.h"
+#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_files.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+SceneDescription parseWith(const SceneInput& input, const std::vector<std::string>& overrides) {
+    if (isSceneFile(input.files.front())) return parseScene(input.files.front(), overrides);
+    const std::string name = "command line";
+    SceneDescription scene = parseSceneText(defaultSceneText(input.files), name, "", overrides);
+    std::erase_if(scene.places, [&](const auto& place) { return place.second.starts_with(name); });
+    return scene;
+}
+
+/// The up axis that the camera of a scene suggests.
+UpAxis upOfCamera(const CameraDescription& camera) {
+    Vec3d up = camera.given.up.value_or(Vec3d{0, 1, 0});
+    if (camera.pose) up = worldFromCamera(*camera.pose).column[1];
+    return std::abs(up.z) > std::abs(up.y) ? UpAxis::Z : UpAxis::Y;
+}
+
+/// What --sun sets in a scene.
+std::vector<std::string> sunOverrides(const SceneDescription& scene,
+                                      std::pair<double, double> place) {
+    std::size_t index = 0;  // of the chosen lights, where there are none
+    const SunDescription* sun = nullptr;
+    while (index < scene.lights.size() &&
+           !(sun = std::get_if<SunDescription>(&scene.lights[index].light)))
+        ++index;
+    if (!scene.lights.empty() && !sun)
+        throw usageError(
+            "--sun: the scene has no sun to be moved; give it a [[light]] of type = \"sun\"");
+    std::vector<std::string> set{fmt::format("light[{}].elevation={}", index, place.first),
+                                 fmt::format("light[{}].azimuth={}", index, place.second)};
+    if (sun && !sun->place && upOfCamera(scene.camera) == UpAxis::Z)
+        set.push_back(fmt::format("light[{}].up=z", index));
+    return set;
+}
+
+SceneDescription parseAtAnySize(const SceneInput& input, std::vector<std::string> overrides) {
+    SceneDescription scene = parseWith(input, overrides);
+    if (!input.sun) return scene;
+    for (std::string& set : sunOverrides(scene, *input.sun)) overrides.push_back(std::move(set));
+    return parseWith(input, overrides);
+}
+
+}  // namespace
+
+bool isSceneFile(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".toml";
+}
+
+void checkInput(const SceneInput& input) {
+    const auto& files = input.files;
+    if (files.size() > 1 && std::any_of(files.begin(), files.end(), isSceneFile))
+        throw usageError("a scene file is rendered alone, but {} inputs are given", files.size());
+    if (std::any_of(files.begin(), files.end(), [](const auto& file) { return file.empty(); }))
+        throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb, .nvdb)");
+    checkNoFrames(files, input.overlay);
+}
+
+CLI::Option* addOverlay(CLI::App& command, bool& overlay) {
+    return command.add_flag("--overlay", overlay,
+                            "Draw volumes whose names differ only in a number into one picture, "
+                            "instead of taking them for frames");
+}
+
+// The size goes through the scene file, where cameras depend on it. What it replaces is checked
+// all the same.
+SceneDescription parseInput(const SceneInput& input) {
+    SceneDescription scene = parseAtAnySize(input, input.overrides);
+    if (!input.size) return scene;
+    const int width = input.size->width;
+    const double shape = double(scene.render.height) / scene.render.width;
+    const double height = input.size->height.value_or(std::max(1.0, std::round(width * shape)));
+    if (height > largestImageSide)
+        throw usageError("--res {} in the scene's shape is {} pixels high; the most are {}", width,
+                         height, largestImageSide);
+    std::vector<std::string> overrides = input.overrides;
+    overrides.push_back(fmt::format("render.resolution=[{}, {}]", width, height));
+    scene = parseAtAnySize(input, overrides);
+    scene.places["render.resolution"] = "--res";
+    return scene;
+}
+
+std::vector<std::filesystem::path> filesRead(const SceneInput& input, SceneDescription scene) {
+    std::vector<std::filesystem::path> files = input.files;
+    for (const std::filesystem::path* file : sceneFiles(scene)) files.push_back(*file);
+    files.push_back(scene.ocio);
+    return files;
+}
+
+namespace {
+
+void tellOfVelocities(const SceneDescription& scene, const LoadedScene& loaded) {
+    std::set<std::filesystem::path> told;
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        if (const std::string& grid = loaded.volumes[i].velocities;
+            !grid.empty() && told.insert(scene.volumes[i].file).second)
+            spdlog::info(
+                "{}: its velocities ('{}') are not used: there is no motion blur yet, so what "
+                "moves is drawn sharp",
+                scene.volumes[i].file.string(), grid);
+}
+
+}  // namespace
+
+LoadedScene loadAndComplete(SceneDescription& description) {
+    LoadedScene loaded = loadScene(description);
+    for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
+    for (const std::string& choice : completeScene(description, loaded)) spdlog::info("{}", choice);
+    loadChosenImages(description, loaded);
+    tellOfVelocities(description, loaded);
+    return loaded;
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/compare/against_cycles.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/cycles/render.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress.h"
+#include "woodcock/base/whole_file.h"
+#include "woodcock/image/outputs.h"
+#include "woodcock/render/session.h"
+#include "woodcock/scene/build.h"
+#include "woodcock/scene/write.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int interruptedCode = 130, fewestSeeds = 2;
+
+[[noreturn]] void stop() {
+    spdlog::warn("interrupted: nothing is compared");
+    throw CLI::RuntimeError(interruptedCode);
+}
+
+double renderOurs(const Scene& scene, const SceneDescription& description,
+                  const std::filesystem::path& file, const std::string& commandLine,
+                  ProgressStyle style) {
+    OutputSettings outputSettings;
+    outputSettings.files = {file};
+    outputSettings.layers = layersFromNames({"error"});
+    const Outputs outputs(std::move(outputSettings));
+    const RenderSettings settings = renderSettings(description.render);
+    Progress progress(style);
+    progress.start(settings);
+    const RenderResult result = woodcock::render(scene, settings, [&](const RenderProgress& now) {
+        progress.update(now);
+        return !interrupted();
+    });
+    progress.finish(result);
+    if (result.reason == StopReason::Interrupted) stop();
+    outputs.write(result.film, {0, result.endSample, settings.seed, result.seconds,
+                                sceneDigest(description), commandLine});
+    return result.seconds;
+}
+
+std::filesystem::path pictureOf(const std::filesystem::path& directory, const char* program,
+                                int seed) {
+    return directory / (program + (seed == 0 ? ".exr" : fmt::format("_{}.exr", seed + 1)));
+}
+
+std::vector<std::filesystem::path> picturesOf(const std::filesystem::path& directory, int seeds) {
+    std::vector<std::filesystem::path> files;
+    for (int i = 0; i < seeds; ++i)
+        for (const char* program : {"woodcock", "cycles"})
+            files.push_back(pictureOf(directory, program, i));
+    return files;
+}
+
+CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene& loaded,
+                          const BothOptions& o, const std::filesystem::path& file,
+                          const std::string& commandLine, ProgressStyle style) {
+    CyclesOptions cycles;
+    cycles.settings.mode = o.mode.value_or("");
+    cycles.settings.interpolation = o.interpolation.value_or("");
+    cycles.settings.stepRate = o.stepRate.value_or(cycles.settings.stepRate);
+    cycles.blender = o.blender;
+    cycles.image = file;
+    cycles.commandLine = commandLine;
+    cycles.shouldStop = interrupted;
+    WorkProgress progress(style, "cycles");
+    cycles.onProgress = [&](double fraction) { progress.update(fraction); };
+    CyclesResult result = renderWithCycles(description, loaded, cycles);
+    if (result.stopped) stop();
+    return result;
+}
+
+}  // namespace
+
+std::vector<PictureSource> renderBoth(const BothOptions& o, const std::filesystem::path& directory,
+                                      const std::string& commandLine, ProgressStyle style) {
+    catchInterrupts();
+    checkInput(o.input);
+    SceneDescription description = parseInput(o.input);
+    description.render.spp = o.spp.value_or(description.render.spp);
+    const int seeds = o.seeds.value_or(fewestSeeds);
+    refuseOverwriting(picturesOf(directory, seeds), filesRead(o.input, description));
+    const LoadedScene loaded = loadAndComplete(description);
+    const Scene scene = buildScene(description, loaded);
+
+    std::vector<PictureSource> sources(2);
+    double ours = 0, theirs = 0;
+    CyclesResult last;
+    const std::uint64_t firstSeed = description.render.seed;
+    for (int i = 0; i < seeds; ++i) {
+        description.render.seed = firstSeed + static_cast<std::uint64_t>(i);
+        const auto a = pictureOf(directory, "woodcock", i), b = pictureOf(directory, "cycles", i);
+        // Cycles first: what it cannot express, or a Blender that is not there, is known at once.
+        last = renderTheirs(description, loaded, o, b, commandLine, style);
+        theirs += last.seconds;
+        ours += renderOurs(scene, description, a, commandLine, style);
+        if (i == 0) {
+            sources[0].file = a, sources[1].file = b;
+        } else {
+            sources[0].more.push_back(a), sources[1].more.push_back(b);
+        }
+    }
+    spdlog::info("A: Woodcock, {:.1f} s; B: Cycles of Blender {} ({}), {:.1f} s; {} x {} samples",
+                 ours, last.version, last.mode, theirs, seeds, description.render.spp);
+    if (last.mode == "biased" && o.mode != "biased")
+        spdlog::warn("Blender {} only marches through volumes, which is biased", last.version);
+    return sources;
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "tools/commands.h"
+#include "tools/compare/command.h"
+#include "tools/compare/against_cycles.h"
+#include "tools/compare/report.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/print.h"
+#include "tools/common/scratch_directory.h"
+#include "woodcock/base/whole_file.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+// ---- limits
+
+/// A number for a whole image that is 0 where it equals the reference.
+struct Metric {
+    std::string name;
+    std::function<double(const ImageComparison&)> value;
+};
+
+/// The largest over channels.
+std::function<double(const ImageComparison&)> worst(double (*of)(const ChannelComparison&)) {
+    return [of](const ImageComparison& image) {
+        double most = 0;
+        for (const ChannelComparison& c : image.channels) {
+            const double v = of(c);
+            // A ratio to a mean of 0 is beyond any limit.
+            most = std::isnan(v) ? std::numeric_limits<double>::infinity() : std::max(most, v);
+        }
+        return most;
+    };
+}
+
+const std::vector<Metric>& metrics() {
+    using C = ChannelComparison;
+    static const std::vector<Metric> all{
+        {"bias", worst([](const C& c) { return std::abs(c.bias.value); })},
+        {"ratio", worst([](const C& c) {
+             return c.metrics.meanA == c.metrics.meanB ? 0 : std::abs(c.ratio - 1);
+         })},
+        {"rmse", worst([](const C& c) { return c.metrics.rmse; })},
+        {"relmse", worst([](const C& c) { return c.metrics.relMse; })},
+        {"largest", worst([](const C& c) {
+             const auto& l = c.metrics.largest;
+             return l.empty() ? 0 : std::abs(l.front().b - l.front().a);
+         })},
+        {"flip", [](const ImageComparison& i) { return i.flip ? i.flip->ldr : 0; }},
+        {"hdr-flip", [](const ImageComparison& i) { return i.flip ? i.flip->hdr : 0; }},
+        {"non-finite", worst([](const C& c) {
+             return static_cast<double>(c.metrics.nonFiniteA + c.metrics.nonFiniteB);
+         })},
+        {"tiles", [](const ImageComparison& i) { return static_cast<double>(i.differentTiles); }}};
+    return all;
+}
+
+struct Limit {
+    const Metric* metric = nullptr;  ///< none: the verdict
+    double value = 0;
+};
+
+Limit parseLimit(const std::string& text) {
+    if (text == "differ") return {};
+    std::vector<std::string> names{"differ"};
+    const std::string name = text.substr(0, text.find('='));
+    for (const Metric& metric : metrics()) {
+        names.push_back(metric.name);
+        if (metric.name != name) continue;
+        if (name == text)
+            throw usageError("--fail-above: {} needs a value, as in {}=0.01", name, name);
+        try {
+            return {&metric, parseNumber(text.substr(name.size() + 1), 0, 1e300)};
+        } catch (const Error& error) {
+            throw usageError("--fail-above: {}: {}", name, error.what());
+        }
+    }
+    throw usageError("--fail-above: unknown metric '{}'{}", name,
+                     suggestName(name, "known", names));
+}
+
+/// Says which limits are exceeded.
+bool exceeds(const Comparison& comparison, const std::vector<std::string>& limits) {
+    bool any = false;
+    for (const std::string& text : limits) {
+        const Limit limit = parseLimit(text);
+        for (const ImageComparison& image : comparison.images) {
+            const std::string& letter = comparison.pictures[image.image].letter;
+            const double value = limit.metric ? limit.metric->value(image) : image.differ;
+            if (value <= limit.value) continue;
+            any = true;
+            if (limit.metric)
+                spdlog::error("{} of {} is {:.6g}, above {:g}", limit.metric->name, letter, value,
+                              limit.value);
+            else
+                spdlog::error("{} differs: {}", letter, image.reason);
+        }
+    }
+    return any;
+}
+
+// ---- options
+
+std::filesystem::path jsonFile(const CompareOptions& o) { return o.report / "compare.json"; }
+std::filesystem::path htmlFile(const CompareOptions& o) { return o.report / "compare.html"; }
+
+/// "B=word" to the image of that letter.
+std::pair<PictureSource*, std::string> forImage(std::vector<PictureSource>& sources,
+                                                const char* option, const std::string& text) {
+    const std::size_t index = text.size() > 2 && text[1] == '=' && text[0] >= 'A'
+                                  ? static_cast<std::size_t>(text[0] - 'A')
+                                  : sources.size();
+    if (index >= sources.size())
+        throw usageError("{}: '{}' does not begin with an image's letter and '=': images are {}",
+                         option, text,
+                         sources.size() < 2
+                             ? "A, B, ..."
+                             : fmt::format("A to {}", static_cast<char>('A' + sources.size() - 1)));
+    return {&sources[index], text.substr(2)};
+}
+
+/// What the command line says, before it is sorted by image.
+struct CompareWords {
+    std::vector<std::string> files, more, colourSpaces;
+    CompareOptions options;
+    std::filesystem::path scene;  ///< of --cycles
+    BothOptions cycles;
+
+    /// The options of --cycles that were given beside files.
+    void check() const {
+        const bool both = !scene.empty();
+        if (!both && files.empty())
+            throw usageError(
+                "there is nothing to compare; name two images or more, or a scene after --cycles");
+        if (both && !(files.empty() && more.empty() && colourSpaces.empty()))
+            throw usageError(
+                "--cycles renders both images itself; give images or --cycles, not both");
+        if (!both &&
+            (cycles.spp || cycles.seeds || cycles.mode || cycles.interpolation || cycles.stepRate ||
+             !cycles.blender.empty() || !cycles.input.overrides.empty()))
+            throw usageError(
+                "--spp, --seeds, --mode, --step-rate, --interpolation, --blender and --set belong "
+                "to --cycles");
+    }
+
+    CompareOptions sorted() const {
+        CompareOptions o = options;
+        for (const std::string& file : files) o.sources.push_back({file, {}, {}});
+        for (const std::string& word : more) {
+            const auto [source, file] = forImage(o.sources, "--more", word);
+            source->more.push_back(file);
+        }
+        for (const std::string& word : colourSpaces) {
+            const auto [source, space] = forImage(o.sources, "--colour-space", word);
+            source->colourSpace = space;
+        }
+        return o;
+    }
+};
+
+void write(const std::filesystem::path& file, const std::string& text) {
+    writeWholeFile(file, text);
+}
+
+void makeDirectory(const std::filesystem::path& directory) {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error)
+        throw usageError("--report: cannot make the directory '{}': {}", directory.string(),
+                         error.message());
+}
+
+/// Makes the report's directory.
+void prepareReport(const CompareOptions& o) {
+    if (o.report.empty()) return;
+    makeDirectory(o.report);
+    checkWritable(jsonFile(o));
+    checkWritable(htmlFile(o));
+}
+
+int run(const CompareWords& words, const std::string& commandLine) {
+    const ProgressStyle style = words.options.reports.start();
+    words.check();
+    CompareOptions o = words.sorted();
+    if (words.scene.empty()) return runCompare(o);
+    BothOptions both = words.cycles;
+    both.input.files = {words.scene};
+    for (const std::string& limit : o.failAbove) parseLimit(limit);
+    if (!o.report.empty()) {
+        makeDirectory(o.report);
+        o.sources = renderBoth(both, o.report, commandLine, style);
+        return runCompare(o);
+    }
+    const ScratchDirectory scratch;
+    o.sources = renderBoth(both, scratch.path(), commandLine, style);
+    return runCompare(o);
+}
+
+}  // namespace
+
+int runCompare(const CompareOptions& o) {
+    for (const std::string& limit : o.failAbove) parseLimit(limit);
+    const ColorConfig config(o.ocio);
+    LoadedPictures loaded = loadPictures(o.sources, o.settings.resample, config);
+    std::vector<std::filesystem::path> read{o.ocio};
+    for (const PictureSource& source : o.sources) {
+        read.push_back(source.file);
+        read.insert(read.end(), source.more.begin(), source.more.end());
+    }
+    if (!o.report.empty()) refuseOverwriting(std::array{jsonFile(o), htmlFile(o)}, read);
+    prepareReport(o);  // images that cannot be compared leave no directory
+    const Comparison comparison = compare(std::move(loaded), o.settings);
+    if (!o.report.empty() && !config.note().empty()) spdlog::warn("{}", config.note());
+    for (const std::string& note : comparison.notes) spdlog::warn("{}", note);
+    if (!o.report.empty()) {
+        const std::string html = compareHtml(comparison, bakeViews(config));
+        write(jsonFile(o), compareJson(comparison));
+        write(htmlFile(o), html);
+    }
+    if (o.reports.json)
+        printData(compareJson(comparison));
+    else if (o.reports.printsText())
+        printText(compareText(comparison));
+    std::fflush(stdout);
+    if (!o.report.empty())
+        spdlog::info("wrote {} and {}", jsonFile(o).string(), htmlFile(o).string());
+    return exceeds(comparison, o.failAbove) ? 1 : 0;
+}
+
+CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
+    CLI::App* command = app.add_subcommand(
+        "compare",
+        "Hold images against the first of them: metrics, tests against noise, a page to look at");
+    auto words = std::make_shared<CompareWords>();
+    CompareOptions& o = words->options;
+    command
+        ->add_option(
+            "INPUT", words->files,
+            "Images (EXR, PNG, JPEG, TIFF, HDR ...): the first is the reference A, the others "
+            "are B, C, ...")
+        ->type_name("FILE");
+    command
+        ->add_option("--cycles", words->scene,
+                     "Instead of images: render this scene (.toml, or .vdb) by Woodcock (A) and by "
+                     "Blender's Cycles (B), into the report's directory where there is one")
+        ->type_name("SCENE");
+    addCount(*command, "--spp", words->cycles.spp, 1, 16777216,
+             "For --cycles: samples per pixel of each seed (the scene's)");
+    addCount(*command, "--seeds", words->cycles.seeds, 2, 64,
+             "For --cycles: renders by each program, whose scatter is the error (2)");
+    addChoice(*command, "--mode", words->cycles.mode, {"null", "biased"},
+              "For --cycles: null-collision tracking or ray marching:")
+        ->type_name("MODE");
+    addChoice(*command, "--interpolation", words->cycles.interpolation, {"stochastic", "trilinear"},
+              "For --cycles: how it reads grids:")
+        ->type_name("KIND");
+    addParsed(
+        *command, "--step-rate", words->cycles.stepRate,
+        [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
+        "For --cycles --mode biased: a step's length as Blender counts it")
+        ->type_name("NUMBER");
+    command
+        ->add_option(
+            "--blender", words->cycles.blender,
+            "For --cycles: Blender's program, or a Python with bpy; else $BLENDER, else on "
+            "the PATH")
+        ->type_name("PROGRAM");
+    addList(*command, "--set", words->cycles.input.overrides,
+            "For --cycles: set a value of the scene, such as volume[0].scale=2")
+        ->type_name("KEY=VALUE");
+    addList(*command, "--more", words->more,
+            "Another seed of an image, as in A=second.exr: their mean is compared, and their "
+            "scatter is the error where the files have no layer 'error'")
+        ->type_name("LETTER=FILE");
+    command
+        ->add_option("--report", o.report,
+                     "Write DIR/compare.json and DIR/compare.html, a page that needs nothing else")
+        ->type_name("DIR");
+    o.reports.addTo(*command, "Print one JSON document on stdout instead of the tables");
+    addList(*command, "--fail-above", o.failAbove,
+            "Exit with code 1 where an image's metric is above: bias, ratio (its distance from 1), "
+            "rmse, relmse, largest, flip, hdr-flip, non-finite, tiles (that differ), or the word "
+            "'differ' for the verdict")
+        ->type_name("METRIC=VALUE");
+    command->add_flag("--resample", o.settings.resample,
+                      "Average images of other sizes over areas to the smallest width and height");
+    addParsed(
+        *command, "--tile", o.settings.tile,
+        [](const std::string& text) { return static_cast<int>(parseCount(text, 2, 4096)); },
+        "Least side of a tile in pixels (8)")
+        ->type_name("PIXELS");
+    addParsed(
+        *command, "--false-alarms", o.settings.falseAlarms,
+        [](const std::string& text) { return parseNumber(text, 1e-12, 0.5); },
+        "Chance that images of equal expectation are said to differ, all tiles and channels "
+        "together (0.001)")
+        ->type_name("RATE");
+    addList(*command, "--colour-space", words->colourSpaces,
+            "What an image's colours are, as in B=ACEScg, by the OpenColorIO config; floats are "
+            "scene-linear otherwise, integers sRGB pictures")
+        ->type_name("LETTER=NAME");
+    command
+        ->add_option("--ocio", o.ocio,
+                     "OpenColorIO config ($OCIO, or the one that comes with the program)")
+        ->type_name("FILE");
+    command->footer(
+        examplesText({"woodcock compare reference.exr test.exr --report comparison",
+                      "woodcock compare reference.png test.png --quiet --fail-above flip=0.05"}));
+    command->callback([words, commandLine] {
+        if (const int code = run(*words, commandLine)) throw CLI::RuntimeError(code);
+    });
+    return *command;
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/convert.h"
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.h"
+#include "tools/info/report.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/output_folders.h"
+#include "tools/common/progress.h"
+#include "tools/common/report_options.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/frame_names.h"
+#include "woodcock/base/parse.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int interruptedCode = 130;
+constexpr double largest = std::numeric_limits<double>::max();
+
+/// What the command line says, as it is written.
+struct ConvertWords {
+    std::vector<std::filesystem::path> files;  ///< inputs, then the output
+    std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
+        axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
+        compression, outType, bounds, band, radius, columns;
+    bool repair = false, shell = false, mkdir = false;
+    ReportOptions reports;
+};
+
+/// "1,2,3": exactly `count` numbers.
+std::vector<double> numbers(std::string_view text, std::size_t count, const char* example) {
+    std::vector<double> values;
+    for (std::string_view rest = text; values.size() < count;) {
+        const std::size_t comma = values.size() + 1 < count ? rest.find(',') : rest.size();
+        double value = 0;
+        const char* const end = rest.data() + std::min(comma, rest.size());
+        const auto [stop, error] = std::from_chars(rest.data(), end, value);
+        if (comma == rest.npos || error != std::errc() || stop != end || !std::isfinite(value))
+            throw usageError("'{}' is not {} numbers such as {}", text, count, example);
+        values.push_back(value);
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    return values;
+}
+
+std::vector<std::int64_t> wholeNumbers(std::string_view text, std::size_t count,
+                                       const char* example) {
+    std::vector<std::int64_t> whole;
+    for (const double value : numbers(text, count, example)) {
+        if (value != std::floor(value) || std::abs(value) > double(mostVoxelsOfSide))
+            throw usageError("'{}' is not {} whole numbers such as {}", text, count, example);
+        whole.push_back(static_cast<std::int64_t>(value));
+    }
+    return whole;
+}
+
+/// Calls `use` with the option's text, so that a mistake in it names the option.
+template <class Use>
+void ifGiven(const char* option, const std::optional<std::string>& text, Use use) {
+    if (!text) return;
+    try {
+        use(*text);
+    } catch (const Error& e) {
+        throw Error(e.kind(), fmt::format("{}: {}", option, e.what()));
+    }
+}
+
+Dims parseDims(const std::string& text) {
+    const auto n = wholeNumbers(text, 3, "64,64,32");
+    if (n[0] < 1 || n[1] < 1 || n[2] < 1) throw usageError("'{}' has a side below 1", text);
+    return {n[0], n[1], n[2]};
+}
+
+Box3i parseBounds(const std::string& text) {
+    const auto n = wholeNumbers(text, 6, "0,0,0,63,63,31");
+    const auto corner = [&](std::size_t i) {
+        return Vec3i{static_cast<int>(n[i]), static_cast<int>(n[i + 1]),
+                     static_cast<int>(n[i + 2])};
+    };
+    const Box3i box{corner(0), corner(3)};
+    if (box.empty()) throw usageError("'{}' is empty: the first corner is beyond the last", text);
+    return box;
+}
+
+template <class T>
+T oneOf(const std::string& text, std::initializer_list<std::pair<const char*, T>> known) {
+    std::string names;
+    for (const auto& [name, value] : known) {
+        if (text == name) return value;
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    throw usageError("'{}' is not one of {}", text, names);
+}
+
+/// "0.1", or "0.1,0.1,0.5".
+void readSides(const std::string& text, std::optional<double>& one, std::optional<Vec3d>& each) {
+    constexpr double least = 1e-30, most = 1e30;
+    if (text.find(',') == text.npos) {
+        one = parseNumber(text, least, most);
+        return;
+    }
+    const auto sides = numbers(text, 3, "0.1,0.1,0.5");
+    for (const double side : sides)
+        if (!(side >= least && side <= most))
+            throw usageError("'{}' has a side that is not between {} and {}", text, least, most);
+    each = Vec3d{sides[0], sides[1], sides[2]};
+}
+
+void readValueWords(const ConvertWords& words, ValueOptions& values) {
+    const auto number = [](double& to) {
+        return [&to](const std::string& t) { to = parseNumber(t, -largest, largest); };
+    };
+    ifGiven("--scale", words.scale, number(values.remap.scale));
+    ifGiven("--offset", words.offset, number(values.remap.offset));
+    ifGiven("--threshold", words.threshold, number(values.remap.threshold));
+    ifGiven("--clamp", words.clamp, [&](const std::string& t) {
+        const auto ends = numbers(t, 2, "0,1");
+        if (ends[0] > ends[1]) throw usageError("'{}' has its low end above its high end", t);
+        values.remap.low = ends[0];
+        values.remap.high = ends[1];
+    });
+    ifGiven("--tolerance", words.tolerance,
+            [&](const std::string& t) { values.tolerance = parseNumber(t, 0, largest); });
+    values.repair = words.repair;
+}
+
+ConvertOptions readWords(const ConvertWords& words) {
+    ConvertOptions options;
+    options.from = words.from;
+    options.grid = words.grid;
+    options.name = words.name;
+    ifGiven("--dims", words.dims, [&](const std::string& t) { options.dims = parseDims(t); });
+    ifGiven("--type", words.type,
+            [&](const std::string& t) { options.type = sampleTypeFromName(t); });
+    ifGiven("--channels", words.channels, [&](const std::string& t) {
+        options.channels = static_cast<int>(parseCount(t, 1, 1024));
+    });
+    ifGiven("--endian", words.endian, [&](const std::string& t) {
+        options.bigEndian = oneOf<bool>(t, {{"little", false}, {"big", true}});
+    });
+    ifGiven("--header", words.header, [&](const std::string& t) {
+        options.headerBytes = parseCount(t, 0, std::numeric_limits<std::int64_t>::max());
+    });
+    ifGiven("--channel", words.channel, [&](const std::string& t) {
+        options.channel = static_cast<int>(parseCount(t, 0, 1023));
+    });
+    ifGiven("--axes", words.axes, [&](const std::string& t) { options.axes = parseAxisOrder(t); });
+    Placement& placement = options.placement;
+    ifGiven("--voxel", words.voxel,
+            [&](const std::string& t) { readSides(t, placement.voxel, placement.voxelSides); });
+    ifGiven("--size", words.size,
+            [&](const std::string& t) { readSides(t, placement.size, placement.sizeSides); });
+    const auto length = [](std::optional<double>& to) {
+        return [&to](const std::string& t) { to = parseNumber(t, 1e-30, 1e30); };
+    };
+    ifGiven("--band", words.band, length(options.band));
+    ifGiven("--radius", words.radius, length(options.radius));
+    options.shell = words.shell;
+    options.columns = words.columns;
+    ifGiven("--origin", words.origin, [&](const std::string& t) {
+        const auto p = numbers(t, 3, "0,0.5,0");
+        options.placement.origin = Vec3d{p[0], p[1], p[2]};
+    });
+    if (words.voxel && words.size)
+        throw usageError("--voxel and --size both say how large the volume is; give one");
+    readValueWords(words, options.values);
+    ifGiven("--precision", words.precision, [&](const std::string& t) {
+        options.precision = oneOf<Precision>(t, {{"half", Precision::Half},
+                                                 {"float", Precision::Float},
+                                                 {"double", Precision::Double}});
+    });
+    ifGiven("--compression", words.compression, [&](const std::string& t) {
+        options.compression = oneOf<VdbCompression>(t, {{"none", VdbCompression::None},
+                                                        {"zip", VdbCompression::Zip},
+                                                        {"blosc", VdbCompression::Blosc}});
+    });
+    ifGiven("--out-type", words.outType,
+            [&](const std::string& t) { options.outputType = sampleTypeFromName(t); });
+    ifGiven("--bounds", words.bounds,
+            [&](const std::string& t) { options.bounds = parseBounds(t); });
+    return options;
+}
+
+/// The progress of one stage after the other.
+class Stages {
+public:
+    explicit Stages(ProgressStyle style) : style_(style) {}
+
+    void show(std::string_view stage, double fraction) {
+        if (!now_ || stage != stage_) {
+            stage_ = stage;
+            now_.emplace(style_, stage_);
+        }
+        now_->update(fraction);
+    }
+    void clear() { now_.reset(); }
+
+private:
+    ProgressStyle style_;
+    std::string stage_;
+    std::optional<WorkProgress> now_;
+};
+
+void stopWhereInterrupted() {
+    if (interrupted()) throw CLI::RuntimeError(interruptedCode);
+}
+
+/// What was read and written.
+nlohmann::ordered_json resultJson(const ConvertWords& words, const std::vector<std::string>& notes,
+                                  const std::vector<std::string>& warnings, double seconds) {
+    const std::filesystem::path& out = words.files.back();
+    std::vector<std::string> inputs;
+    for (const std::filesystem::path& file : words.files) inputs.push_back(file.string());
+    inputs.pop_back();
+    nlohmann::ordered_json result{{"inputs", inputs}, {"output", out.string()}};
+    std::error_code unknown;
+    const std::uintmax_t bytes = std::filesystem::file_size(out, unknown);
+    result["bytes"] = unknown ? nlohmann::ordered_json() : nlohmann::ordered_json(bytes);
+    result.update({{"seconds", seconds}, {"notes", notes}, {"warnings", warnings}});
+    if (out.extension() == ".vdb")
+        result["grids"] = infoJson({inspectFile(out, "")})["files"][0]["grids"];
+    return result;
+}
+
+void run(const ConvertWords& words) {
+    const ProgressStyle style = words.reports.start();
+    catchInterrupts();
+    ConvertOptions options = readWords(words);
+    Stages bar(style);
+    std::vector<std::string> notes, warnings;
+    options.info = [&](const std::string& text) {
+        stopWhereInterrupted();
+        bar.clear();
+        spdlog::info("{}", text);
+        notes.push_back(text);
+    };
+    options.warn = [&](const std::string& text) {
+        bar.clear();
+        spdlog::warn("{}", text);
+        warnings.push_back(text);
+    };
+    options.progress = [&](std::string_view stage, double fraction) {
+        stopWhereInterrupted();
+        bar.show(stage, fraction);
+    };
+    if (words.files.size() < 2)
+        throw usageError("'{}' is given alone: name an input and an output",
+                         words.files.empty() ? "" : words.files.front().string());
+    if (const std::string pattern = framePattern(words.files.back().filename().string());
+        !pattern.empty())
+        throw usageError(
+            "'{}': {} is not filled in, and the file would be called so; one call writes one file, "
+            "so name it, or call convert for each in a shell's loop",
+            words.files.back().string(), pattern);
+    prepareFolder(words.files.back(), words.mkdir);
+    const auto start = std::chrono::steady_clock::now();
+    convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(), options);
+    if (!words.reports.json) return;
+    bar.clear();
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    printJson(resultJson(words, notes, warnings, time.count())
+                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+}  // namespace
+
+CLI::App& addConvertCommand(CLI::App& app) {
+    CLI::App& command = *app.add_subcommand("convert", "Convert other volumes to VDB, and back");
+    const auto words = std::make_shared<ConvertWords>();
+    command
+        .add_option(
+            "INPUT... OUTPUT", words->files,
+            "What to convert, and the file to write; slices as slice.####.png or one by one")
+        ->required()
+        ->type_name("FILE");
+    addMkdir(command, words->mkdir);
+    const auto add = [&](const char* group, const char* name, std::optional<std::string>& to,
+                         const char* type, const char* help) {
+        command.add_option(name, to, help)->type_name(type)->group(group);
+    };
+    add("Input", "--from", words->from, "FORMAT", "Format of INPUT, instead of what its name says");
+    add("Input", "--grid", words->grid, "NAME",
+        "Grid of a VDB, medium of a pbrt scene, or array of a .npz");
+    add("Input", "--channel", words->channel, "N", "Take one channel of several, from 0");
+    add("Bare numbers", "--dims", words->dims, "X,Y,Z", "Voxels; x varies fastest in the file");
+    add("Bare numbers", "--type", words->type, "TYPE",
+        "Type of the numbers: u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64");
+    add("Bare numbers", "--channels", words->channels, "N", "Numbers of each voxel (1)");
+    add("Bare numbers", "--endian", words->endian, "ORDER",
+        "Order of their bytes: little (usual) or big");
+    add("Bare numbers", "--header", words->header, "BYTES", "Bytes before the numbers (0)");
+    add("Shapes", "--band", words->band, "WIDTH",
+        "Depth below a mesh's or level set's surface at which density is one (three voxels)");
+    add("Shapes", "--radius", words->radius, "R",
+        "Radius of points that have none of their own (2 voxels)");
+    add("Shapes", "--columns", words->columns, "NAMES",
+        "What the columns of a table of points are: x,y,z,-,radius (- is not used)");
+    command.add_flag("--shell", words->shell, "Fog around a mesh's surface instead of inside it")
+        ->group("Shapes");
+    add("Place", "--axes", words->axes, "ORDER",
+        "Axes of the source that become x, y and z, a minus reversing one: xzy, x,-z,y");
+    add("Place", "--voxel", words->voxel, "SIZE",
+        "Side of a voxel, the shortest if unequal; or three: X,Y,Z");
+    add("Place", "--size", words->size, "LENGTH", "Longest side of the volume, instead; or three");
+    add("Place", "--origin", words->origin, "X,Y,Z", "Centre of the first voxel");
+    constexpr const char* values = "Values, in this order: repair, scale, offset, clamp, threshold";
+    command.add_flag("--repair", words->repair, "Set NaN and infinite values to zero")
+        ->group(values);
+    add(values, "--scale", words->scale, "S", "Multiply");
+    add(values, "--offset", words->offset, "B", "Then add");
+    add(values, "--clamp", words->clamp, "LOW,HIGH", "Then hold within");
+    add(values, "--threshold", words->threshold, "T", "Then zero where below");
+    add(values, "--tolerance", words->tolerance, "E",
+        "Values this near to zero become background, which takes no memory (0)");
+    add("Output", "--name", words->name, "NAME", "Name of the grid (density)");
+    add("Output", "--precision", words->precision, "P",
+        "Save values as half, float or double; the error is measured and said");
+    add("Output", "--compression", words->compression, "C",
+        "Compress: none, zip or blosc; usual: blosc (vdb), none (nvdb, nrrd)");
+    add("Output", "--out-type", words->outType, "TYPE", "Type of the numbers in a dense file");
+    add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
+        "First and last voxel that a dense file gets; else the active ones' box");
+    words->reports.addTo(command, "Print a JSON object about what is written, on stdout");
+    command.footer("Formats:\n" + describeFormats() + "\n" +
+                   examplesText({"woodcock convert teapot.obj teapot.vdb --voxel 0.01",
+                                 "woodcock convert slice.####.png scan.vdb --voxel 0.5"}));
+    command.callback([words] { run(*words); });
+    return command;
+}
+
+}  // namespace woodcock::tool

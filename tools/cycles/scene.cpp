@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cycles/scene.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "tools/cycles/json.h"
+#include "tools/cycles/surfaces.h"
+#include "woodcock/grid/vdb/file.h"
+#include "woodcock/scene/build.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+using nlohmann::json;
+
+// ---- volumes
+
+class VolumeWriter {
+public:
+    VolumeWriter(const SceneDescription& scene, const LoadedScene& loaded, std::size_t index)
+        : volume_(scene.volumes[index]),
+          loaded_(loaded.volumes[index]),
+          places_(scene.places),
+          name_(fmt::format("volume[{}]", index)),
+          scatters_(scene.render.maxScatterings != 0) {}
+
+    void addTo(json& list) const {
+        if (std::abs(volume_.g) > cyclesLargestG)
+            throw cyclesRefusal(place("g"), "a g of {}: it clamps g to +-{}", volume_.g,
+                                cyclesLargestG);
+        if (!volume_.inside.empty())
+            throw cyclesRefusal(place("inside"), "a volume inside the surface '{}'",
+                                volume_.inside);
+        if (volume_.repair)
+            throw cyclesRefusal(place("repair"),
+                                "a volume that is repaired as it is loaded: it reads the "
+                                "file as it is; save it repaired with woodcock convert --repair");
+        if (!volume_.file.empty() && listGrids(volume_.file).nanoVdb)
+            throw cyclesRefusal(place("file"),
+                                "a file of NanoVDB: Blender reads none; `woodcock convert {} "
+                                "x.vdb` makes a VDB of it",
+                                volume_.file.string());
+        const std::size_t first = list.size();
+        std::visit([&](const auto& c) { add(list, c); }, volume_.coefficients);
+        if (loaded_.emission)
+            sharing(list, first, loaded_.emission)["emission"] =
+                emissionJson(volume_.emission->scale, loaded_.emission.grid);
+        if (volume_.blackbody)
+            sharing(list, first, loaded_.blackbody)["blackbody"] = blackbodyJson();
+    }
+
+private:
+    std::string place(const char* key) const { return findPlace(places_, name_ + "." + key); }
+
+    json fileJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
+        json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
+        grid["file"] = std::filesystem::absolute(volume_.file).string();
+        grid["matrix"] = toJson(volume_.worldFromObject);
+        grid["object_from_index"] = toJson(field.objectFromIndex);
+        grid["grid"] = grid["albedo_grid"] = grid["blackbody"] = nullptr;
+        return grid;
+    }
+
+    /// The object among this volume's whose voxels are those of a grid; a new one without any.
+    json& sharing(json& list, std::size_t first, const LoadedField& field) const {
+        for (std::size_t i = first; i < list.size(); ++i)
+            if (list[i]["object_from_index"] == toJson(field.objectFromIndex)) return list[i];
+        list.push_back(fileJson(field, Rgb(0), Rgb(0)));
+        return list.back();
+    }
+
+    json blackbodyJson() const {
+        const BlackbodyDescription& b = *volume_.blackbody;
+        if (b.offset != 0)
+            throw cyclesRefusal(place("blackbody.offset"),
+                                "an offset of temperatures, {}: it can only multiply them",
+                                b.offset);
+        if (b.scale < 0)
+            throw cyclesRefusal(place("blackbody.scale"), "a scale of temperatures below 0, {}",
+                                b.scale);
+        if (loaded_.ambient != 0)
+            throw cyclesRefusal(place("blackbody"),
+                                "the background {} of the temperature grid '{}': it would glow "
+                                "there, too",
+                                loaded_.ambient, loaded_.blackbody.grid);
+        const CyclesBlackbody blackbody = cyclesBlackbody(b);
+        return {{"grid", loaded_.blackbody.grid},
+                {"temperature", blackbody.temperature},
+                {"intensity", blackbody.intensity},
+                {"tint", toJson(blackbody.tint)}};
+    }
+
+    json gridJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
+        for (int c = 0; c < field.field->channels(); ++c)
+            if (field.field->background(c) != 0)
+                throw cyclesRefusal(place("file"),
+                                    "the background {} of grid '{}': it draws active voxels "
+                                    "alone",
+                                    field.field->background(c), field.grid);
+        json grid = fileJson(field, sigmaA, sigmaS);
+        grid["grid"] = field.grid;
+        grid["colour"] = field.field->channels() > 1;
+        return grid;
+    }
+
+    void add(json& list, const DensityCoefficients& c) const {
+        const auto [sigmaA, sigmaS] = splitByAlbedo(*c.scale, c.albedo);
+        json grid = gridJson(loaded_.density, sigmaA, sigmaS);
+        if (loaded_.albedo && scatters_) {
+            grid["albedo_grid"] = loaded_.albedo.grid;
+            grid["albedo_from_index"] = toJson(loaded_.albedo.objectFromIndex);
+            grid["absorbs"] = true;  // what the grid takes from scattering
+        }
+        list.push_back(std::move(grid));
+    }
+    void add(json& list, const SeparateCoefficients& c) const {
+        const Rgb none(0);
+        const bool sameGrid = c.sigmaA && c.sigmaS && loaded_.sigmaA.field == loaded_.sigmaS.field;
+        if (sameGrid)
+            return list.push_back(gridJson(loaded_.sigmaA, c.sigmaA->scale, c.sigmaS->scale));
+        if (c.sigmaA) list.push_back(gridJson(loaded_.sigmaA, c.sigmaA->scale, none));
+        if (c.sigmaS) list.push_back(gridJson(loaded_.sigmaS, none, c.sigmaS->scale));
+    }
+    void add(json& list, const HomogeneousBox& c) const {
+        json box = mediumJson(c.sigmaA, c.sigmaS, volume_.g, scatters_,
+                              volume_.emission ? volume_.emission->scale : Rgb(0));
+        box["box"] = {toJson(c.box.lower), toJson(c.box.upper)};
+        box["matrix"] = toJson(volume_.worldFromObject);
+        list.push_back(std::move(box));
+    }
+
+    const VolumeDescription& volume_;
+    const LoadedVolume& loaded_;
+    const Places& places_;
+    std::string name_;
+    bool scatters_;
+};
+
+// ---- lights
+
+json lightJson(const SunDescription& sun, const std::string& place) {
+    if (sun.visible)
+        throw cyclesRefusal(place, "a sun that the camera sees; leave out its 'visible'");
+    const CyclesColour light = cyclesColour(sun.irradiance);
+    return {{"type", "sun"},
+            {"direction", toJson(normalize(sun.direction))},
+            {"strength", light.strength},
+            {"colour", toJson(light.colour)},
+            {"angle", sun.angularDiameter * pi / 180}};
+}
+json lightJson(const EnvironmentDescription& environment, const std::string&) {
+    json light{{"type", "environment"},
+               {"radiance", toJson(environment.radiance)},
+               {"visible", environment.visible},
+               {"image", nullptr}};
+    if (!environment.image.empty()) {
+        light["image"] = std::filesystem::absolute(environment.image).string();
+        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
+    }
+    return light;
+}
+json lightJson(const PointDescription& point, const std::string&) {
+    const CyclesColour light = cyclesPoint(point.intensity);
+    return {{"type", "point"},
+            {"position", toJson(point.position)},
+            {"power", light.strength},
+            {"colour", toJson(light.colour)}};
+}
+json lightJson(const SphereDescription& sphere, const std::string&) {
+    const CyclesColour light = cyclesColour(sphere.radiance);
+    return {{"type", "sphere"},
+            {"position", toJson(sphere.position)},
+            {"radius", sphere.radius},
+            {"strength", light.strength},
+            {"colour", toJson(light.colour)},
+            {"visible", sphere.visible}};
+}
+
+// ---- camera and settings
+
+json cameraJson(const SceneDescription& scene) {
+    const CameraDescription& camera = scene.camera;
+    const bool orthographic = camera.kind == CameraDescription::Kind::Orthographic;
+    json out{{"type", orthographic ? "orthographic" : "perspective"},
+             {"matrix", toJson(worldFromCamera(*camera.pose))},
+             {"shift", camera.shift},
+             {"clip_start", 1e-6},
+             {"clip_end", 1e9}};
+    if (orthographic)
+        out["height"] = *camera.height;
+    else
+        out["angle"] = camera.fovY * pi / 180;
+    return out;
+}
+
+/// Cycles bounds diffuse, glossy and transmitted bounces each by itself, or all kinds together.
+json bouncesJson(const SceneDescription& scene) {
+    const RenderDescription& render = scene.render;
+    bool media = !scene.volumes.empty();
+    for (const SurfaceDescription& surface : scene.surfaces) media |= surface.interior.has_value();
+    json out{{"volume", render.maxScatterings == 0 ? 0 : cyclesBounces(render.maxScatterings)},
+             {"surface", cyclesMostBounces},
+             {"all", cyclesMostBounces}};
+    if (scene.surfaces.empty() || !render.maxBounces) return out;
+    const std::string place = findPlace(scene.places, "render.max_bounces");
+    if (*render.maxBounces == 0)
+        throw cyclesRefusal(place, "surfaces that reflect nothing, max_bounces = 0");
+    out["surface"] = cyclesBounces(render.maxBounces);
+    if (media)
+        spdlog::warn(
+            "{}: Cycles bounds diffuse, glossy and transmitted bounces by {} each, not "
+            "together",
+            place, *render.maxBounces);
+    else
+        out["all"] = out["surface"];
+    return out;
+}
+
+json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
+    constexpr std::uint64_t seeds = 0x7fffffff;
+    const RenderDescription& render = scene.render;
+    return {{"resolution", {render.width, render.height}},
+            {"spp", render.spp},
+            {"seed", render.seed % seeds},
+            {"mode", settings.mode},
+            {"step_rate", settings.stepRate},
+            {"interpolation", settings.interpolation},
+            {"threads", settings.threads},
+            {"draw", settings.draw},
+            {"bounces", bouncesJson(scene)}};
+}
+
+}  // namespace
+
+std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded,
+                        const CyclesSettings& settings) {
+    if (scene.render.approximations.transparentShadows)
+        throw cyclesRefusal(findPlace(scene.places, "render.transparent_shadows"),
+                            "Woodcock's transparent shadows");
+    json volumes = json::array(), lights = json::array();
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        VolumeWriter(scene, loaded, i).addTo(volumes);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const std::string place = findPlace(scene.places, fmt::format("light[{}].visible", i));
+        lights.push_back(std::visit([&](const auto& light) { return lightJson(light, place); },
+                                    scene.lights[i].light));
+    }
+    const json out{{"volumes", std::move(volumes)},
+                   {"lights", std::move(lights)},
+                   {"surfaces", cyclesSurfaces(scene, loaded)},
+                   {"camera", cameraJson(scene)},
+                   {"render", renderJson(scene, settings)},
+                   {"save", settings.save}};
+    return out.dump(1);
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.h"
+#include "tools/info/report.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/report_options.h"
+#include "tools/common/print.h"
+#include "woodcock/base/error.h"
+#include "woodcock/grid/grid_roles.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+constexpr int exitBadInput = 3;
+
+struct InfoOptions {
+    std::vector<std::filesystem::path> files;
+    std::string grid;
+    ReportOptions reports;
+};
+
+}  // namespace
+
+FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridName) {
+    FileInfo info;
+    info.path = path;
+    try {
+        const VdbFile file = listGrids(path);
+        info.version = file.version;
+        info.warning = file.warning;
+        info.bytes = std::filesystem::file_size(path);
+        if (!gridName.empty()) {
+            info.grids.push_back(inspectGrid(file, findGrid(file, gridName).grid));
+        } else {
+            for (const GridListing& grid : file.grids)
+                info.grids.push_back(inspectGrid(file, grid));
+        }
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::Input) throw;
+        info.error = e.what();
+    }
+    return info;
+}
+
+namespace {
+
+void report(const FileInfo& file, bool quiet) {
+    if (file.error.empty() && !quiet) printText(infoText(file));
+    std::fflush(stdout);  // keeps the order where both streams end on one terminal
+    if (!file.error.empty()) spdlog::error("{}", file.error);
+    for (const GridInfo& grid : file.grids)
+        if (!grid.error.empty()) spdlog::error("{}", grid.error);
+}
+
+void runInfo(const InfoOptions& options) {
+    WorkProgress progress(options.reports.start(), "info");
+    const bool json = options.reports.json;
+    std::vector<FileInfo> files;
+    for (const std::filesystem::path& path : options.files) {
+        files.push_back(inspectFile(path, options.grid));
+        if (!json) report(files.back(), options.reports.quiet);
+        progress.update(static_cast<double>(files.size()) /
+                        static_cast<double>(options.files.size()));
+    }
+    if (json)
+        printJson(infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    const bool sound =
+        std::all_of(files.begin(), files.end(), [](const FileInfo& file) { return file.sound(); });
+    if (!sound) throw CLI::RuntimeError(exitBadInput);
+}
+
+}  // namespace
+
+CLI::App& addInfoCommand(CLI::App& app) {
+    const auto options = std::make_shared<InfoOptions>();
+    CLI::App& command = *app.add_subcommand(
+        "info", "Tell what volumes hold: types, bounds, values, memory, and what looks wrong");
+    command.add_option("INPUT", options->files, "One or more volumes (.vdb, .nvdb)")
+        ->required()
+        ->type_name("FILE");
+    command.add_option("--grid", options->grid, "Only this grid of each file")->type_name("NAME");
+    options->reports.addTo(command, "Print one JSON document for all files, on stdout");
+    command.footer(
+        examplesText({"woodcock info smoke.vdb", "woodcock info smoke.vdb fire.vdb --json"}));
+    command.callback([options] { runInfo(*options); });
+    return command;
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/render/choices_text.h"
+
+#include <fmt/format.h>
+
+namespace woodcock::tool {
+
+namespace {
+
+std::string describe(const SunDescription& sun) {
+    return sun.place ? fmt::format("a sun {:g} degrees high at azimuth {:g}", sun.place->elevation,
+                                   sun.place->azimuth)
+                     : "a sun";
+}
+std::string describe(const EnvironmentDescription&) { return "an even sky"; }
+std::string describe(const PointDescription&) { return "a point light"; }
+std::string describe(const SphereDescription&) { return "a sphere light"; }
+
+void describeVolumes(const Openings& open, const SceneDescription& complete,
+                     std::vector<std::string>& parts) {
+    for (std::size_t i = 0; i < complete.volumes.size(); ++i) {
+        const VolumeDescription& volume = complete.volumes[i];
+        const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+        if (!c) continue;
+        const std::string file = volume.file.filename().string();
+        if (open.density[i]) parts.push_back(fmt::format("the grid '{}' of {}", c->density, file));
+        if (open.scale[i] && c->scale)
+            parts.push_back(fmt::format("its density scale {:g}", c->scale->mean()));
+    }
+}
+
+}  // namespace
+
+Openings openingsOf(const SceneDescription& scene) {
+    Openings open;
+    for (const VolumeDescription& volume : scene.volumes) {
+        const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+        open.density.push_back(c && c->density.empty());
+        open.scale.push_back(c && !c->scale);
+    }
+    open.camera = !scene.camera.pose;
+    open.lights = scene.lights.empty();
+    return open;
+}
+
+std::string describeChoices(const Openings& open, const SceneDescription& complete) {
+    std::vector<std::string> parts;
+    describeVolumes(open, complete, parts);
+    if (open.camera) parts.push_back("a camera that frames what is there");
+    if (open.lights)
+        for (const LightDescription& light : complete.lights)
+            parts.push_back(std::visit([](const auto& l) { return describe(l); }, light.light));
+    if (parts.empty()) return "the scene with every value that it uses; nothing was left to choose";
+    return fmt::format(
+        "the scene with every value that it uses. Chosen were {}; edit them there, or change them "
+        "with --set",
+        fmt::join(parts, ", "));
+}
+
+}  // namespace woodcock::tool

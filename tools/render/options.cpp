@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/render/options.h"
+
+#include <algorithm>
+#include <climits>
+
+#include "tools/common/option_kinds.h"
+#include "tools/common/output_folders.h"
+#include "tools/common/scene_input.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/image/write_exr.h"
+#include "woodcock/scene/quality.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+void addOutput(CLI::App& command, RenderOptions& o) {
+    std::vector<CLI::Option*> options{
+        addList(command, "-o,--output", o.outputs,
+                "Image to write: .exr, or a picture: .png, .jpg, .tif (16 bits), .webp")
+            ->type_name("FILE"),
+        addList(command, "--layers", o.layers, "Further EXR layers: " + joinNames(layerNames()))
+            ->delimiter(',')
+            ->type_name("LAYER,..."),
+        command.add_flag("--half", o.half, "Write EXR colour in half precision"),
+        command.add_option("--display", o.display, "OpenColorIO display of pictures (all but EXR)")
+            ->type_name("NAME"),
+        command.add_option("--view", o.view, "OpenColorIO view of pictures")->type_name("NAME"),
+        command
+            .add_option("--look", o.look,
+                        "OpenColorIO look, instead of the view's own; none: no look")
+            ->type_name("NAME"),
+        addParsed(
+            command, "--exposure", o.exposure,
+            [](const std::string& text) { return parseNumber(text, -100, 100); },
+            "Brighten pictures by so many stops, such as +1 or -0.5")
+            ->type_name("NUMBER"),
+        command
+            .add_option("--ocio", o.ocio,
+                        "OpenColorIO config; without it, the scene's, else that of $OCIO, else "
+                        "Woodcock's own")
+            ->type_name("FILE"),
+        addMkdir(command, o.mkdir)};
+    for (CLI::Option* option : options) option->group("Output");
+}
+
+void addRendering(CLI::App& command, RenderOptions& o) {
+    std::vector<std::string> qualities(qualityNames.begin(), qualityNames.end());
+    qualities.push_back("auto");
+    std::vector<CLI::Option*> options{
+        addChoice(command, "--quality", o.quality, qualities,
+                  "Trade accuracy for speed, instead of what the scene says (auto: measure what is "
+                  "best for --time-limit or --noise):")
+            ->type_name("QUALITY"),
+        addParsed(command, "--res", o.size, parseImageSize,
+                  "Image size; a width alone keeps the scene's shape")
+            ->type_name("WIDTHxHEIGHT"),
+        addParsed(command, "--crop", o.crop, parsePixelRectangle,
+                  "Render only pixels [X0, X1) x [Y0, Y1), y down")
+            ->type_name("X0,Y0,X1,Y1"),
+        addCount(command, "--spp", o.spp, 1, INT_MAX,
+                 "Samples per pixel; adaptive renders do as much work with other numbers"),
+        addParsed(
+            command, "--samples", o.samples, parseSampleRange,
+            "Draw only samples FIRST to END - 1 of each pixel; there is no command yet that merges "
+            "such parts with their depth, samples and error")
+            ->type_name("FIRST:END"),
+        addCount(command, "--seed", o.seed, 0, INT64_MAX,
+                 "Start of the random numbers: another seed gives other noise (0)"),
+        addParsed(command, "--time-limit", o.timeLimit, parseDuration,
+                  "Stop after this long, such as 90s, 5m, 2h")
+            ->type_name("TIME"),
+        addParsed(command, "--noise", o.noise, parseFraction,
+                  "Stop when the noise is below this, such as 1%: the relative standard error of "
+                  "what the scene shows; plain background does not count")
+            ->type_name("FRACTION"),
+        command.add_flag_function(
+            "--adaptive,!--no-adaptive", [&o](std::int64_t times) { o.adaptive = times > 0; },
+            "More samples where the error is larger, fewer elsewhere, in the same time"),
+        addCount(command, "--threads", o.threads, 0, 4096,
+                 "How many processor threads to use (0: all cores)")};
+    for (CLI::Option* option : options) option->group("Rendering");
+}
+
+void addScene(CLI::App& command, RenderOptions& o) {
+    std::vector<CLI::Option*> options{
+        addList(command, "--set", o.overrides,
+                "Set a value of the scene, such as volume[0].scale=2")
+            ->type_name("KEY=VALUE"),
+        addParsed(command, "--sun", o.sun, parseAngles,
+                  "Where the sun stands, in degrees: above the horizon, and clockwise from above")
+            ->type_name("ELEVATION,AZIMUTH"),
+        addParsed(
+            command, "--orbit", o.orbit,
+            [](const std::string& text) { return parseNumber(text, -1e6, 1e6); },
+            "Turn the camera to its right around what it looks at, for turntables; a camera that "
+            "is chosen then frames all sides")
+            ->type_name("DEGREES"),
+        addOverlay(command, o.overlay),
+        command
+            .add_option("--write-scene", o.writeScene,
+                        "Save the scene with all that was chosen, and render only where -o is "
+                        "given; - is stdout")
+            ->type_name("FILE"),
+        command.add_flag("--repair", o.repair,
+                         "Set NaN, infinite and negative voxels to zero instead of stopping"),
+        addEnum(command, "--storage", o.storage, storageNames, "Precision of voxels in memory:")
+            ->type_name("KIND")};
+    for (CLI::Option* option : options) option->group("Scene");
+}
+
+void addReports(CLI::App& command, RenderOptions& o) {
+    o.reports.addTo(command, "Print counts, times and the files as a JSON object on stdout");
+    command.add_option("--stats", o.stats, "Write the same to a file; - is stdout")
+        ->type_name("FILE")
+        ->group("Reports");
+}
+
+/// Options that other programs have, which are named so that what to do instead can be said.
+void refuse(CLI::App& command, const std::string& names, const std::string& instead) {
+    command
+        .add_option_function<std::string>(names,
+                                          [=](const std::string&) {
+                                              throw usageError("there is no option {}: {}",
+                                                               names.substr(0, names.find(',')),
+                                                               instead);
+                                          })
+        ->expected(0, 1)
+        ->group("");
+}
+
+bool hasExtension(const std::filesystem::path& file, const char* extension) {
+    return CLI::detail::to_lower(file.extension().string()) == extension;
+}
+bool isExrFile(const std::filesystem::path& file) { return hasExtension(file, ".exr"); }
+
+/// An option that would do nothing is a mistake.
+void demandFile(bool given, const char* option, const char* kind, bool written) {
+    if (given && !written)
+        throw usageError("{} is for {} files, and no output is one", option, kind);
+}
+
+void exclude(bool first, bool second, const char* names) {
+    if (first && second) throw usageError("{} contradict each other; give one of them", names);
+}
+
+}  // namespace
+
+void RenderOptions::addTo(CLI::App& command) {
+    command.footer(examplesText({"woodcock render smoke.vdb -o smoke.png --res 640 --spp 64",
+                                 "woodcock render scene.toml -o scene.exr --noise 1% "
+                                 "--time-limit 10m"}));
+    command.add_option("INPUT", inputs, "A scene (.toml), or one or more volumes (.vdb, .nvdb)")
+        ->required()
+        ->type_name("FILE");
+    addOutput(command, *this);
+    addRendering(command, *this);
+    addScene(command, *this);
+    addReports(command, *this);
+    refuse(command, "--frames,--frame",
+           "one call draws one frame. Save a scene by --write-scene shot.toml, and loop: for FRAME "
+           "in 0001 0002 0003; do woodcock render shot.toml --set "
+           "\"volume[0].file=smoke.${FRAME}.vdb\" -o \"smoke.${FRAME}.png\"; done");
+    refuse(
+        command, "--denoise",
+        "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for (README, "
+        "For denoisers)");
+}
+
+SceneInput RenderOptions::sceneInput() const {
+    SceneInput input{inputs, overrides, size, sun, overlay};
+    if (orbit) input.overrides.push_back(fmt::format("camera.orbit={}", *orbit));
+    if (quality && !choosesQuality())
+        input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);
+    return input;
+}
+
+void RenderOptions::check() const {
+    checkInput(sceneInput());
+    exclude(choosesQuality(), storage.has_value(), "--quality auto and --storage");
+    exclude(choosesQuality(), samples.has_value(), "--quality auto and --samples");
+    if (choosesQuality() && !timeLimit && !noise)
+        throw usageError(
+            "--quality auto needs to know what for: give --time-limit, such as 60s, or --noise, "
+            "such as 1%");
+    exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
+    exclude(reports.json, stats == "-", "--json and --stats -");
+    exclude(reports.json, writeScene == "-", "--json and --write-scene -");
+    for (auto layer = layers.begin(); layer != layers.end(); ++layer)
+        if (std::find(layers.begin(), layer, *layer) != layer)
+            throw usageError("--layers names '{}' twice", *layer);
+    if ((!stats.empty() || reports.json) && !rendersImages())
+        throw usageError(
+            "{} tells of a render, but --write-scene only saves the scene where no -o names an "
+            "image",
+            reports.json ? "--json" : "--stats");
+}
+
+void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) const {
+    const bool exr = std::any_of(files.begin(), files.end(), isExrFile);
+    const bool picture = !std::all_of(files.begin(), files.end(), isExrFile);
+    constexpr const char* pictures = "PNG, JPEG, TIFF and WebP";
+    demandFile(!layers.empty(), "--layers", "EXR", exr);
+    demandFile(half, "--half", "EXR", exr);
+    demandFile(display.has_value(), "--display", pictures, picture);
+    demandFile(view.has_value(), "--view", pictures, picture);
+    demandFile(look.has_value(), "--look", pictures, picture);
+    demandFile(exposure.has_value(), "--exposure", pictures, picture);
+}
+
+}  // namespace woodcock::tool

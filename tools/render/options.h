@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/common/report_options.h"
+#include "tools/common/scene_input.h"
+#include "woodcock/base/parse.h"
+#include "woodcock/scene/description.h"
+
+namespace woodcock::tool {
+
+/// What the command line of `woodcock render` says; what is absent is left to the scene.
+struct RenderOptions {
+    std::vector<std::filesystem::path> inputs, outputs;
+    std::filesystem::path writeScene, stats;
+
+    std::optional<ImageSize> size;
+    std::optional<PixelRectangle> crop;
+    std::optional<int> spp;
+    std::optional<SampleRange> samples;
+    std::optional<std::uint64_t> seed;
+    std::optional<double> timeLimit, noise;
+    std::optional<bool> adaptive;
+    std::optional<std::string> quality;  ///< one of qualityNames, or "auto"
+    std::optional<int> threads;
+    std::vector<std::string> overrides;
+    std::optional<std::pair<double, double>> sun;  ///< elevation, azimuth; degrees
+    std::optional<double> orbit;                   ///< degrees
+    std::optional<Storage> storage;
+    bool repair = false, overlay = false;
+
+    std::optional<std::string> display, view, look;
+    std::optional<double> exposure;
+    std::filesystem::path ocio;
+    std::vector<std::string> layers;
+    bool half = false, mkdir = false;
+
+    ReportOptions reports;
+
+    void addTo(CLI::App& command);
+    /// The scene, of the quality that is asked for unless that is to be chosen.
+    SceneInput sceneInput() const;
+    bool choosesQuality() const { return quality == "auto"; }
+    /// Throws Error{Usage} where options contradict each other.
+    void check() const;
+    /// Throws Error{Usage} where an option is for another kind of file than those to be written.
+    void checkFor(const std::vector<std::filesystem::path>& files) const;
+    /// Or only saves the scene.
+    bool rendersImages() const { return writeScene.empty() || !outputs.empty(); }
+};
+
+}  // namespace woodcock::tool

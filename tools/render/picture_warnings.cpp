@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/render/picture_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/common/progress.h"
+#include "woodcock/image/image_format.h"
+#include "woodcock/render/view_depth.h"
+#include "woodcock/scene/build_medium.h"
+#include "woodcock/scene/check_surfaces.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+Rgb brightnessOf(const SunDescription& sun) { return sun.irradiance; }
+Rgb brightnessOf(const EnvironmentDescription& environment) { return environment.radiance; }
+Rgb brightnessOf(const PointDescription& point) { return point.intensity; }
+Rgb brightnessOf(const SphereDescription& sphere) { return sphere.radiance; }
+
+bool glows(const VolumeDescription& volume) {
+    return (volume.emission && volume.emission->scale.maximum() > 0) ||
+           (volume.blackbody && volume.blackbody->intensity > 0);
+}
+
+bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {
+    const auto interior = [](const SurfaceDescription& surface) {
+        return surface.interior && surface.interior->emission.maximum() > 0;
+    };
+    return std::any_of(scene.volumes.begin(), scene.volumes.end(), glows) ||
+           std::any_of(scene.surfaces.begin(), scene.surfaces.end(), interior) ||
+           anySurfaceEmits(scene);
+}
+
+bool anyLightShines(const SceneDescription& scene) {
+    return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& light) {
+        return std::visit([](const auto& l) { return brightnessOf(l).maximum() > 0; }, light.light);
+    });
+}
+
+struct Brightest {
+    float light = 0, alpha = 0;
+};
+
+Brightest brightestOf(const Film& film) {
+    Brightest most;
+    const Film::Window crop = film.crop();
+    for (int y = crop.y0; y < crop.y1; ++y)
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            most.light = std::max(most.light, film.radiance(x, y).maximum());
+            most.alpha = std::max(most.alpha, film.alpha(x, y));
+        }
+    return most;
+}
+
+}  // namespace
+
+bool anythingGlows(const SceneDescription& scene) {
+    const auto isSeen = [](const LightDescription& light) {
+        if (const auto* sun = std::get_if<SunDescription>(&light.light)) return sun->visible;
+        if (const auto* sphere = std::get_if<SphereDescription>(&light.light))
+            return sphere->visible;
+        return false;
+    };
+    return anyVolumeOrSurfaceGlows(scene) ||
+           std::any_of(scene.lights.begin(), scene.lights.end(), isSeen);
+}
+
+PictureWarnings::PictureWarnings(const SceneDescription& description, const LoadedScene& loaded)
+    : description_(description), volumesOfParts_(volumesOfParts(description, loaded, "")) {}
+
+std::string PictureWarnings::volumeName(std::size_t part) const {
+    if (part >= volumesOfParts_.size()) return "a volume";
+    const std::size_t index = volumesOfParts_[part];
+    const std::string file = description_.volumes[index].file.filename().string();
+    return fmt::format("volume[{}] ({})", index, file.empty() ? "a box" : file);
+}
+
+std::string PictureWarnings::ofCamera(const Scene& scene) {
+    const auto view = findClosedView(scene, description_.render.width, description_.render.height);
+    if (!view) return {};
+    camera_ = "the camera stands inside " + volumeName(view->part);
+    return fmt::format(
+        "{}, where light goes {:.3g} units between two collisions, and the view has an optical "
+        "depth of {:.3g}: it shows what is next to the camera, and nothing else. Move camera.eye "
+        "out of it, leave the camera out of the scene to have one chosen, or lower the volume's "
+        "scale",
+        camera_, view->meanFreePath, view->depth);
+}
+
+std::string PictureWarnings::whyNoLight(const Scene& scene, const RenderResult& result,
+                                        float alpha) const {
+    const bool glow = anyVolumeOrSurfaceGlows(description_);
+    if (!anyLightShines(description_) && !glow)
+        return "the scene has no light: give a [[light]] that shines";
+    if (alpha == 0)
+        return "nothing of the scene is in the picture, and no sky is seen behind it: look at "
+               "camera.eye and camera.look_at, or leave the camera out to have one chosen";
+    if (!camera_.empty()) return camera_ + ", and no light comes through to it";
+    if (!result.needs.scattering && !scene.surfaces)
+        return "the volumes only absorb (their albedo is 0), and nothing that shines is seen "
+               "behind them";
+    if (description_.render.maxScatterings == 0 && !scene.surfaces)
+        return "render.max_scatterings is 0, so nothing is seen of light that a volume scatters";
+    return "no light reached what the camera sees: lights of no size do not shine through glass, "
+           "and little comes out of deep media that absorb";
+}
+
+std::string PictureWarnings::ofPicture(const Scene& scene, const RenderResult& result) const {
+    const Brightest most = brightestOf(result.film);
+    if (most.light == 0) return "the picture is black: " + whyNoLight(scene, result, most.alpha);
+    // Half a step of a byte in the straight part of sRGB's curve.
+    constexpr double darkest = 0.5 / 255 / 12.92;
+    const auto& files = description_.output.files;
+    const double shown = double{most.light} * std::exp2(description_.output.exposure);
+    if (shown >= darkest || std::none_of(files.begin(), files.end(), [](const auto& file) {
+            return imageFormat(file) != ImageFormat::Exr;
+        }))
+        return {};
+    return fmt::format(
+        "the picture is black, as its brightest pixel is {:.2g} and the exposure {:+g}: "
+        "--exposure {:+.0f} would show it",
+        most.light, description_.output.exposure, std::round(std::log2(0.5 / most.light)));
+}
+
+std::string noiseOf(const RenderResult& result) {
+    const double noise = result.film.noise();
+    if (std::isfinite(noise)) return noiseText(noise);
+    return result.film.mostSamples() < 2 ? "noise unknown (it takes two samples a pixel)"
+                                         : "noise unknown (no pixel has any light)";
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "tools/trade/report.h"
+#include "woodcock/base/version.h"
+
+namespace woodcock::tool {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json measured(const Measured& m) {
+    return {{"value", m.value}, {"se", m.se}};  // infinite becomes null
+}
+
+/// The root of a squared bias; where that is below zero by noise, 0. The error is how far one
+/// standard error more takes it.
+Json rootOfBias(const CandidateResult& c) {
+    const double square = std::max(0.0, c.squaredBias.value);
+    const double root = std::sqrt(square);
+    return {{"value", root},
+            {"se", std::sqrt(square + c.squaredBias.se) - root},
+            {"resolved", c.biasResolved()}};
+}
+
+Json pointJson(const TradePoint& p) {
+    Json j{{"samples", p.samples},     {"seconds", p.seconds}, {"relmse", p.relMse.value},
+           {"relmse_se", p.relMse.se}, {"flip", nullptr},      {"flip_se", nullptr}};
+    if (p.flip) j["flip"] = p.flip->value, j["flip_se"] = p.flip->se;
+    return j;
+}
+
+Json candidateJson(const TradeReport& report, const CandidateResult& c) {
+    Json points = Json::array();
+    for (const TradePoint& p : c.points) points.push_back(pointJson(p));
+    Json j{{"name", c.candidate.name},
+           {"biased", c.biased},
+           {"quality", nullptr},
+           {"choices", c.candidate.choices},
+           {"command", report.command.of(c.candidate)},
+           {"paper", c.candidate.papers()},
+           {"load_seconds", c.loadSeconds},
+           {"memory", c.bytes},
+           {"seconds_per_sample", measured(c.secondsPerSample)},
+           {"cpu_seconds_per_sample", measured(c.cpuSecondsPerSample)},
+           {"bias", measured(c.bias)},
+           {"rms_bias", rootOfBias(c)},
+           {"variance", measured(c.variance)},
+           {"points", std::move(points)},
+           {"front", c.onFront},
+           {"crop", nullptr}};
+    if (!c.candidate.quality.empty()) j["quality"] = c.candidate.quality;
+    if (c.crop) j["crop"] = *c.crop;
+    return j;
+}
+
+/// What FLIP had become by so many samples: that of the last measured count before.
+Json flipAt(const CandidateResult& c, double samples) {
+    Json flip;
+    for (const TradePoint& p : c.points)
+        if (p.flip && (flip.is_null() || p.samples <= samples)) flip = p.flip->value;
+    return flip;
+}
+
+Json timeJson(const TradeResult& result, const TradeReading& reading) {
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+        const TradeModel& model = result.candidates[i].model;
+        const auto error = model.errorAt(reading.target);
+        if (!error) continue;
+        const double samples = model.samplesIn(reading.target);
+        rows.push_back({{"candidate", i},
+                        {"samples", samples},
+                        {"relmse", error->value},
+                        {"relmse_se", error->se},
+                        {"flip", flipAt(result.candidates[i], samples)}});
+    }
+    return {{"seconds", reading.target},
+            {"rows", std::move(rows)},
+            {"best", reading.winner.best},
+            {"tied", reading.winner.tied}};
+}
+
+Json errorJson(const TradeResult& result, const TradeReading& reading) {
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+        const TradeModel& model = result.candidates[i].model;
+        Json row{
+            {"candidate", i}, {"samples", nullptr}, {"seconds", nullptr}, {"seconds_se", nullptr}};
+        if (const auto seconds = model.secondsTo(reading.target)) {
+            row["samples"] = std::ceil(seconds->value / model.secondsPerSample);
+            row["seconds"] = seconds->value, row["seconds_se"] = seconds->se;
+        }
+        rows.push_back(std::move(row));
+    }
+    return {{"relmse", reading.target},
+            {"rows", std::move(rows)},
+            {"best", reading.winner.best},
+            {"tied", reading.winner.tied}};
+}
+
+Json recommendations(const TradeReport& report) {
+    Json all = Json::array();
+    const TradeResult& result = report.result;
+    for (const TradeReading& r : result.equalTime) {
+        const CandidateResult& c = result.candidates[r.recommended];
+        all.push_back({{"kind", "time"},
+                       {"target", r.target},
+                       {"candidate", r.recommended},
+                       {"samples", c.model.samplesIn(r.target)},
+                       {"expected_relmse", c.model.errorAt(r.target)->value},
+                       {"command", report.command.ofSeconds(c.candidate, r.target)}});
+    }
+    for (const TradeReading& r : result.equalError) {
+        const CandidateResult& c = result.candidates[r.recommended];
+        const double samples =
+            std::ceil(c.model.secondsTo(r.target)->value / c.model.secondsPerSample);
+        all.push_back({{"kind", "error"},
+                       {"target", r.target},
+                       {"candidate", r.recommended},
+                       {"samples", samples},
+                       {"expected_relmse", r.target},
+                       {"command", report.command.ofSamples(c.candidate, samples)}});
+    }
+    return all;
+}
+
+Json referenceJson(const TradeReference& r) {
+    Json mean = Json::array(), errors = Json::array();
+    for (const Measured& m : r.mean) mean.push_back(m.value), errors.push_back(m.se);
+    return {{"samples", r.samples},        {"seeds", r.seeds},        {"seconds", r.seconds},
+            {"relmse", r.error.value},     {"relmse_se", r.error.se}, {"mean", std::move(mean)},
+            {"mean_se", std::move(errors)}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json tradeJson(const TradeReport& report, bool withPictures) {
+    const TradeResult& result = report.result;
+    Json j{{"woodcock", {{"version", version()}}},
+           {"command", report.commandLine},
+           {"scene", report.scene},
+           {"digest", report.digest},
+           {"resolution", {result.full.width, result.full.height}},
+           {"measured_resolution", {result.measured.width, result.measured.height}},
+           {"threads", report.threads},
+           {"budget", report.budget},
+           {"seconds", result.seconds},
+           {"reference", referenceJson(result.reference)}};
+    Json& candidates = j["candidates"] = Json::array();
+    for (const CandidateResult& c : result.candidates)
+        candidates.push_back(candidateJson(report, c));
+    Json& front = j["front"] = Json::array();
+    for (const FrontPoint& p : result.front)
+        front.push_back({{"seconds", p.seconds},
+                         {"relmse", p.error},
+                         {"candidate", p.candidate},
+                         {"samples", result.candidates[p.candidate].model.samplesIn(p.seconds)}});
+    Json& times = j["equal_time"] = Json::array();
+    for (const TradeReading& r : result.equalTime) times.push_back(timeJson(result, r));
+    Json& errors = j["equal_error"] = Json::array();
+    for (const TradeReading& r : result.equalError) errors.push_back(errorJson(result, r));
+    j["recommendations"] = recommendations(report);
+    Json& crops = j["crops"] = Json::array();
+    for (std::size_t i = 0; i < result.crops.size(); ++i) {
+        Json crop{{"title", result.crops[i].title}};
+        if (withPictures) crop["png"] = report.pictures.at(i);
+        crops.push_back(std::move(crop));
+    }
+    j["notes"] = result.notes;
+    return j;
+}
+
+}  // namespace woodcock::tool

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "tools/common/print.h"
+#include "tools/common/scratch_directory.h"
+#include "tools/trade/parts.h"
+#include "tools/trade/report_html.h"
+#include "woodcock/trade/scaling.h"
+
+namespace woodcock::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void printReport(const ScalingReport& report) {
+    for (const Curve& curve : report.curves) {
+        print("{}\n", curve.name);
+        for (const CurveSeries& series : curve.series) {
+            const Measured slope = series.slope();
+            print("  {}{}\n", series.name,
+                  std::isfinite(slope.se)
+                      ? fmt::format(": slope {:.3f} +- {:.3f}", slope.value, slope.se)
+                      : "");
+            for (const CurvePoint& p : series.points)
+                print("    {:<12.5g} {:>12.5g} +- {:<10.2g} {}\n", p.x, p.y, p.se,
+                      &p == series.points.data() ? curve.yLabel + " over " + curve.xLabel : "");
+        }
+    }
+    for (const CurveTable& table : report.tables) {
+        print("{}\n ", table.title);
+        for (const std::string& column : table.columns) print(" {:>10}", column);
+        print("\n");
+        for (const std::vector<double>& row : table.rows) {
+            print(" ");
+            for (std::size_t i = 0; i < row.size(); ++i)
+                print(" {:>{}.4g}", row[i], std::max<std::size_t>(10, table.columns[i].size()));
+            print("\n");
+        }
+    }
+    for (const std::string& note : report.notes) print("note: {}\n", note);
+}
+
+Json curveJson(const Curve& curve) {
+    Json series = Json::array();
+    for (const CurveSeries& s : curve.series) {
+        Json points = Json::array();
+        for (const CurvePoint& p : s.points)
+            points.push_back(Json{{"x", p.x}, {"y", p.y}, {"se", p.se}});
+        series.push_back(Json{{"name", s.name}, {"points", points}, {"slope", toJson(s.slope())}});
+    }
+    return {{"name", curve.name},
+            {"x", {{"label", curve.xLabel}, {"log", curve.name != "albedo"}}},
+            {"y", {{"label", curve.yLabel}, {"log", true}}},
+            {"series", series},
+            {"note", curve.note}};
+}
+
+Json scalingJson(const ScalingReport& report) {
+    Json curves = Json::array(), tables = Json::array();
+    for (const Curve& curve : report.curves) curves.push_back(curveJson(curve));
+    for (const CurveTable& t : report.tables)
+        tables.push_back(Json{{"title", t.title}, {"columns", t.columns}, {"rows", t.rows}});
+    return {{"woodcock", aboutWoodcock()},
+            {"curves", curves},
+            {"tables", tables},
+            {"notes", report.notes}};
+}
+
+std::string scalingCsv(const ScalingReport& report) {
+    std::string text = "curve,series,x_label,x,y_label,y,se\n";
+    for (const Curve& curve : report.curves)
+        for (const CurveSeries& s : curve.series)
+            for (const CurvePoint& p : s.points)
+                text += fmt::format("{},\"{}\",\"{}\",{},{},{},{}\n", curve.name, s.name,
+                                    curve.xLabel, p.x, curve.yLabel, p.y, p.se);
+    return text;
+}
+
+}  // namespace
+
+void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports) {
+    prepareReport(report, {"scaling.json", "scaling.csv", "scaling.html"});
+    const ScratchDirectory scratch;
+    const ScalingReport found =
+        measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
+                            spdlog::info("{}", what);
+                        }});
+    const Json json = scalingJson(found);
+    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace);
+    if (reports.json) printJson(text);
+    if (reports.printsText()) printReport(found);
+    if (report.empty()) return;
+    writeReport(report / "scaling.json", text + "\n");
+    writeReport(report / "scaling.csv", scalingCsv(found));
+    writeReport(report / "scaling.html", scalingPage(json));
+}
+
+}  // namespace woodcock::tool

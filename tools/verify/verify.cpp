@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "tools/commands.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/print.h"
+#include "tools/common/report_options.h"
+#include "woodcock/proof/proof.h"
+#include "tools/verify/report.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/base/parse.h"
+#include "woodcock/base/whole_file.h"
+#include "woodcock/grid/vdb/file.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+using namespace proof;
+
+constexpr int exitFailed = 1, exitInterrupted = 130;
+
+struct VerifyOptions {
+    bool quick = false, full = false;
+    ReportOptions reports;
+    std::string quality = "reference";
+    std::uint64_t seed = 1;
+    std::string only;
+    std::filesystem::path report;
+    std::vector<std::filesystem::path> volumes;
+
+    std::filesystem::path jsonFile() const { return report / "verify.json"; }
+    std::filesystem::path htmlFile() const { return report / "verify.html"; }
+};
+
+void write(const std::filesystem::path& file, const std::string& text) {
+    writeWholeFile(file, text);
+}
+
+/// What would waste the time that checks take.
+void validate(const VerifyOptions& o) {
+    if (o.quick && o.full)
+        throw usageError("--quick and --full contradict each other: give one of them");
+    for (const auto& file : o.volumes) listGrids(file);
+    if (o.report.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directories(o.report, error);
+    if (error)
+        throw usageError("--report: cannot make the directory '{}': {}", o.report.string(),
+                         error.message());
+    checkWritable(o.jsonFile());
+    checkWritable(o.htmlFile());
+}
+
+/// The checks whose kind or name contains `only`.
+std::vector<Check> chosenChecks(const std::string& only) {
+    std::vector<Check> chosen;
+    std::vector<std::string> names;
+    for (const Check& check : checks()) {
+        names.push_back(fmt::format("{} ({})", check.name, nameOf(check.kind)));
+        if (names.back().find(only) != std::string::npos) chosen.push_back(check);
+    }
+    if (chosen.empty())
+        throw usageError("--only: no check's name or kind contains '{}'; there are: {}", only,
+                         joinNames(names));
+    return chosen;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A line on stderr. Checks differ too much for a good guess of the time that is left; the mean of
+/// those done is better than none.
+class VerifyProgress {
+public:
+    VerifyProgress(std::size_t checks, ProgressStyle style)
+        : checks_(checks), style_(style), events_(style, "verify") {}
+    void show(std::size_t done, const std::string& check) {
+        if (style_ != ProgressStyle::Bar)
+            return events_.update(static_cast<double>(done) / static_cast<double>(checks_));
+        const double seconds = secondsSince(start_);
+        std::string left;
+        if (done > 0)
+            left = ", " +
+                   formatDuration(seconds * static_cast<double>(checks_ - done) /
+                                  static_cast<double>(done)) +
+                   " left";
+        printProgress("\r{} of {} checks, {}{}: {}\x1b[K", done, checks_, formatDuration(seconds),
+                      left, check);
+    }
+    void clear() const {
+        if (style_ == ProgressStyle::Bar) printProgress("\r\x1b[K");
+    }
+
+private:
+    std::size_t checks_;
+    ProgressStyle style_;
+    WorkProgress events_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void runChecks(const std::vector<Check>& list, bool print, ProgressStyle style,
+               VerifyReport& report) {
+    VerifyProgress progress(list.size(), style);
+    for (const Check& check : list) {
+        const std::size_t done = report.times.size();
+        report.options.stop = [&] {
+            progress.show(done, check.name);
+            return interrupted();
+        };
+        if (report.options.stop()) break;
+        const auto start = std::chrono::steady_clock::now();
+        const std::vector<Case> cases = run(check, report.options);
+        report.times.push_back({check.kind, check.name, secondsSince(start)});
+        spdlog::debug("{}: {} cases in {:.2f} s", check.name, cases.size(), secondsSince(start));
+        report.cases.insert(report.cases.end(), cases.begin(), cases.end());
+        progress.clear();
+        if (print) printText(casesText(check.name, cases));
+        std::fflush(stdout);
+    }
+    progress.clear();
+    report.options.stop = {};
+    report.complete = !interrupted();
+}
+
+void runVerify(const VerifyOptions& o) {
+    const ProgressStyle style = o.reports.start();
+    const std::vector<Check> list = chosenChecks(o.only);
+    catchInterrupts();
+    validate(o);
+    VerifyReport report;
+    report.options = {
+        .full = o.full, .adaptive = o.quality == "final", .seed = o.seed, .volumes = o.volumes};
+    report.only = o.only;
+    report.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    runChecks(list, o.reports.printsText(), style, report);
+    if (o.reports.json)
+        printData(reportJson(report));
+    else if (o.reports.printsText())
+        printText(summaryText(report));
+    std::fflush(stdout);
+    if (!o.report.empty()) {
+        write(o.jsonFile(), reportJson(report));
+        write(o.htmlFile(), reportHtml(report));
+        spdlog::info("wrote {} and {}", o.jsonFile().string(), o.htmlFile().string());
+    }
+    if (!report.complete) throw CLI::RuntimeError(exitInterrupted);
+    const auto failed = std::count_if(report.cases.begin(), report.cases.end(),
+                                      [](const Case& c) { return c.verdict() != Verdict::Pass; });
+    if (failed == 0) return;
+    if (o.reports.quiet) spdlog::error("{} of {} cases fail", failed, report.cases.size());
+    throw CLI::RuntimeError(exitFailed);
+}
+
+}  // namespace
+
+CLI::App& addVerifyCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "verify",
+        "Hold this build on this machine against closed forms, published tables and properties "
+        "that any volume has");
+    auto options = std::make_shared<VerifyOptions>();
+    command->add_flag("--quick", options->quick,
+                      "Prove two digits, in about a minute (the default)");
+    command->add_flag("--full", options->full,
+                      "Prove three digits for tables of slabs; takes an hour or more on two cores");
+    addChoice(*command, "--quality", options->quality, {"reference", "final"},
+              "Whose samples to prove (final: adaptive ones; others are biased):")
+        ->type_name("NAME");
+    command
+        ->add_option("--only", options->only,
+                     "Only checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")
+        ->type_name("TEXT");
+    command
+        ->add_option("--report", options->report,
+                     "Write DIR/verify.json and DIR/verify.html, a page that needs nothing else")
+        ->type_name("DIR");
+    options->reports.addTo(*command, "Print one JSON document on stdout instead of the table");
+    command
+        ->add_option("--seed", options->seed,
+                     "Draw other random numbers; of 1000 cases, chance fails one in 16 runs")
+        ->type_name("N");
+    command
+        ->add_option("INPUT", options->volumes,
+                     "VDB files of your own, to hold the properties of any volume against")
+        ->type_name("FILE");
+    command->footer(
+        examplesText({"woodcock verify", "woodcock verify smoke.vdb --only slab --report proof"}));
+    command->callback([options] { runVerify(*options); });
+    return *command;
+}
+
+}  // namespace woodcock::tool
