@@ -80,118 +80,160 @@ std::array<Range, 8> halved(const std::array<Range, 64>& fine) {
     return coarse;
 }
 
+Range scaled(Range r, const MajorantGrid::Options& options) {
+    return {r.min, static_cast<float>(r.max * options.scale)};
+}
+
+/// Bounds of the cells that a brick is split into.
+struct Split {
+    std::vector<Range> cells;
+    bool finest = false;  ///< 64 cells of 2^3 voxels, else 8 of 4^3
+};
+
+/// The cheapest way to split a block whose own cost is `whole`; no cells where none is cheaper.
+Split cheapestSplit(const Field& field, Vec3i block, double whole,
+                    const MajorantGrid::Options& options) {
+    std::array<Range, 64> fine = finestRanges(field, block);
+    std::array<Range, 8> coarse = halved(fine);
+    double fineCost = 0, coarseCost = 0;
+    for (Range& r : fine) {
+        r = scaled(r, options);
+        fineCost += octantShare * octantShare * cellCost(r, 1, options.depthPerVoxel);
+    }
+    for (Range& r : coarse) {
+        r = scaled(r, options);
+        coarseCost += octantShare * cellCost(r, 2, options.depthPerVoxel);
+    }
+    const bool finest = fineCost < coarseCost && options.smallestLog2 <= 1;
+    if (!((finest ? fineCost : coarseCost) < whole)) return {};
+    return finest ? Split{{fine.begin(), fine.end()}, true}
+                  : Split{{coarse.begin(), coarse.end()}, false};
+}
+
+/// A region of 16^3 blocks as an octree: cubes of 1, 2, 4, 8 and 16 blocks, x fastest.
+class RegionTree {
+public:
+    /// `blocks`: the first level.
+    RegionTree(std::vector<Node> blocks, const MajorantGrid::Options& options) {
+        levels_[0] = std::move(blocks);
+        for (int level = 1; level <= 4; ++level) build(level, options);
+    }
+
+    /// The largest merged cube around a block, and its level; null: the block stays alone.
+    std::pair<const Node*, int> cellOf(Vec3i block) const {
+        for (int level = 4; level >= 1; --level) {
+            const Node& node = at(level, block.x >> level, block.y >> level, block.z >> level);
+            if (node.merged) return {&node, level};
+        }
+        return {nullptr, 0};
+    }
+
+private:
+    const Node& at(int level, int x, int y, int z) const {
+        const int n = 16 >> level;
+        return levels_[static_cast<std::size_t>(level)]
+                      [static_cast<std::size_t>(x + n * (y + n * z))];
+    }
+
+    void build(int level, const MajorantGrid::Options& options) {
+        const int n = 16 >> level;
+        auto& nodes = levels_[static_cast<std::size_t>(level)];
+        nodes.reserve(static_cast<std::size_t>(n * n * n));
+        for (int i = 0; i < n * n * n; ++i)
+            nodes.push_back(parent(level, {i % n, i / n % n, i / n / n}, options));
+    }
+
+    Node parent(int level, Vec3i at, const MajorantGrid::Options& options) const {
+        Node node;
+        double split = 0;
+        for (int k = 0; k < 8; ++k) {
+            const Node& child = this->at(level - 1, 2 * at.x + (k & 1), 2 * at.y + (k >> 1 & 1),
+                                         2 * at.z + (k >> 2));
+            if (!child.used) continue;
+            if (!node.used) node.range = child.range;
+            node.used = true;
+            node.range.add(child.range);
+            node.merged &= child.merged;
+            split += octantShare * child.cost;
+        }
+        if (!node.used) return node;
+        node.cost = cellCost(node.range, blockLog2 + level, options.depthPerVoxel);
+        const bool forced = blockLog2 + level <= options.smallestLog2;
+        if (!forced && !(node.merged && node.cost < split)) {
+            node.merged = false;
+            node.cost = std::min(node.cost, split);
+        }
+        return node;
+    }
+
+    std::array<std::vector<Node>, 5> levels_;
+};
+
 }  // namespace
 
 MajorantGrid::MajorantGrid(const Field& field, const Options& options) {
-    const auto scaled = [&](Range r) {
-        return Range{r.min, static_cast<float>(r.max * options.scale)};
-    };
-    table_ = blockRanges(field).map<Entry>([&](Range r) { return Entry{scaled(r), blockLog2}; });
+    table_ = blockRanges(field).map<Entry>([&](Range r) {
+        return Entry{scaled(r, options), blockLog2};
+    });
+    splitLooseBlocks(field, options);
+    mergeBlocks(options);
+}
 
-    // Split bricks whose bounds are loose enough to pay for it.
+void MajorantGrid::splitLooseBlocks(const Field& field, const Options& options) {
+    if (options.smallestLog2 >= blockLog2) return;
+    constexpr double leastGain = 2 * stepCost;
+    const auto costOf = [&](const Entry& e) {
+        return cellCost(e.range, blockLog2, options.depthPerVoxel);
+    };
     std::vector<Vec3i> blocks;
-    std::unordered_set<std::uint64_t> seen;
-    std::vector<Vec3i> regions;
     table_.forEach([&](Vec3i b, int log2Size, const Entry& e) {
+        if (log2Size == blockLog2 && e.range.max > e.range.min && costOf(e) > leastGain)
+            blocks.push_back(b);
+    });
+    std::vector<Split> splits(blocks.size());
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+        const double whole = costOf(*table_.find(blocks[i]).value);
+        splits[i] = cheapestSplit(field, blocks[i], whole, options);
+    });
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        if (splits[i].cells.empty()) continue;
+        table_.at(blocks[i]).code =
+            ~static_cast<std::int32_t>(parts_.size() * 2 + (splits[i].finest ? 1 : 0));
+        for (const Range r : splits[i].cells) parts_.push_back({roundDown(r.min), roundUp(r.max)});
+    }
+}
+
+void MajorantGrid::mergeBlocks(const Options& options) {
+    std::vector<Vec3i> regions;
+    std::unordered_set<std::uint64_t> seen;
+    table_.forEach([&](Vec3i b, int log2Size, const Entry&) {
         if (log2Size != blockLog2) return;
         const auto part = [](int v) { return static_cast<std::uint64_t>(v >> 4) & 0x1fffffu; };
         if (seen.insert(part(b.x) | part(b.y) << 21 | part(b.z) << 42).second)
             regions.push_back({b.x & ~15, b.y & ~15, b.z & ~15});
-        const double most = 2 * stepCost;  // at least this much must be to gain
-        if (options.smallestLog2 < blockLog2 && e.range.max > e.range.min &&
-            cellCost(e.range, blockLog2, options.depthPerVoxel) > most)
-            blocks.push_back(b);
     });
-    struct Split {
-        std::vector<Part> parts;
-        bool finest = false;
-        double cost = 0;
-    };
-    std::vector<Split> splits(blocks.size());
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
-        const std::array<Range, 64> fine = finestRanges(field, blocks[i]);
-        const std::array<Range, 8> coarse = halved(fine);
-        double fineCost = 0, coarseCost = 0;
-        for (Range r : fine)
-            fineCost += octantShare * octantShare * cellCost(scaled(r), 1, options.depthPerVoxel);
-        for (Range r : coarse)
-            coarseCost += octantShare * cellCost(scaled(r), 2, options.depthPerVoxel);
-        const double whole =
-            cellCost(table_.find(blocks[i]).value->range, blockLog2, options.depthPerVoxel);
-        Split& s = splits[i];
-        s.finest = fineCost < coarseCost && options.smallestLog2 <= 1;
-        s.cost = s.finest ? fineCost : coarseCost;
-        if (!(s.cost < whole)) return;
-        const std::span<const Range> ranges =
-            s.finest ? std::span<const Range>(fine) : std::span<const Range>(coarse);
-        for (Range r : ranges) {
-            const Range bounds = scaled(r);
-            s.parts.push_back({roundDown(bounds.min), roundUp(bounds.max)});
-        }
-    });
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-        if (splits[i].parts.empty()) continue;
-        table_.at(blocks[i]).code =
-            ~static_cast<std::int32_t>(parts_.size() * 2 + (splits[i].finest ? 1 : 0));
-        parts_.insert(parts_.end(), splits[i].parts.begin(), splits[i].parts.end());
-    }
-
-    // Merge blocks into larger cells, region by region, where a step saved is worth the looseness.
     const auto inside = [&](Vec3i b) {
         const Box3i box = table_.bounds();
         return !table_.dense() || (b.x >= box.lower.x && b.y >= box.lower.y && b.z >= box.lower.z &&
                                    b.x <= box.upper.x && b.y <= box.upper.y && b.z <= box.upper.z);
     };
-    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) {
-        const Vec3i origin = regions[i];
-        std::array<std::vector<Node>, 5> levels;  // cubes of 1, 2, 4, 8, 16 blocks
-        levels[0].resize(4096);
-        for (int j = 0; j < 4096; ++j) {
-            const Vec3i b = origin + Vec3i{j & 15, j >> 4 & 15, j >> 8};
+    const auto blockOf = [](int i) { return Vec3i{i & 15, i >> 4 & 15, i >> 8}; };
+    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t region) {
+        const Vec3i origin = regions[region];
+        std::vector<Node> blocks(4096);
+        for (int i = 0; i < 4096; ++i) {
+            const Vec3i b = origin + blockOf(i);
             if (!inside(b)) continue;
             const Entry& e = *table_.find(b).value;
-            levels[0][static_cast<std::size_t>(j)] = {
+            blocks[static_cast<std::size_t>(i)] = {
                 e.range, cellCost(e.range, blockLog2, options.depthPerVoxel), e.code >= 0, true};
         }
-        for (int level = 1; level <= 4; ++level) {
-            const int n = 16 >> level;
-            auto& nodes = levels[static_cast<std::size_t>(level)];
-            const auto& below = levels[static_cast<std::size_t>(level - 1)];
-            nodes.resize(static_cast<std::size_t>(n * n * n));
-            for (int j = 0; j < n * n * n; ++j) {
-                Node& node = nodes[static_cast<std::size_t>(j)];
-                double split = 0;
-                for (int k = 0; k < 8; ++k) {
-                    const int x = 2 * (j % n) + (k & 1), y = 2 * (j / n % n) + (k >> 1 & 1),
-                              z = 2 * (j / n / n) + (k >> 2);
-                    const Node& child =
-                        below[static_cast<std::size_t>(x + 2 * n * (y + 2 * n * z))];
-                    if (!child.used) continue;
-                    if (!node.used) node.range = child.range;
-                    node.used = true;
-                    node.range.add(child.range);
-                    node.merged &= child.merged;
-                    split += octantShare * child.cost;
-                }
-                if (!node.used) continue;
-                node.cost = cellCost(node.range, blockLog2 + level, options.depthPerVoxel);
-                const bool forced = blockLog2 + level <= options.smallestLog2;
-                if (!forced && !(node.merged && node.cost < split)) {
-                    node.merged = false;
-                    node.cost = std::min(node.cost, split);
-                }
-            }
-        }
-        for (int j = 0; j < 4096; ++j) {
-            const Vec3i at{j & 15, j >> 4 & 15, j >> 8};
-            for (int level = 4; level >= 1; --level) {
-                const int n = 16 >> level;
-                const Node& node = levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(
-                    (at.x >> level) + n * ((at.y >> level) + n * (at.z >> level)))];
-                if (!node.merged || !inside(origin + at)) continue;
-                table_.at(origin + at) = {node.range, blockLog2 + level};
-                break;
-            }
+        const RegionTree tree(std::move(blocks), options);
+        for (int i = 0; i < 4096; ++i) {
+            const Vec3i at = blockOf(i);
+            if (!inside(origin + at)) continue;
+            if (const auto [cell, level] = tree.cellOf(at); cell)
+                table_.at(origin + at) = {cell->range, blockLog2 + level};
         }
     });
 }

@@ -70,6 +70,12 @@ private:
         return std::bit_cast<float>(std::uint32_t{upper} << 16);
     }
 
+    /// Splits bricks whose bounds are loose enough to pay for it.
+    void splitLooseBlocks(const Field& field, const Options& options);
+    /// Merges blocks into larger cells, region by region, where a step that is saved is worth the
+    /// looser bounds.
+    void mergeBlocks(const Options& options);
+
     BlockTable<Entry> table_;
     std::vector<Part> parts_;
 };
