@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/formats/nanovdb_write.h"
+#include "woodcock/convert/formats/nanovdb.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

@@ -14,7 +14,7 @@
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
-#include "woodcock/convert/formats/nanovdb_write.h"
+#include "woodcock/convert/formats/nanovdb.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"

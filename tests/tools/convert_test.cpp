@@ -226,7 +226,7 @@ TEST_F(Convert, HonoursPrecisionAndCompressionOrRefusesThem) {
     expectRefused(2, "none or zip", "a.raw", "b.nrrd", with({"--compression", "blosc"}));
     expectRefused(2, "holds no halves", "a.raw", "b.nrrd", with({"--precision", "half"}));
     expectRefused(2, "holds no halves", "a.raw", "b.vol", with({"--precision", "half"}));
-    expectRefused(2, "floats alone", "a.raw", "b.vol", with({"--precision", "double"}));
+    expectRefused(2, "holds only f32", "a.raw", "b.vol", with({"--precision", "double"}));
     expectRefused(2, "give one", "a.raw", "b.raw",
                   with({"--precision", "half", "--out-type", "u8"}));
     if (!hasNanoVdb()) GTEST_SKIP() << "this build has no NanoVDB";

@@ -123,15 +123,10 @@ void append(Source& source, DenseVolume volume, const fs::path& in, const Conver
     source.grids.grids.push_back(made.grids.front());
 }
 
-Source fromVolume(DenseVolume volume, const fs::path& in, const ConvertOptions& options) {
-    if (options.name) volume.name = *options.name;
-    Source source;
-    append(source, std::move(volume), in, options);
-    return source;
-}
+}  // namespace
 
-Source fromVolumes(std::vector<DenseVolume> volumes, const fs::path& in,
-                   const ConvertOptions& options) {
+Source sourceOf(std::vector<DenseVolume> volumes, const fs::path& in,
+                const ConvertOptions& options) {
     if (options.name && volumes.size() > 1)
         throw usageError("--name is for one grid, and {} has {}; choose one by --grid", in.string(),
                          volumes.size());
@@ -142,52 +137,6 @@ Source fromVolumes(std::vector<DenseVolume> volumes, const fs::path& in,
         volume = {};
     }
     return source;
-}
-
-}  // namespace
-
-Source readRawSource(const fs::path& in, const ConvertOptions& options) {
-    if (!options.dims || !options.type)
-        throw usageError(
-            "'{}' is a file of bare numbers: say how many by --dims X,Y,Z and of which kind by "
-            "--type u8|u16|f32|...",
-            in.string());
-    return fromVolume(
-        readRaw(in, {*options.dims, options.channels.value_or(1), *options.type,
-                     options.bigEndian.value_or(false), options.headerBytes.value_or(0)}),
-        in, options);
-}
-
-Source readNpySource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readNpy(in), in, options);
-}
-
-Source readMitsubaSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readMitsubaVolume(in), in, options);
-}
-
-Source readNrrdSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readNrrd(in), in, options);
-}
-
-Source readImagesSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readImageStack(in, stageOf(options, "reading")), in, options);
-}
-
-Source readPagesSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolume(readImagePages(in, stageOf(options, "reading")), in, options);
-}
-
-Source readPbrtSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolumes(readPbrtGrids(in, options.grid), in, options);
-}
-
-Source readNpzSource(const fs::path& in, const ConvertOptions& options) {
-    return fromVolumes(readNpz(in, options.grid), in, options);
-}
-
-Source readImageFilesSource(const std::vector<fs::path>& in, const ConvertOptions& options) {
-    return fromVolume(readImageFiles(in, stageOf(options, "reading")), in.front(), options);
 }
 
 }  // namespace woodcock

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "woodcock/convert/convert.h"
-#include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/convert/format_table.h"
 #include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 
 namespace woodcock {
 
@@ -24,17 +24,10 @@ void say(const std::function<void(const std::string&)>& log, const std::string& 
 /// What tells the share of a stage that is done.
 WorkProgress stageOf(const ConvertOptions& options, std::string_view name);
 
-// Numbers on a lattice: values remapped, and placed as the options say.
-Source readRawSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readNpySource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readNpzSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readMitsubaSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readNrrdSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readImagesSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readPagesSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readPbrtSource(const std::filesystem::path& in, const ConvertOptions& options);
-Source readImageFilesSource(const std::vector<std::filesystem::path>& in,
-                            const ConvertOptions& options);
+/// Numbers on a regular lattice: their values are remapped, and they are placed as the options
+/// say. Errors: Usage where --name is given for several volumes.
+Source sourceOf(std::vector<DenseVolume> volumes, const std::filesystem::path& in,
+                const ConvertOptions& options);
 
 /// The grids of a file of OpenVDB or NanoVDB.
 Source readGridsSource(const std::filesystem::path& in, const ConvertOptions& options);
@@ -51,5 +44,14 @@ void fillLevelSets(VdbGrids& grids, const ConvertOptions& options);
 /// none.
 bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
                   const ConvertOptions& options);
+
+// Writers. `in` is the source's name, which a VDB's metadata tells.
+void writeVdbSource(const std::filesystem::path& in, const std::filesystem::path& out,
+                    VdbGrids& grids, const ConvertOptions& options);
+void writeNanoVdbSource(const std::filesystem::path& in, const std::filesystem::path& out,
+                        VdbGrids& grids, const ConvertOptions& options);
+/// The one grid of the source, or the one that --grid chooses, on a regular lattice.
+void writeDenseSource(const std::filesystem::path& out, Source& source, const DenseWriter& writer,
+                      const ConvertOptions& options);
 
 }  // namespace woodcock

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "woodcock/convert/points_to_density.h"
+#include "woodcock/convert/formats/points.h"
 #include "woodcock/grid/vdb/file.h"
 
 namespace woodcock {

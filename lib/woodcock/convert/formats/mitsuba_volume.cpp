@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "woodcock/base/printable.h"
+#include "woodcock/convert/formats/dense_file.h"
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/source_bytes.h"
 
@@ -80,6 +81,37 @@ DenseVolume readMitsubaVolume(const std::filesystem::path& file) {
     loadSamples(volume, std::move(bytes), headerBytes);
     volume.setStridesXFirst();
     return volume;
+}
+
+double writeMitsubaVolume(const std::filesystem::path& file, const DenseVolume& original,
+                          const DenseWriteOptions& options) {
+    if (options.type.value_or(SampleType::F32) != SampleType::F32)
+        throw usageError("a Mitsuba volume holds f32; --out-type {} is not possible",
+                         sampleTypeName(*options.type));
+    DenseVolume volume = original;
+    straighten(volume);
+    const Affine3d& map = volume.worldFromIndex;
+    const Vec3d voxel{map.column[0].x, map.column[1].y, map.column[2].z};
+    if (!(Affine3d::scale(voxel).column == map.column) ||
+        !(voxel.x > 0 && voxel.y > 0 && voxel.z > 0))
+        throw inputError(
+            "cannot write '{}': '{}' is rotated or sheared in the world, and a Mitsuba volume has "
+            "but a box along the axes; NRRD keeps any transform",
+            file.string(), volume.name);
+    std::string header("VOL\x03", 4);
+    appendLittleEndian(header, std::int32_t{1});
+    for (const std::int64_t n : volume.dims)
+        appendLittleEndian(header, static_cast<std::int32_t>(n));
+    appendLittleEndian(header, std::int32_t{volume.channels});
+    for (const double corner : {-0.5, 0.5})
+        for (int i = 0; i < 3; ++i) {
+            const double cell =
+                corner < 0 ? corner
+                           : static_cast<double>(volume.dims[static_cast<std::size_t>(i)]) - corner;
+            appendLittleEndian(header, static_cast<float>(map.translation[i] + cell * voxel[i]));
+        }
+    return writeDenseFile(file, volume, {.header = header, .type = SampleType::F32},
+                          options.progress);
 }
 
 }  // namespace woodcock

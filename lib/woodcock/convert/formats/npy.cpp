@@ -5,6 +5,7 @@
 
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/printable.h"
+#include "woodcock/convert/formats/dense_file.h"
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/source_bytes.h"
 #include "woodcock/convert/formats/zip_archive.h"
@@ -266,6 +267,25 @@ DenseVolume readNpy(const std::filesystem::path& file) {
     loadSamples(volume, std::move(bytes), begin);
     setOrder(volume, header.fortranOrder());
     return volume;
+}
+
+double writeNpy(const std::filesystem::path& file, const DenseVolume& volume,
+                const DenseWriteOptions& options) {
+    const SampleType type = options.type.value_or(volume.type);
+    const char kind = *sampleTypeName(type);
+    std::string shape = fmt::format("{}, {}, {}", volume.dims[0], volume.dims[1], volume.dims[2]);
+    if (volume.channels > 1) shape += fmt::format(", {}", volume.channels);
+    std::string text =
+        fmt::format("{{'descr': '{}{}{}', 'fortran_order': False, 'shape': ({}), }}",
+                    sampleBytes(type) == 1 ? '|' : '<', kind, sampleBytes(type), shape);
+    // NumPy asks for a multiple of 64 bytes and a line feed at the end.
+    constexpr std::size_t fixed = 10;
+    text.append(63 - (fixed + text.size()) % 64, ' ');
+    text += '\n';
+    std::string header("\x93NUMPY\x01\x00", 8);
+    appendLittleEndian(header, static_cast<std::uint16_t>(text.size()));
+    return writeDenseFile(file, volume, {header + text, VoxelOrder::ZFastest, type},
+                          options.progress);
 }
 
 }  // namespace woodcock

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "woodcock/base/printable.h"
+#include "woodcock/convert/formats/dense_file.h"
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/nrrd_header.h"
 #include "woodcock/convert/formats/number_text.h"
@@ -303,6 +304,61 @@ DenseVolume readNrrd(const fs::path& path) {
     if (!axes.note.empty()) volume.notes.push_back(axes.note);
     loadValues(volume, header, std::move(file));
     return volume;
+}
+
+namespace {
+
+const char* nrrdTypeName(SampleType type) {
+    switch (type) {
+        case SampleType::U8:
+            return "uint8";
+        case SampleType::I8:
+            return "int8";
+        case SampleType::U16:
+            return "uint16";
+        case SampleType::I16:
+            return "int16";
+        case SampleType::U32:
+            return "uint32";
+        case SampleType::I32:
+            return "int32";
+        case SampleType::U64:
+            return "uint64";
+        case SampleType::I64:
+            return "int64";
+        case SampleType::F16:
+            throw usageError("NRRD has no halves; use --out-type f32");
+        case SampleType::F64:
+            return "double";
+        case SampleType::F32:
+            break;
+    }
+    return "float";
+}
+
+std::string vectorText(Vec3d v) { return fmt::format("({},{},{})", v.x, v.y, v.z); }
+
+}  // namespace
+
+double writeNrrd(const std::filesystem::path& file, const DenseVolume& volume,
+                 const DenseWriteOptions& options) {
+    const SampleType type = options.type.value_or(volume.type);
+    const bool colour = volume.channels > 1;
+    const auto& map = volume.worldFromIndex;
+    std::string header = "NRRD0004\n";
+    header += fmt::format("type: {}\n", nrrdTypeName(type));
+    header += fmt::format("dimension: {}\n", colour ? 4 : 3);
+    header += "space dimension: 3\n";
+    header += fmt::format("sizes: {}{} {} {}\n", colour ? fmt::format("{} ", volume.channels) : "",
+                          volume.dims[0], volume.dims[1], volume.dims[2]);
+    header += fmt::format("space directions: {}{} {} {}\n", colour ? "none " : "",
+                          vectorText(map.column[0]), vectorText(map.column[1]),
+                          vectorText(map.column[2]));
+    header += fmt::format("kinds: {}domain domain domain\n", colour ? "vector " : "");
+    header += fmt::format("endian: little\nencoding: {}\n", options.packed ? "gzip" : "raw");
+    header += fmt::format("space origin: {}\n\n", vectorText(map.translation));
+    return writeDenseFile(file, volume, {header, VoxelOrder::XFastest, type, options.packed},
+                          options.progress);
 }
 
 }  // namespace woodcock

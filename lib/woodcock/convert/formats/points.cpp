@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/formats/points.h"
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -10,7 +12,6 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/printable.h"
 #include "woodcock/convert/formats/point_table.h"
-#include "woodcock/convert/points_to_density.h"
 #include "woodcock/grid/input_file.h"
 #include "woodcock/mesh/ply_file.h"
 

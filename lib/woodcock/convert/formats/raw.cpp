@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/formats/dense_file.h"
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/source_bytes.h"
 
@@ -17,6 +18,12 @@ DenseVolume readRaw(const std::filesystem::path& file, const RawLayout& layout) 
     loadSamples(volume, std::move(bytes), layout.headerBytes);
     volume.setStridesXFirst();
     return volume;
+}
+
+double writeRaw(const std::filesystem::path& file, const DenseVolume& volume,
+                const DenseWriteOptions& options) {
+    return writeDenseFile(file, volume, {.type = options.type.value_or(volume.type)},
+                          options.progress);
 }
 
 }  // namespace woodcock

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/formats/nanovdb_write.h"
 #include "woodcock/base/error.h"
+#include "woodcock/convert/formats/nanovdb.h"
 
 #ifdef WOODCOCK_WITH_NANOVDB
 #include <nanovdb/util/IO.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "woodcock/convert/formats/dense_file.h"
+
 #include <zlib.h>
 
 #include <cerrno>
@@ -10,7 +12,6 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
-#include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/grid/half.h"
 
 namespace woodcock {
@@ -94,12 +95,14 @@ public:
         if (packed) gzip_ = std::make_unique<Gzip>();
     }
 
-    /// Rows along axis `along`, the other two in `order` with the last the fastest. Returns the
-    /// largest difference that the type makes.
-    double writeValues(const DenseVolume& volume, SampleType type, bool xFirst,
+    /// Writes row by row; a row lies along the fastest axis. Returns the largest difference that
+    /// the type makes.
+    double writeValues(const DenseVolume& volume, SampleType type, VoxelOrder voxelOrder,
                        const WorkProgress& progress) {
-        const std::array<std::size_t, 3> order =
-            xFirst ? std::array<std::size_t, 3>{2, 1, 0} : std::array<std::size_t, 3>{0, 1, 2};
+        // From the slowest axis to the fastest.
+        const std::array<std::size_t, 3> order = voxelOrder == VoxelOrder::XFastest
+                                                     ? std::array<std::size_t, 3>{2, 1, 0}
+                                                     : std::array<std::size_t, 3>{0, 1, 2};
         const auto rows = static_cast<std::uint64_t>(volume.dims[order[0]] * volume.dims[order[1]]);
         WorkCounter counter(progress, rows);
         Dims begin{}, size{1, 1, 1};
@@ -173,123 +176,14 @@ private:
     std::vector<char> row_;
 };
 
-double writeFile(const std::filesystem::path& file, const std::string& header,
-                 const DenseVolume& volume, bool xFirst, SampleType type,
-                 const WorkProgress& progress, bool packed = false) {
-    DenseFile out(file, header, packed);
-    const double most = out.writeValues(volume, type, xFirst, progress);
-    out.commit();
-    return most;
-}
-
-template <class T>
-void append(std::string& bytes, T value) {
-    if (std::endian::native == std::endian::big) value = swapBytes(value);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-const char* nrrdTypeName(SampleType type) {
-    switch (type) {
-        case SampleType::U8:
-            return "uint8";
-        case SampleType::I8:
-            return "int8";
-        case SampleType::U16:
-            return "uint16";
-        case SampleType::I16:
-            return "int16";
-        case SampleType::U32:
-            return "uint32";
-        case SampleType::I32:
-            return "int32";
-        case SampleType::U64:
-            return "uint64";
-        case SampleType::I64:
-            return "int64";
-        case SampleType::F16:
-            throw usageError("NRRD has no halves; use --out-type f32");
-        case SampleType::F64:
-            return "double";
-        case SampleType::F32:
-            break;
-    }
-    return "float";
-}
-
-std::string vectorText(Vec3d v) { return fmt::format("({},{},{})", v.x, v.y, v.z); }
-
 }  // namespace
 
-double writeRaw(const std::filesystem::path& file, const DenseVolume& volume,
-                const DenseWriteOptions& options) {
-    return writeFile(file, "", volume, true, options.type.value_or(volume.type), options.progress);
-}
-
-double writeNpy(const std::filesystem::path& file, const DenseVolume& volume,
-                const DenseWriteOptions& options) {
-    const SampleType type = options.type.value_or(volume.type);
-    const char kind = *sampleTypeName(type);
-    std::string shape = fmt::format("{}, {}, {}", volume.dims[0], volume.dims[1], volume.dims[2]);
-    if (volume.channels > 1) shape += fmt::format(", {}", volume.channels);
-    std::string text =
-        fmt::format("{{'descr': '{}{}{}', 'fortran_order': False, 'shape': ({}), }}",
-                    sampleBytes(type) == 1 ? '|' : '<', kind, sampleBytes(type), shape);
-    // NumPy asks for a multiple of 64 bytes and a line feed at the end.
-    constexpr std::size_t fixed = 10;
-    text.append(63 - (fixed + text.size()) % 64, ' ');
-    text += '\n';
-    std::string header("\x93NUMPY\x01\x00", 8);
-    append(header, static_cast<std::uint16_t>(text.size()));
-    return writeFile(file, header + text, volume, false, type, options.progress);
-}
-
-double writeMitsubaVolume(const std::filesystem::path& file, const DenseVolume& original,
-                          const DenseWriteOptions& options) {
-    if (options.type.value_or(SampleType::F32) != SampleType::F32)
-        throw usageError("a Mitsuba volume holds f32; --out-type {} is not possible",
-                         sampleTypeName(*options.type));
-    DenseVolume volume = original;
-    straighten(volume);
-    const Affine3d& map = volume.worldFromIndex;
-    const Vec3d voxel{map.column[0].x, map.column[1].y, map.column[2].z};
-    if (!(Affine3d::scale(voxel).column == map.column) ||
-        !(voxel.x > 0 && voxel.y > 0 && voxel.z > 0))
-        throw inputError(
-            "cannot write '{}': '{}' is rotated or sheared in the world, and a Mitsuba volume has "
-            "but a box along the axes; NRRD keeps any transform",
-            file.string(), volume.name);
-    std::string header("VOL\x03", 4);
-    append(header, std::int32_t{1});
-    for (const std::int64_t n : volume.dims) append(header, static_cast<std::int32_t>(n));
-    append(header, std::int32_t{volume.channels});
-    for (const double corner : {-0.5, 0.5})
-        for (int i = 0; i < 3; ++i) {
-            const double cell =
-                corner < 0 ? corner
-                           : static_cast<double>(volume.dims[static_cast<std::size_t>(i)]) - corner;
-            append(header, static_cast<float>(map.translation[i] + cell * voxel[i]));
-        }
-    return writeFile(file, header, volume, true, SampleType::F32, options.progress);
-}
-
-double writeNrrd(const std::filesystem::path& file, const DenseVolume& volume,
-                 const DenseWriteOptions& options) {
-    const SampleType type = options.type.value_or(volume.type);
-    const bool colour = volume.channels > 1;
-    const auto& map = volume.worldFromIndex;
-    std::string header = "NRRD0004\n";
-    header += fmt::format("type: {}\n", nrrdTypeName(type));
-    header += fmt::format("dimension: {}\n", colour ? 4 : 3);
-    header += "space dimension: 3\n";
-    header += fmt::format("sizes: {}{} {} {}\n", colour ? fmt::format("{} ", volume.channels) : "",
-                          volume.dims[0], volume.dims[1], volume.dims[2]);
-    header += fmt::format("space directions: {}{} {} {}\n", colour ? "none " : "",
-                          vectorText(map.column[0]), vectorText(map.column[1]),
-                          vectorText(map.column[2]));
-    header += fmt::format("kinds: {}domain domain domain\n", colour ? "vector " : "");
-    header += fmt::format("endian: little\nencoding: {}\n", options.packed ? "gzip" : "raw");
-    header += fmt::format("space origin: {}\n\n", vectorText(map.translation));
-    return writeFile(file, header, volume, true, type, options.progress, options.packed);
+double writeDenseFile(const std::filesystem::path& file, const DenseVolume& volume,
+                      const DenseFileLayout& layout, const WorkProgress& progress) {
+    DenseFile out(file, layout.header, layout.packed);
+    const double most = out.writeValues(volume, layout.type, layout.order, progress);
+    out.commit();
+    return most;
 }
 
 }  // namespace woodcock
