@@ -156,7 +156,7 @@ TEST(MeshLight, NeglectsNoTriangleThatIsSeen) {
                 any |= seen;
                 EXPECT_EQ(light.pdf(from, k, (c[0] + c[1] + c[2]) / 3.0) > 0, seen);
             }
-            EXPECT_GE(light.promise(from) > 0, any);
+            EXPECT_GE(light.importance(from) > 0, any);
         }
     };
     // A plane; one that is bent a little, convex and concave
@@ -181,7 +181,7 @@ TEST(MeshLight, InItsPlaneItSendsNothing) {
         std::uint32_t triangle = 0;
         EXPECT_EQ(light.sample(from, 0.3, 0.6, triangle).weight, Rgb(0.0f));
         EXPECT_EQ(light.pdf(from, 0, {0.3, 0.3, 1}), 0);
-        EXPECT_EQ(light.promise(from), 0);
+        EXPECT_EQ(light.importance(from), 0);
     }
 }
 
@@ -265,7 +265,7 @@ TEST(MeshLight, LeavesOutWhatCannotShine) {
         const MeshLight dark(none);
         std::uint32_t triangle = 0;
         EXPECT_EQ(dark.sample({0, 0, 1}, 0.5, 0.5, triangle).weight, Rgb(0.0f));
-        EXPECT_EQ(dark.promise({0, 0, 1}), 0);
+        EXPECT_EQ(dark.importance({0, 0, 1}), 0);
         EXPECT_EQ(dark.power(), 0);
     }
 }
@@ -305,7 +305,7 @@ TEST(MeshLight, PowerAndCentre) {
     for (Triangle& t : square) t.bothSides = true;
     EXPECT_NEAR(MeshLight(square).power(), 8 * 5 * pi, 1e-12);
     // From afar the promise is the irradiance: area / distance^2, mean over channels
-    EXPECT_NEAR(MeshLight(square).promise({1, 1, 1000}) / (4 * 8 / 3.0 * 1e-6), 1, 0.01);
+    EXPECT_NEAR(MeshLight(square).importance({1, 1, 1000}) / (4 * 8 / 3.0 * 1e-6), 1, 0.01);
 }
 
 TEST(LightSet, HoldsEmissiveSurfaces) {

@@ -110,7 +110,7 @@ defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of
     'henyeyGreenstein(dot(p.from.forward, s.direction), -p.from.g)'
 
 defect "all octaves come through the first one's medium" 'Octaves.*' "" \
-    lib/woodcock/render/batch_tracer_stand_ins.h \
+    lib/woodcock/render/batch_tracer_approximate_media.h \
     'return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};' \
     'return {1, octave::total(octaves), octave::phase(i)};'
 
@@ -150,7 +150,7 @@ defect "shadow rays see the outside's medium alone" 'SurfaceLayers*' "media insi
     'mediumIndex(shadow.standIn, place.inside)' 'shadow.standIn'
 
 defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
-    lib/woodcock/render/interiors.cpp \
+    lib/woodcock/render/nested_media.cpp \
     'rank(instance) > rank(best)' 'rank(instance) < rank(best)'
 
 defect "refracted light stays in the medium it came from" 'SurfaceLayers*' "plates of glass" \

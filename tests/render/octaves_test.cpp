@@ -160,7 +160,7 @@ TEST(Octaves, ContradictSimilarity) {
     RenderSettings s;
     s.approximations.octaves = 2;
     s.approximations.similarityAfter = 3;
-    expectError(ErrorKind::Usage, "octaves contradict similarity", [&] { render(scene, s); });
+    expectError(ErrorKind::Usage, "octaves and similarity exclude each other", [&] { render(scene, s); });
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/medium/media.h"
-#include "woodcock/proof/oracles/adding_doubling.h"
-#include "woodcock/proof/checks/measure.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
-#include "woodcock/render/stand_ins.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/oracles/adding_doubling.h"
+#include "woodcock/render/approximate_media.h"
 
 namespace woodcock::test {
 namespace {

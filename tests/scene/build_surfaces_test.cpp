@@ -66,7 +66,7 @@ TEST(BuildSurfaces, ASceneWithoutSurfacesHasNone) {
     const BuiltScene built =
         build("[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nscale = 1");
     EXPECT_EQ(built.scene.surfaces, nullptr);
-    EXPECT_TRUE(built.scene.interiors.empty());
+    EXPECT_TRUE(built.scene.interiorMedia.empty());
 }
 
 TEST(BuildSurfaces, PlacesShapesWhereTheyAreDescribed) {
@@ -113,7 +113,7 @@ TEST(BuildSurfaces, MediaAndPriorities) {
     EXPECT_EQ(objects[0].ior, 1.4);
     EXPECT_EQ(objects[0].priority, 3);
     ASSERT_GE(objects[0].medium, 1u);
-    const Medium& inside = scene.interiors[objects[0].medium - 1];
+    const Medium& inside = scene.interiorMedia[objects[0].medium - 1];
     ASSERT_EQ(inside.parts.size(), 2u);
     EXPECT_EQ(inside.parts[0].scattering(), Rgb(7));
     EXPECT_EQ(inside.parts[1].absorption(), Rgb(1, 2, 3));
@@ -123,7 +123,7 @@ TEST(BuildSurfaces, MediaAndPriorities) {
     for (const double y : {-5.0, 5.0}) EXPECT_TRUE(box.contains({0, y, 0}));
 
     // Glass and air without a medium hold a vacuum, not what is around them.
-    EXPECT_TRUE(scene.interiors[objects[1].medium - 1].parts.empty());
+    EXPECT_TRUE(scene.interiorMedia[objects[1].medium - 1].parts.empty());
     EXPECT_EQ(objects[2].medium, objects[1].medium);
     EXPECT_EQ(objects[2].ior, 1);
     EXPECT_FALSE(objects[3].holdsMedium);
@@ -134,7 +134,7 @@ TEST(BuildSurfaces, BelowAnInfinitePlaneTheMediumReachesFar) {
     const BuiltScene built = build(
         "[[surface]]\nplane = {}\nmaterial = \"glass\"\nmedium = { sigma_a = 1 }\n"
         "transform = { translate = [0, 500, 0] }");
-    const Medium& sea = built.scene.interiors.at(0);
+    const Medium& sea = built.scene.interiorMedia.at(0);
     for (const Vec3d& p : {Vec3d{0, -1e9, 0}, Vec3d{1e9, 499, -1e9}})
         EXPECT_EQ(sea.parts.at(0).sigmaT(p), Rgb(1));
     EXPECT_TRUE(built.scene.surfaces->geometry.bounds().empty());

@@ -46,17 +46,17 @@ intensity = 1000
 
 /// Draws the scene with the need pretended and without: are they the same to the last bit?
 bool expectSamePicture(const std::string& text, Need need, double largestError = 0.005) {
-    const Scene scene = sceneFrom(text + camera), pretending = pretend(scene, need);
+    const Scene scene = sceneFrom(text + camera), forced = forceNeed(scene, need);
     EXPECT_FALSE(has(findNeeds(scene), need));
-    EXPECT_TRUE(has(findNeeds(pretending), need));
+    EXPECT_TRUE(has(findNeeds(forced), need));
     const Picture picture{.width = 12, .height = 12, .samples = 64};
     const auto mean = [&](const Scene& s, std::uint64_t seed) {
         Picture p = picture;
         p.seed = seed;
         return meanOverSeeds(s, p, 16);
     };
-    expectAgree(mean(pretending, 100), mean(scene, 200), largestError);
-    return sameBits(renderScene(scene, picture).film, renderScene(pretending, picture).film);
+    expectAgree(mean(forced, 100), mean(scene, 200), largestError);
+    return sameBits(renderScene(scene, picture).film, renderScene(forced, picture).film);
 }
 
 const std::string foggy = std::string(fog) + environment + sun;

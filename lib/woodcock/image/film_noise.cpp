@@ -12,7 +12,8 @@ namespace {
 
 /// Part of the mean brightness that is added to what an error is relative to, in squares.
 constexpr double darkness = 0.1;
-/// Of the mean brightness: no pixel counts for more in it, or a lamp in sight would set it.
+/// Times the mean brightness: no pixel counts for more in that mean, or a light in sight would set
+/// it.
 constexpr double brightest = 4;
 
 double unknown() { return std::numeric_limits<double>::infinity(); }

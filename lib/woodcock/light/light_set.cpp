@@ -16,8 +16,9 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-/// What a light could add to the radiance that leaves `at`, unoccluded, averaged over channels.
-double promise(const Light& light, const ScatterPoint& at) {
+/// Importance of a light: what it could add to the radiance that leaves `at`, unoccluded, averaged
+/// over channels.
+double importance(const Light& light, const ScatterPoint& at) {
     const auto phase = [&](Vec3d towards) {
         return henyeyGreenstein(dot(at.forward, towards), at.g);
     };
@@ -41,7 +42,7 @@ double promise(const Light& light, const ScatterPoint& at) {
                        const Vec3d d = l.centre() - at.position;
                        const double distance = length(d);
                        const double p = distance > 0 ? phase(d / distance) : 0;
-                       return l.promise(at.position) * (0.5 * p + 0.5 / (4 * pi));
+                       return l.importance(at.position) * (0.5 * p + 0.5 / (4 * pi));
                    }},
         light);
 }
@@ -71,7 +72,7 @@ void LightSet::pickProbabilities(const ScatterPoint& at, std::span<float> probab
     }
     double total = 0;
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
-        const double p = promise(lights_[static_cast<std::size_t>(sampled_[i])], at);
+        const double p = importance(lights_[static_cast<std::size_t>(sampled_[i])], at);
         probabilities[i] = static_cast<float>(std::min(p, 1e30));
         total += probabilities[i];
     }

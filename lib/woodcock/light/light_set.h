@@ -8,7 +8,7 @@
 
 namespace woodcock {
 
-/// A point that scatters light: what light selection may look at.
+/// A point that scatters light, as light selection needs it.
 struct ScatterPoint {
     Vec3d position;
     Vec3d forward;  ///< unit: the way the path came along
@@ -26,28 +26,29 @@ public:
     /// Indices of the lights that next-event estimation samples: all but constant environments,
     /// which the phase function samples perfectly by itself.
     std::span<const int> sampled() const { return sampled_; }
-    /// Those that stand somewhere (point, sphere).
+    /// Indices of the local lights: point and sphere.
     std::span<const int> local() const { return local_; }
     /// Index of the emissive surfaces, of which a set has at most one; -1: none.
     int meshIndex() const { return mesh_; }
     const MeshLight* mesh() const;  ///< null: none
 
-    /// Probabilities, one for each of sampled(), in proportion to what each light would send
-    /// through the phase function if nothing stood between. Sums to 1 unless all are zero.
+    /// Probabilities, one for each of sampled(), in proportion to each light's importance: what it
+    /// would send through the phase function if nothing were in between. They sum to 1, or are all
+    /// zero.
     void pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const;
 
     LightSample sample(int light, Vec3d from, double u0, double u1) const;
     /// 0 for emissive surfaces: a direction does not say which triangle it meets. Ask mesh().
     double pdf(int light, Vec3d from, Vec3d direction) const;
 
-    /// Radiance that an infinitely far light (environment, a sun's disc) sends from a direction; 0
-    /// for others, and for camera rays also of what is invisible to them.
+    /// Radiance that an infinitely far light (environment, a sun's disc) sends from a direction
+    /// (world). 0 for other lights; 0 for camera rays where the light is invisible to them.
     Rgb distantRadiance(int light, Vec3d direction, bool cameraRay) const;
     /// Whether camera rays may see any such light.
     bool showsBackground() const;
 
-    /// Rough radiance that these lights make in a scattering medium of such bounds: the yardstick
-    /// of Russian roulette. It steers cost only.
+    /// Roughly the radiance, largest channel, that these lights make in a scattering medium of such
+    /// bounds (world). Russian roulette compares with it; it changes the cost alone.
     float typicalRadiance(const Box3d& bounds) const;
 
 private:

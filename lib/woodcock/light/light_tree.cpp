@@ -51,7 +51,7 @@ public:
                 tbb::parallel_invoke(buildFirst, buildSecond);
             else
                 buildFirst(), buildSecond();
-            bounds = together(a, b);
+            bounds = merged(a, b);
         }
         n.centre = bounds.box.centre(), n.radius = length(bounds.box.size()) / 2;
         n.axis = bounds.axis, n.cosSpread = std::cos(bounds.spread), n.power = bounds.power;
@@ -129,7 +129,7 @@ private:
         std::array<double, bucketCount> costBelow{};
         EmitterBounds sum = bucket[0];
         for (std::size_t i = 0; i + 1 < bucketCount; ++i) {
-            if (i > 0) sum = together(sum, bucket[i]);
+            if (i > 0) sum = merged(sum, bucket[i]);
             costBelow[i] = sum.cost();
         }
         Split best;
@@ -139,7 +139,7 @@ private:
             // No side is empty: the least and the greatest centre are in the outermost buckets.
             if (const double cost = costBelow[i] + sum.cost(); cost < best.cost)
                 best.cost = cost, best.bucket = i;
-            sum = together(sum, bucket[i]);
+            sum = merged(sum, bucket[i]);
         }
         return best;
     }
@@ -160,8 +160,8 @@ double EmitterBounds::cost() const {
     return power * area * directions;
 }
 
-EmitterBounds together(const EmitterBounds& a, const EmitterBounds& b) {
-    if (b.spread > a.spread) return together(b, a);
+EmitterBounds merged(const EmitterBounds& a, const EmitterBounds& b) {
+    if (b.spread > a.spread) return merged(b, a);
     if (b.box.empty()) return a;
     if (a.box.empty()) return b;
     EmitterBounds sum = a;

@@ -9,16 +9,18 @@
 
 namespace woodcock {
 
-/// What is known of some emitters together. Each radiates by Lambert's law around its normal.
+/// Bounds of some emitters. Each radiates by Lambert's law around its normal.
 struct EmitterBounds {
     Box3d box;
     Vec3d axis;         ///< unit
     double spread = 0;  ///< largest angle between a normal and the axis; pi: all directions
     double power = 0;   ///< radiance times area
 
+    /// The tree's builder keeps it small.
     double cost() const;  ///< Conty Estevez and Kulla 2018, eq. 1 and 2
 };
-EmitterBounds together(const EmitterBounds& a, const EmitterBounds& b);
+/// Bounds of both.
+EmitterBounds merged(const EmitterBounds& a, const EmitterBounds& b);
 
 /// A binary tree over emitters, by Conty Estevez and Kulla 2018, "Importance Sampling of Many
 /// Lights with Adaptive Tree Splitting".
@@ -33,16 +35,16 @@ struct LightTree {
         std::uint32_t emitter = 0;  ///< of a leaf
 
         bool leaf() const { return second == 0; }
-        /// Bound of what it could send to a point, roughly: irradiance perpendicular to the light.
-        /// 0 only where all of it is turned away.
+        /// Roughly a bound of the irradiance, perpendicular to the light, that it could send to a
+        /// point (world). 0 only where all of it faces away.
         double importance(Vec3d from) const;
     };
     std::vector<Node> nodes;  ///< none where there are no emitters
-    /// Of each emitter: which child is to be taken at each level, the root's in the lowest bit.
+    /// The way to each emitter: which child to take at each level, the root's in the lowest bit.
     std::vector<std::uint64_t> paths;
 
     LightTree() = default;
-    /// Emitters of no power are left out; their paths mean nothing.
+    /// Emitters of no power are left out; their entries of `paths` are void.
     explicit LightTree(std::span<const EmitterBounds> emitters);
 };
 

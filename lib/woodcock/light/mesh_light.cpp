@@ -183,7 +183,7 @@ double MeshLight::pdf(Vec3d from, std::uint32_t triangle, Vec3d position) const 
     return picked * density(t, from, solidAngle, length(position - from));
 }
 
-double MeshLight::promise(Vec3d from) const {
+double MeshLight::importance(Vec3d from) const {
     return tree_.nodes.empty() ? 0 : importance(0, from);
 }
 

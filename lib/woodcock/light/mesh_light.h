@@ -43,7 +43,7 @@ public:
 
     /// Rough irradiance (mean over channels) at a point that faces it: steers the choice among
     /// lights. 0 only where none of it is seen.
-    double promise(Vec3d from) const;
+    double importance(Vec3d from) const;
     Vec3d centre() const { return centre_; }  ///< of its power
     double power() const { return power_; }   ///< of the largest channel
 

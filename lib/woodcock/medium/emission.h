@@ -78,11 +78,11 @@ struct EmissionPoint {
 /// Integration for Rendering Heterogeneous Emissive Volumes".
 ///
 /// The density is an even mixture of two: the bounds of q alone, which keeps every weight bounded,
-/// and the same with the transmittance of a homogeneous stand-in, which does not look for light
+/// and the same with the transmittance of a homogeneous medium, which does not look for light
 /// where none comes through.
 class EmissionSampler {
 public:
-    /// `extinction`: of the stand-in. `u` in [0, 1).
+    /// `extinction`: of that homogeneous medium, per world unit. `u` in [0, 1).
     std::optional<EmissionPoint> sample(std::span<const EmissionPart> parts, Vec3d origin,
                                         Vec3d direction, double tMax, double extinction, double u);
 

@@ -26,9 +26,10 @@ public:
           choice_(scene.lights) {
         gatherMedia();
         if constexpr (Surfaces) {
-            interiors_.emplace(scene);
+            nestedMedia_.emplace(scene);
             if (scene.camera.kind == Camera::Kind::Perspective)
-                aroundCamera_ = interiors_->around(scene.camera.worldFromCamera.translation);
+                aroundCamera_ =
+                    nestedMedia_->cameraPosition(scene.camera.worldFromCamera.translation);
         }
     }
 
@@ -45,7 +46,7 @@ public:
                 ++next;
             }
             if (paths_.empty()) return true;
-            gatherStandIns();
+            sortByMediumSet();
             for (std::size_t i = 0; i < paths_.size(); ++i) lookAhead(i);
             walk();
             for (std::size_t i = 0; i < paths_.size(); ++i) shade(i);
@@ -75,13 +76,14 @@ private:
             scene_.camera.ray(job.x + u[0], job.y + u[1], options_.width, options_.height);
         p.origin = ray.origin, p.direction = ray.direction;
         p.flight = 1 - u[2];
-        p.standIn = standInAfter(0);
+        p.mediumSet = mediumSetAfter(0);
         ++counters_.paths;
         if constexpr (Surfaces)
-            p.surfaces.place = interiors_->place(scene_.camera.kind == Camera::Kind::Perspective
-                                                     ? aroundCamera_
-                                                     : interiors_->around(p.origin),
-                                                 p.direction);
+            p.surfaces.start =
+                nestedMedia_->rayStart(scene_.camera.kind == Camera::Kind::Perspective
+                                           ? aroundCamera_
+                                           : nestedMedia_->cameraPosition(p.origin),
+                                       p.direction);
         if (options_.depthLayers || options_.featureLayers) findDepth(p);
         paths_.push_back(p);
         const std::size_t i = paths_.size() - 1;
@@ -89,7 +91,7 @@ private:
         if (needs_.emission) paths_[i].equiangular = u[3];
         if (needs_.localLights) {
             paths_[i].equiangular = u[3];
-            paths_[i].lamp = paths_[i].random.uniform();
+            paths_[i].localLightPick = paths_[i].random.uniform();
         }
     }
 
@@ -98,14 +100,14 @@ private:
     void lookAhead(std::size_t i) {
         Path& p = paths_[i];
         if constexpr (Surfaces) {
-            AmongSurfaces& s = p.surfaces;
+            SurfaceState& s = p.surfaces;
             s.hitsAhead =
-                interiors_->nearest(p.origin, p.direction, infinity, s.place, s.seen, s.ahead);
+                nestedMedia_->nearest(p.origin, p.direction, infinity, s.start, s.seen, s.ahead);
             s.tMax = s.hitsAhead ? s.ahead.t : infinity;
             ++counters_.surfaceRays;
         }
         if (needs_.emission) addMediumEmission(i, p.equiangular);
-        if (needs_.localLights) addEquiangular(i, p.equiangular, p.lamp);
+        if (needs_.localLights) addEquiangular(i, p.equiangular, p.localLightPick);
     }
 
     void walk() {
@@ -188,7 +190,7 @@ private:
         while (!shadows_.empty()) {
             if constexpr (Surfaces)
                 for (std::size_t i = 0; i < shadows_.size(); ++i)
-                    shadowAmongSurfaces(shadows_[i], shadowQueries_[i], c);
+                    findShadowAcrossSurfaces(shadows_[i], shadowQueries_[i], c);
             else
                 forRuns(shadows_,
                         [&](const MediumSummary& medium, std::size_t first, std::size_t count) {
@@ -205,10 +207,10 @@ private:
                     (s.inFront ? p.result->film.radiance : p.radiance) += s.colour * toRgb(arrived);
                     continue;
                 }
-                s.secondLeg = false, s.standIn = s.secondStandIn;
+                s.secondLeg = false, s.mediumSet = s.secondMediumSet;
                 TransmittanceQuery<N> q = shadowQueries_[i];
                 q.origin = s.origin, q.direction = s.direction, q.tMax = s.tMax;
-                if constexpr (Surfaces) s.place.left.reset();
+                if constexpr (Surfaces) s.start.left.reset();
                 shadows_[left] = s, shadowQueries_[left] = q, ++left;
             }
             shadows_.resize(left), shadowQueries_.resize(left);
@@ -258,35 +260,35 @@ private:
     void scatter(std::size_t i, double t, double g);
     EventNumbers numbers(Path& p);
 
-    // ---- media in place of others: batch_tracer_stand_ins.h
+    // ---- approximate media: batch_tracer_stand_ins.h
 
-    /// The scene's media and those that stand in for them, as flights may ask for them.
+    /// The scene's media, and the sets of media that approximations use in their place.
     void gatherMedia();
-    /// Paths in stand-ins first, so that runs are long.
-    void gatherStandIns();
+    /// Paths in approximate media first, so that runs of one medium are long.
+    void sortByMediumSet();
     /// Calls f(medium, first, count) for each run of paths or shadow rays in one medium; only
     /// without surfaces.
     template <class Items, class F>
     void forRuns(const Items& items, F&& f) const;
     /// Which media a path that has scattered so often goes through, and which one surrounds it.
-    std::uint8_t standInAfter(std::int64_t scatterings) const;
-    std::uint32_t mediumIndex(std::uint8_t standIn, const InteriorStack& inside) const;
+    std::uint8_t mediumSetAfter(std::int64_t scatterings) const;
+    std::uint32_t mediumIndex(std::uint8_t mediumSet, const MediumStack& inside) const;
     /// What light that a path meets at its next scattering goes through, and how it scatters there:
     /// `phase` multiplies g, `amount` the scattered light.
     struct Onward {
-        std::uint8_t standIn;
+        std::uint8_t mediumSet;
         double amount = 1, phase = 1;
     };
     Onward onwardFrom(Path& p) const;
     /// Goes on so, and returns Onward::phase.
-    double enterStandIn(Path& p) const;
+    double enterMediumSet(Path& p) const;
     void clampRadiance(FilmSample& sample);
 
     // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
     void meetSurface(std::size_t i);
     void bounce(std::size_t i, const SurfaceHit& hit, const Crossing& crossing);
-    AmongSurfaces::Sought soughtAfter(AmongSurfaces::Sought before, const Bsdf& bsdf,
-                                      const BsdfSample& b) const;
+    SurfaceState::LightSampled lightSampledAfter(SurfaceState::LightSampled before,
+                                                 const Bsdf& bsdf, const BsdfSample& b) const;
     /// A boundary that changes nothing but the medium.
     void goOn(Path& p);
     void addEmission(Path& p, const SurfaceHit& hit, const Bsdf& bsdf);
@@ -299,8 +301,8 @@ private:
     void playRoulette(Path& p);
     /// Takes a shadow ray through boundaries that light passes, to its end or the first surface
     /// that stops it.
-    void shadowAmongSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
-                             TrackingCounters& c);
+    void findShadowAcrossSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
+                                  TrackingCounters& c);
     bool arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit, double left) const;
     /// Camera rays' transmittance, and what they meet, by a walk of their own.
     void findDepth(const Path& p);
@@ -321,15 +323,15 @@ private:
     template <class F>
     double hitWeight(const Path& p, F&& pdf) {
         if constexpr (Surfaces) {
-            using enum AmongSurfaces::Sought;
-            if (p.surfaces.sought == Never) return 1;
-            if (p.surfaces.sought == Straight) return pdf() > 0 ? 0 : 1;
+            using enum SurfaceState::LightSampled;
+            if (p.surfaces.lightSampled == Never) return 1;
+            if (p.surfaces.lightSampled == ThroughDielectrics) return pdf() > 0 ? 0 : 1;
         } else {
             if (p.scatterings == 0) return 1;
         }
         return powerHeuristic(p.phasePdf, pdf());
     }
-    std::optional<Vec3d> lampPosition(int light) const {
+    std::optional<Vec3d> localLightPosition(int light) const {
         const Light& l = scene_.lights.lights()[static_cast<std::size_t>(light)];
         if (const auto* point = std::get_if<PointLight>(&l)) return point->position;
         if (const auto* sphere = std::get_if<SphereLight>(&l)) return sphere->position;
@@ -348,14 +350,14 @@ private:
     Flight flightOf(const Path& p) const {
         if constexpr (Surfaces)
             return {p.origin, p.direction, p.surfaces.tMax,
-                    &media_[mediumIndex(p.standIn, p.surfaces.place.inside)]};
+                    &media_[mediumIndex(p.mediumSet, p.surfaces.start.inside)]};
         else
-            return {p.origin, p.direction, infinity, &media_[p.standIn]};
+            return {p.origin, p.direction, infinity, &media_[p.mediumSet]};
     }
     /// Outside of all surfaces, in a medium that fills all of space.
     bool inEndlessMedium(const Path& p) const {
         if (!flightOf(p).medium->unbounded) return false;
-        if constexpr (Surfaces) return interiors_->medium(p.surfaces.place.inside) == 0;
+        if constexpr (Surfaces) return nestedMedia_->medium(p.surfaces.start.inside) == 0;
         return true;
     }
     static Rgb tint(const Path& p) {
@@ -388,8 +390,8 @@ private:
     const Needs needs_;
     const Options options_;
     const float typicalRadiance_;
-    std::vector<MediumSummary> media_;  // of the outside, and of what surfaces hold; stand-ins
-    bool standsIn_ = false;             // there are stand-ins
+    std::vector<MediumSummary> media_;  // set by set; in each the outside, then what surfaces hold
+    bool replacesMedia_ = false;        // there are approximate media
     bool octavesEnd_ = false;           // with next-event estimation: their flights meet no light
     LightChoice choice_;
     EmissionSampler emission_;
@@ -399,14 +401,14 @@ private:
     std::vector<ShadowRay<Surfaces>> shadows_;
     std::vector<TransmittanceQuery<N>> shadowQueries_;
     // Where there are surfaces:
-    std::optional<Interiors> interiors_;
-    Interiors::Start aroundCamera_;
+    std::optional<NestedMedia> nestedMedia_;
+    NestedMedia::CameraPosition aroundCamera_;
     std::vector<Piece> pieces_;  // of one shadow ray
 };
 
 }  // namespace woodcock
 
+#include "woodcock/render/batch_tracer_approximate_media.h"
 #include "woodcock/render/batch_tracer_light.h"
 #include "woodcock/render/batch_tracer_media.h"
-#include "woodcock/render/batch_tracer_stand_ins.h"
 #include "woodcock/render/batch_tracer_surfaces.h"

@@ -19,7 +19,8 @@ void BatchTracer<N, Surfaces>::addNextEvent(std::size_t i, const EventNumbers& u
     const double phase = henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
-    if (const auto lamp = lampPosition(chosen->light)) weight *= share(*lamp);
+    if (const auto lightPosition = localLightPosition(chosen->light))
+        weight *= share(*lightPosition);
     if (addShadowRay(i, p.from.position, s.direction, s.distance,
                      s.weight * static_cast<float>(weight), true))
         shadows_.back().emitter = s.emitter;
@@ -39,10 +40,11 @@ void BatchTracer<N, Surfaces>::addSphereHits(std::size_t i, const FlightShare* s
         if (share)
             weight = hitWeight(p, [&] { return choice_.pdf(light, p.from, p.direction); }) *
                      (*share)(sphere->position);
-        bool sought = false;
-        if constexpr (Surfaces) sought = p.surfaces.sought == AmongSurfaces::Sought::ByChance;
+        bool lightSampled = false;
+        if constexpr (Surfaces)
+            lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;
         addShadowRay(i, p.origin, p.direction, t, sphere->radiance * static_cast<float>(weight),
-                     sought);
+                     lightSampled);
     }
 }
 
@@ -51,13 +53,14 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
     const Path& p = paths_[i];
     if (options_.maxScatterings && p.scatterings >= *options_.maxScatterings) return;
     const Flight flight = flightOf(p);
-    if (p.standIn > 0 && !flight.medium->scatters) return;
-    const auto lamps = scene_.lights.local();
-    if (lamps.empty()) return;
-    const double scaled = pick * static_cast<double>(lamps.size());
-    const int light = lamps[std::min(static_cast<std::size_t>(scaled), lamps.size() - 1)];
-    const Vec3d lamp = *lampPosition(light);
-    const Equiangular e = flight.equiangular(lamp);
+    if (p.mediumSet > 0 && !flight.medium->scatters) return;
+    const auto localLights = scene_.lights.local();
+    if (localLights.empty()) return;
+    const double scaled = pick * static_cast<double>(localLights.size());
+    const int light =
+        localLights[std::min(static_cast<std::size_t>(scaled), localLights.size() - 1)];
+    const Vec3d lightPosition = *localLightPosition(light);
+    const Equiangular e = flight.equiangular(lightPosition);
     const double t = e.sample(u), pdf = e.pdf(t);
     if (!(pdf > 0)) return;
     const ScatterPoint at{p.origin + p.direction * t, p.direction, 0};
@@ -71,14 +74,14 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
     for (const MediumPart& part : flight.medium->medium->parts)
         scattered += part.sigmaS(at.position) *
                      static_cast<float>(henyeyGreenstein(cosine, part.g() * onward.phase));
-    // Balance heuristic against the event, over the density of this point and lamp.
+    // Balance heuristic against the event, over the density of this point and light.
     const double weight =
-        onward.amount * static_cast<double>(lamps.size()) / (pdf + flight.density(e, t));
+        onward.amount * static_cast<double>(localLights.size()) / (pdf + flight.density(e, t));
     if (!addShadowRay(i, p.origin, p.direction, t,
                       scattered * s.weight * static_cast<float>(weight), true))
         return;
     ShadowRay<Surfaces>& ray = shadows_.back();
-    ray.secondLeg = true, ray.secondStandIn = onward.standIn;
+    ray.secondLeg = true, ray.secondMediumSet = onward.mediumSet;
     ray.origin = at.position, ray.direction = s.direction, ray.tMax = s.distance;
 }
 
@@ -105,9 +108,9 @@ bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d d
     const Spectrum<N> contribution = p.throughput * brightest;
     if (!(contribution.maximum() > 0)) return false;
     shadows_.push_back({.path = i, .colour = light * (1 / brightest)});
-    shadows_.back().standIn = p.standIn;
+    shadows_.back().mediumSet = p.mediumSet;
     if constexpr (Surfaces) {
-        shadows_.back().place = p.surfaces.place;
+        shadows_.back().start = p.surfaces.start;
         shadows_.back().transparent = mayPass && options_.approximations.transparentShadows;
         shadows_.back().inFront = p.surfaces.seen;
     }

@@ -36,13 +36,13 @@ void BatchTracer<N, Surfaces>::scatter(std::size_t i, double t, double g) {
     const EventNumbers u = numbers(p);
     // What equiangular sampling of this flight leaves to this event; see addEquiangular.
     const FlightShare share{!needs_.localLights, flightOf(p), t};
-    if (standsIn_) g *= enterStandIn(p);
+    if (replacesMedia_) g *= enterMediumSet(p);
     p.from = {position, p.direction, g};
     if constexpr (Surfaces) {
-        AmongSurfaces& s = p.surfaces;
-        s.place.left.reset();
+        SurfaceState& s = p.surfaces;
+        s.start.left.reset();
         s.seen = false;
-        s.sought = AmongSurfaces::Sought::ByChance;
+        s.lightSampled = SurfaceState::LightSampled::AtLastEvent;
     }
     if (needs_.lightSampling) addNextEvent(i, u, share);
 
@@ -59,7 +59,7 @@ void BatchTracer<N, Surfaces>::scatter(std::size_t i, double t, double g) {
         }
         p.throughput *= endless ? 1 / endlessSurvival : 1.41421356f;
     }
-    p.equiangular = u.equiangular, p.lamp = u.pick;
+    p.equiangular = u.equiangular, p.localLightPick = u.pick;
     if (octavesEnd_) p.alive = false;
 }
 

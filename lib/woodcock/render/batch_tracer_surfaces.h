@@ -10,19 +10,19 @@ namespace woodcock {
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::meetSurface(std::size_t i) {
     Path& p = paths_[i];
-    AmongSurfaces& s = p.surfaces;
+    SurfaceState& s = p.surfaces;
     const SurfaceHit hit = s.ahead;
-    const SurfaceObject& object = interiors_->object(hit);
-    const Crossing crossing = interiors_->cross(s.place.inside, p.direction, hit);
+    const SurfaceObject& object = nestedMedia_->object(hit);
+    const Crossing crossing = nestedMedia_->cross(s.start.inside, p.direction, hit);
     p.origin = hit.position;
-    s.place.left = hit;
+    s.start.left = hit;
     if (s.seen && object.holdout) {
         p.result->film.alpha = opacityOf(p);
         p.alive = false;
         return;
     }
     if (crossing.passes) {
-        s.place.inside = crossing.beyond;
+        s.start.inside = crossing.beyond;
         goOn(p);
         return;
     }
@@ -49,13 +49,13 @@ template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
                                       const Crossing& crossing) {
     Path& p = paths_[i];
-    AmongSurfaces& s = p.surfaces;
+    SurfaceState& s = p.surfaces;
     const Vec3d out = -p.direction;
     const EventNumbers u = numbers(p);
     const bool caught = s.seen && p.result->catcher.weight > 0;
     s.seen = false;
-    s.place.inside = crossing.near;
-    p.standIn = standInAfter(p.scatterings);
+    s.start.inside = crossing.near;
+    p.mediumSet = mediumSetAfter(p.scatterings);
     if (crossing.bsdf.smooth()) {
         p.from = {hit.position, p.direction, 0};
         if (needs_.lightSampling) lightSurface(i, u, hit, crossing, out, caught);
@@ -68,9 +68,9 @@ void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
         return;
     }
     p.direction = b.direction, p.phasePdf = b.pdf, p.flight = u.flight;
-    p.equiangular = u.equiangular, p.lamp = u.pick;
-    s.sought = soughtAfter(s.sought, crossing.bsdf, b);
-    if (b.transmitted) s.place.inside = crossing.beyond;
+    p.equiangular = u.equiangular, p.localLightPick = u.pick;
+    s.lightSampled = lightSampledAfter(s.lightSampled, crossing.bsdf, b);
+    if (b.transmitted) s.start.inside = crossing.beyond;
     ++s.bounces;
     if (caught) addUnoccluded(p);
     const FlightShare wholly;
@@ -79,21 +79,20 @@ void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
 }
 
 template <int N, bool Surfaces>
-AmongSurfaces::Sought BatchTracer<N, Surfaces>::soughtAfter(AmongSurfaces::Sought before,
-                                                            const Bsdf& bsdf,
-                                                            const BsdfSample& b) const {
-    using enum AmongSurfaces::Sought;
-    if (!b.delta) return ByChance;
+SurfaceState::LightSampled BatchTracer<N, Surfaces>::lightSampledAfter(
+    SurfaceState::LightSampled before, const Bsdf& bsdf, const BsdfSample& b) const {
+    using enum SurfaceState::LightSampled;
+    if (!b.delta) return AtLastEvent;
     // Where a smooth part was lit, a delta part's direction still is its own alone.
     const bool straight =
         options_.approximations.transparentShadows && b.transmitted && !bsdf.smooth();
-    return straight && before != Never ? Straight : Never;
+    return straight && before != Never ? ThroughDielectrics : Never;
 }
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::goOn(Path& p) {
     p.flight = p.random.uniformOpenLow();
-    p.equiangular = p.random.uniform(), p.lamp = p.random.uniform();
+    p.equiangular = p.random.uniform(), p.localLightPick = p.random.uniform();
 }
 
 template <int N, bool Surfaces>
@@ -101,7 +100,7 @@ void BatchTracer<N, Surfaces>::addEmission(Path& p, const SurfaceHit& hit, const
     const Rgb radiance = bsdf.emitted(-p.direction);
     if (!(radiance.maximum() > 0)) return;
     const auto pdf = [&] {
-        const std::uint32_t emitter = interiors_->emitter(hit);
+        const std::uint32_t emitter = nestedMedia_->emitter(hit);
         const MeshLight* light = scene_.lights.mesh();
         if (emitter == SurfaceObject::dark || !light) return 0.0;
         return light->pdf(p.from.position, emitter, hit.position) *
@@ -118,7 +117,7 @@ void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u
     const auto chosen = choice_.choose(p.from, u.pick);
     if (!chosen) return;
     const LightSample l = scene_.lights.sample(chosen->light, hit.position, u.light[0], u.light[1]);
-    if (!(l.weight.maximum() > 0) || interiors_->startsOn(hit, l.emitter)) return;
+    if (!(l.weight.maximum() > 0) || nestedMedia_->startsOn(hit, l.emitter)) return;
     const Rgb f = crossing.bsdf.evaluate(out, l.direction);
     if (!(f.maximum() > 0)) return;
     double weight = 1 / chosen->probability;
@@ -132,7 +131,7 @@ void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u
         return;
     shadows_.back().emitter = l.emitter;
     if (dot(out, hit.normal) * dot(l.direction, hit.normal) < 0)
-        shadows_.back().place.inside = crossing.beyond;
+        shadows_.back().start.inside = crossing.beyond;
 }
 
 template <int N, bool Surfaces>
@@ -158,11 +157,12 @@ void BatchTracer<N, Surfaces>::playRoulette(Path& p) {
 }
 
 template <int N, bool Surfaces>
-void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
-                                                   TransmittanceQuery<N>& q, TrackingCounters& c) {
+void BatchTracer<N, Surfaces>::findShadowAcrossSurfaces(ShadowRay<Surfaces>& shadow,
+                                                        TransmittanceQuery<N>& q,
+                                                        TrackingCounters& c) {
     if (!(q.contribution.maximum() > 0)) return;
     pieces_.clear();
-    Interiors::Place place = shadow.place;
+    NestedMedia::RayStart place = shadow.start;
     Vec3d origin = q.origin;
     double left = q.tMax;
     SurfaceHit hit;
@@ -170,14 +170,15 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
     const bool toSurface = shadow.emitter != LightSample::none;
     while (true) {
         counters_.surfaceRays += !shadow.withinFlight;
-        bool hits =
-            !shadow.withinFlight &&
-            interiors_->nearest(origin, q.direction, left * (toSurface ? behindLight : beforeLight),
-                                place, false, hit);
+        bool hits = !shadow.withinFlight &&
+                    nestedMedia_->nearest(origin, q.direction,
+                                          left * (toSurface ? behindLight : beforeLight), place,
+                                          false, hit);
         if (hits && toSurface) hits = !arrives(shadow, hit, left);
-        pieces_.push_back({origin, hits ? hit.t : left, mediumIndex(shadow.standIn, place.inside)});
+        pieces_.push_back(
+            {origin, hits ? hit.t : left, mediumIndex(shadow.mediumSet, place.inside)});
         if (!hits) break;
-        const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
+        const Crossing crossing = nestedMedia_->cross(place.inside, q.direction, hit);
         if (!crossing.passes) {
             if (!shadow.transparent || crossing.bsdf.smooth() || !crossing.bsdf.transmits()) {
                 q.contribution = {};
@@ -200,11 +201,12 @@ void BatchTracer<N, Surfaces>::shadowAmongSurfaces(ShadowRay<Surfaces>& shadow,
     }
 }
 
-/// Of a lamp that lies together with other surfaces only the one that counts is lit.
+/// Where an emitter coincides with other surfaces, a shadow ray reaches it only if it is the one
+/// that counts.
 template <int N, bool Surfaces>
 bool BatchTracer<N, Surfaces>::arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit,
                                        double left) const {
-    if (hit.together.any) return interiors_->emitter(hit) == shadow.emitter;
+    if (hit.coincident.any) return nestedMedia_->emitter(hit) == shadow.emitter;
     return hit.t > left * beforeLight;
 }
 
@@ -225,17 +227,17 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
     const Medium* medium = &scene_.medium;
     double behind = 0;  // distance to where the query starts
     if constexpr (Surfaces) {
-        Interiors::Place place = p.surfaces.place;
+        NestedMedia::RayStart place = p.surfaces.start;
         while (true) {
             SurfaceHit hit;
             const bool hits =
-                interiors_->nearest(q.origin, q.direction, infinity, place, true, hit);
+                nestedMedia_->nearest(q.origin, q.direction, infinity, place, true, hit);
             q.tMax = hits ? hit.t : infinity;
-            medium = media_[mediumIndex(p.standIn, place.inside)].medium;
+            medium = media_[mediumIndex(p.mediumSet, place.inside)].medium;
             findEvents(*medium, {&q, 1}, c);
             if (q.part >= 0 || !hits) break;
-            const Crossing crossing = interiors_->cross(place.inside, q.direction, hit);
-            if (interiors_->object(hit).holdout) return;
+            const Crossing crossing = nestedMedia_->cross(place.inside, q.direction, hit);
+            if (nestedMedia_->object(hit).holdout) return;
             if (!crossing.passes) {
                 const float weight = q.throughput.mean();
                 const Vec3d n =
@@ -252,7 +254,7 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
             q.origin = hit.position, q.u = q.random.uniformOpenLow();
         }
     } else {
-        medium = media_[p.standIn].medium;
+        medium = media_[p.mediumSet].medium;
         findEvents(*medium, {&q, 1}, c);
     }
     if (q.part < 0) {

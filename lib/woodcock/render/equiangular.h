@@ -8,17 +8,17 @@
 
 namespace woodcock {
 
-/// Distances along a ray, within [t0, t1], in proportion to the inverse square distance to a lamp:
+/// Distances along a ray, within [t0, t1], in proportion to the inverse square distance to a light:
 /// Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating
 /// Media", sec. 4.
 class Equiangular {
 public:
     Equiangular() = default;  ///< samples nothing: its density is zero everywhere
-    /// `leastDistance` > 0 stands in for the distance of a ray that goes through the lamp itself.
-    Equiangular(Vec3d origin, Vec3d direction, Vec3d lamp, double t0, double t1,
+    /// `leastDistance` > 0 is taken for the distance of a ray that goes through the light itself.
+    Equiangular(Vec3d origin, Vec3d direction, Vec3d lightPosition, double t0, double t1,
                 double leastDistance)
-        : t0_(t0), t1_(t1), nearest_(dot(lamp - origin, direction)) {
-        distance_ = std::max(length(origin + direction * nearest_ - lamp), leastDistance);
+        : t0_(t0), t1_(t1), nearest_(dot(lightPosition - origin, direction)) {
+        distance_ = std::max(length(origin + direction * nearest_ - lightPosition), leastDistance);
         angle0_ = std::atan2(t0 - nearest_, distance_);
         angle1_ = std::atan2(t1 - nearest_, distance_);
     }

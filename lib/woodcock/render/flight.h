@@ -20,7 +20,7 @@ struct MediumSummary {
     bool unbounded = false, scatters = false;
 
     explicit MediumSummary(const Medium& m) : MediumSummary(m, m) {}
-    /// Of a stand-in for `original`, which glows like it.
+    /// `m` is used in place of `original`, and has the emission of `original`.
     MediumSummary(const Medium& m, const Medium& original)
         : medium(&m), emission(original.emission), bounds(m.worldBounds()) {
         for (const MediumPart& p : m.parts) {
@@ -37,12 +37,13 @@ struct Flight {
     double tMax = std::numeric_limits<double>::infinity();
     const MediumSummary* medium = nullptr;
 
-    Equiangular equiangular(Vec3d lamp) const {
+    Equiangular equiangular(Vec3d lightPosition) const {
         double t0 = 0, t1 = tMax;
         if (!medium->unbounded && !clip({origin, direction}, medium->bounds, t0, t1)) return {};
-        return {origin, direction, lamp, t0, t1, length(medium->bounds.size()) * 1e-9};
+        return {origin, direction, lightPosition, t0, t1, length(medium->bounds.size()) * 1e-9};
     }
-    /// A homogeneous stand-in for the density with which tracking finds its event.
+    /// The density, per world unit, with which tracking would find its event at `t` if the medium
+    /// were homogeneous.
     double density(const Equiangular& e, double t) const {
         const double sigma = medium->meanExtinction;
         return sigma * std::exp(-sigma * std::max(0.0, t - e.t0()));
@@ -50,14 +51,14 @@ struct Flight {
 };
 
 /// Splits a local light's direct light between the event that distance sampling found on a flight
-/// and the point that equiangular sampling chose on it: the balance heuristic with a homogeneous
-/// stand-in for the density of the former, which null-collision tracking does not know. Both sides
-/// use the same formula, so the sum is unbiased whatever its quality.
+/// and the point that equiangular sampling chose on it. Null-collision tracking does not know the
+/// density of its event, so the balance heuristic takes that of a homogeneous medium. Both sides
+/// use the same formula, so the sum is unbiased however rough that density is.
 struct FlightShare {
     bool all = true;  ///< the event's alone: nothing was chosen on its flight
     Flight flight = {};
     double t = 0;
-    /// The event's part of light from a lamp at `position`.
+    /// The event's part of the light from a local light at `position` (world).
     double operator()(Vec3d position) const {
         if (all) return 1;
         const Equiangular e = flight.equiangular(position);

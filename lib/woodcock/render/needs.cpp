@@ -7,7 +7,7 @@
 namespace woodcock {
 
 Needs findNeeds(const Scene& scene) {
-    Needs n = scene.pretended;
+    Needs n = scene.forcedNeeds;
     Box3d bounds;  // of what scatters
     const auto look = [&](const Medium& medium) {
         for (const MediumPart& p : medium.parts) {
@@ -20,7 +20,7 @@ Needs findNeeds(const Scene& scene) {
         if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
     };
     look(scene.medium);
-    for (const Medium& medium : scene.interiors) look(medium);
+    for (const Medium& medium : scene.interiorMedia) look(medium);
     n.surfaces |= scene.surfaces != nullptr;
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());

@@ -9,10 +9,10 @@
 
 #include "woodcock/image/film.h"
 #include "woodcock/medium/marching.h"
+#include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
-#include "woodcock/render/stand_ins.h"
 
 namespace woodcock {
 
@@ -47,7 +47,8 @@ public:
         std::optional<int> maxBounces;
         Approximations approximations;
         bool depthLayers = false, featureLayers = false;
-        const StandIns* standIns = nullptr;  ///< made from `approximations`; null: no sets
+        const ApproximateMedia* approximateMedia =
+            nullptr;  ///< made from `approximations`; null: no sets
     };
 
     virtual ~PathTracer() = default;

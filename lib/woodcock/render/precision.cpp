@@ -93,10 +93,10 @@ private:
 
     void checkLight(const Light& light) {
         if (const auto* point = std::get_if<PointLight>(&light))
-            checkLamp("a point light", point->position, point->intensity.maximum());
+            checkLocalLight("a point light", point->position, point->intensity.maximum());
         if (const auto* sphere = std::get_if<SphereLight>(&light))
-            checkLamp("a sphere light", sphere->position,
-                      pi * sphere->radius * sphere->radius * sphere->radiance.maximum());
+            checkLocalLight("a sphere light", sphere->position,
+                            pi * sphere->radius * sphere->radius * sphere->radiance.maximum());
         if (const auto* sun = std::get_if<Sun>(&light); sun && !sun->delta()) {
             const double radiance = sun->radiance(sun->towards()).maximum();
             if (!std::isfinite(radiance) || !std::isfinite(sun->pdf(sun->towards())))
@@ -106,8 +106,8 @@ private:
         }
     }
 
-    /// Rays end at lamps, so that only their light can be lost. `power` is per steradian.
-    void checkLamp(const char* name, Vec3d p, double power) {
+    /// Rays end at local lights, so that only their light can be lost. `power` is per steradian.
+    void checkLocalLight(const char* name, Vec3d p, double power) {
         if (bounds_.empty() || !(power > 0)) return;
         const double distance = length(p - max(bounds_.lower, min(bounds_.upper, p)));
         const double arrives = power / distance / distance;

@@ -16,7 +16,8 @@ namespace {
 constexpr double leastShare = 0.125, mostShare = 16;
 /// Below this part of the mean brightness, errors count absolutely.
 constexpr double darkness = 0.1;
-/// Of the mean brightness: no pixel counts for more in it, or a lamp in sight would set it.
+/// Times the mean brightness: no pixel counts for more in that mean, or a light in sight would set
+/// it.
 constexpr double brightest = 4;
 
 /// What a scattering costs, its shadow ray and the flight after it, in paths without any. Measured
@@ -117,7 +118,7 @@ SamplePlan::SamplePlan(const Film& pilot, int samples)
     });
     const Brightness brightness[2]{brightnessOf(found, width, 0), brightnessOf(found, width, 1)};
 
-    std::vector<Place> places(pixels_);
+    std::vector<PixelPlan> places(pixels_);
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
             // Of the pixels of the other colour alone, by binomial weights: enough of them that
@@ -144,10 +145,10 @@ SamplePlan::SamplePlan(const Film& pilot, int samples)
     });
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) colours_[(x + y) & 1].push_back(places[indexOf(x, y)]);
-    for (std::vector<Place>& ofColour : colours_) {
+    for (std::vector<PixelPlan>& ofColour : colours_) {
         double sum = 0;
-        for (const Place& p : ofColour) sum += p.share;
-        for (Place& p : ofColour) {
+        for (const PixelPlan& p : ofColour) sum += p.share;
+        for (PixelPlan& p : ofColour) {
             const double relative =
                 sum > 0 ? p.share * static_cast<double>(ofColour.size()) / sum : 1;
             p.share = std::clamp(relative, leastShare, mostShare);
@@ -161,25 +162,25 @@ std::vector<std::uint32_t> SamplePlan::counts(int even) const {
     std::vector<std::uint32_t> counts(pixels_, pilot_);
     if (static_cast<std::uint32_t>(even) <= pilot_)
         return std::vector<std::uint32_t>(pixels_, static_cast<std::uint32_t>(even));
-    for (const std::vector<Place>& places : colours_) apportion(places, even, counts);
+    for (const std::vector<PixelPlan>& places : colours_) apportion(places, even, counts);
     return counts;
 }
 
 /// Webster's apportionment: a pixel gets its share x factor, rounded, and the pilot at least. The
 /// factor rises until the work is given away, so nobody ever has less of more.
-void SamplePlan::apportion(const std::vector<Place>& places, int even,
+void SamplePlan::apportion(const std::vector<PixelPlan>& places, int even,
                            std::vector<std::uint32_t>& counts) const {
     if (places.empty()) return;
-    const auto count = [&](const Place& p, double factor) {
+    const auto count = [&](const PixelPlan& p, double factor) {
         return std::max(pilot_, static_cast<std::uint32_t>(p.share * factor + 0.5));
     };
     const auto work = [&](double factor) {
         std::uint64_t s = 0;
-        for (const Place& p : places) s += std::uint64_t{count(p, factor)} * p.cost;
+        for (const PixelPlan& p : places) s += std::uint64_t{count(p, factor)} * p.cost;
         return s;
     };
     std::uint64_t all = 0;
-    for (const Place& p : places) all += p.cost;
+    for (const PixelPlan& p : places) all += p.cost;
     all *= static_cast<std::uint64_t>(even);
     double low = 0, high = 1;
     while (work(high) <= all) low = high, high *= 2;
@@ -190,7 +191,7 @@ void SamplePlan::apportion(const std::vector<Place>& places, int even,
     }
     std::uint64_t left = all - work(low);
     bool fits = true;  // in the pixels' order up to the first that does not: so more is never less
-    for (const Place& p : places) {
+    for (const PixelPlan& p : places) {
         counts[p.pixel] = count(p, low);
         if (count(p, high) == counts[p.pixel] || !fits) continue;
         fits = left >= p.cost;

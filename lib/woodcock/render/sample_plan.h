@@ -40,17 +40,17 @@ public:
     static int pilotOf(int samples);
 
 private:
-    struct Place {
+    struct PixelPlan {
         std::size_t pixel;
         double share;
         std::uint32_t cost;  ///< of a sample, in small whole parts, so that sums are exact
     };
-    void apportion(const std::vector<Place>& places, int even,
+    void apportion(const std::vector<PixelPlan>& places, int even,
                    std::vector<std::uint32_t>& counts) const;
 
     std::size_t pixels_;
     std::uint32_t pilot_;
-    std::vector<Place> colours_[2];
+    std::vector<PixelPlan> colours_[2];
 };
 
 }  // namespace woodcock

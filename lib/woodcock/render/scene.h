@@ -19,11 +19,11 @@ struct Scene {
     LightSet lights;
     Camera camera = {};
     std::shared_ptr<const SurfaceSet> surfaces = {};  ///< null: none
-    std::vector<Medium> interiors =
+    std::vector<Medium> interiorMedia =
         {};  ///< what surfaces hold: SurfaceObject::medium - 1 is the index
-    /// What is run whether or not it is needed: to measure what that costs. See pretend() in
+    /// What is run whether or not it is needed: to measure what that costs. See forceNeed() in
     /// trade/needs_cost.h.
-    Needs pretended = {};
+    Needs forcedNeeds = {};
 
     /// World box of all finite media and surfaces.
     Box3d bounds() const;

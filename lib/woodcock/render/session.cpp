@@ -60,9 +60,9 @@ void add(RenderCounters& a, const RenderCounters& b) {
 void prepare(const Scene& scene, const Approximations& approximations) {
     if (approximations.marchStep == 0) return;
     prepareMarch(scene.medium, marchSettings(approximations));
-    for (const Medium& medium : scene.interiors)
+    for (const Medium& medium : scene.interiorMedia)
         prepareMarch(medium, marchSettings(approximations));
-    for (const StandIns::Set& set : StandIns(scene, approximations).sets)
+    for (const ApproximateMedia::Set& set : ApproximateMedia(scene, approximations).sets)
         for (const Medium& medium : set) prepareMarch(medium, marchSettings(approximations));
 }
 
@@ -82,7 +82,7 @@ public:
           settings_(settings),
           crop_(crop),
           needs_(findNeeds(scene)),
-          standIns_(scene, settings.approximations),
+          approximateMedia_(scene, settings.approximations),
           film_(settings.width, settings.height, crop,
                 {needs_.surfaces, settings.featureLayers, scene.lights.showsBackground()}),
           tiles_(scatteredTiles(crop, tileSize)),
@@ -292,7 +292,7 @@ private:
             scene_, needs_,
             {settings_.width, settings_.height, settings_.seed, settings_.maxScatterings,
              settings_.maxBounces, settings_.approximations, settings_.depthLayers,
-             settings_.featureLayers, &standIns_});
+             settings_.featureLayers, &approximateMedia_});
         if (!tracer->trace(jobs, results, stopping)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);
@@ -313,7 +313,7 @@ private:
     const RenderSettings settings_;
     const Film::Window crop_;
     const Needs needs_;
-    const StandIns standIns_;
+    const ApproximateMedia approximateMedia_;
     Film film_;
     std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
     std::vector<std::uint32_t> counts_;  // and what the pixels have by it

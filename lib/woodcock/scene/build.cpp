@@ -90,7 +90,7 @@ Scene buildScene(const SceneDescription& description, LoadedScene loaded,
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
     return {buildMedium(description, loaded, ""),
             buildLights(description, std::move(loaded.environmentMaps), surfaces), camera,
-            std::move(surfaces.set), std::move(surfaces.interiors)};
+            std::move(surfaces.set), std::move(surfaces.interiorMedia)};
 }
 
 }  // namespace woodcock

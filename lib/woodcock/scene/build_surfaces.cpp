@@ -144,12 +144,12 @@ private:
         if (!surface.name.empty()) medium = buildMedium(description_, loaded_, surface.name);
         if (surface.interior) fill(medium, *surface.interior, index);
         if (!medium.parts.empty() || !medium.emission.empty()) {
-            built_.interiors.push_back(std::move(medium));
-            return static_cast<std::uint32_t>(built_.interiors.size());
+            built_.interiorMedia.push_back(std::move(medium));
+            return static_cast<std::uint32_t>(built_.interiorMedia.size());
         }
         if (vacuum_ == 0) {
-            built_.interiors.emplace_back();
-            vacuum_ = static_cast<std::uint32_t>(built_.interiors.size());
+            built_.interiorMedia.emplace_back();
+            vacuum_ = static_cast<std::uint32_t>(built_.interiorMedia.size());
         }
         return vacuum_;
     }

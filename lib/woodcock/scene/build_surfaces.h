@@ -13,7 +13,7 @@ namespace woodcock {
 
 struct BuiltSurfaces {
     std::shared_ptr<const SurfaceSet> set;  ///< null: none
-    std::vector<Medium> interiors;          ///< as of Scene
+    std::vector<Medium> interiorMedia;      ///< as of Scene
     std::vector<MeshLight::Triangle> emitters;
     MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
 };

@@ -144,7 +144,7 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, const Surfa
     if (left && shape.kind != PreparedShape::Kind::Mesh) {
         if (left->instance == i) {
             leaves = true, outwards = left->normal;
-        } else if (left->together.any) {
+        } else if (left->coincident.any) {
             if (const auto start = passesThrough(*left, i, 0)) {
                 leaves = true;
                 outwards = start->facing == 0  ? start->normal
@@ -180,13 +180,13 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, const Surfa
     if (!t || !(*t < tMax)) return;
     const double slack = slackOf(i, worldRay, ray, *t, point);
     const bool nearer = *t < nearest.t;
-    const bool together =
+    const bool coincident =
         nearest.found && std::abs(*t - nearest.t) <= std::max(slack, nearest.slack);
     if (!nearer) {
-        nearest.together = nearest.together || together;
+        nearest.coincident = nearest.coincident || coincident;
         return;
     }
-    nearest = {true, *t, slack, together || point.together, i, point};
+    nearest = {true, *t, slack, coincident || point.coincident, i, point};
 }
 
 std::optional<MeshPoint> Geometry::Impl::meetMesh(std::uint32_t i, const LocalRay& ray, double tMax,
@@ -194,7 +194,7 @@ std::optional<MeshPoint> Geometry::Impl::meetMesh(std::uint32_t i, const LocalRa
     const FramedMesh& mesh = *shapeOf(i).mesh;
     std::optional<std::uint32_t> triangle;
     if (left && left->instance == i) triangle = left->primitive;
-    if (!left || !left->together.any) return mesh.nearest(ray, tMax, triangle);
+    if (!left || !left->coincident.any) return mesh.nearest(ray, tMax, triangle);
     return mesh.nearest(ray, tMax, triangle, [&](std::uint32_t other) {
         return passesThrough(*left, i, other).has_value();
     });
@@ -238,10 +238,10 @@ void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& wor
         hit.position = world(i, p);
         completeShape(p, hit);
     }
-    hit.together = {};
-    if (!nearest.together) return;
-    hit.together.any = true;
-    hit.together.reach = reach(i, hit.primitive, hit.normal, hit.position);
+    hit.coincident = {};
+    if (!nearest.coincident) return;
+    hit.coincident.any = true;
+    hit.coincident.reach = reach(i, hit.primitive, hit.normal, hit.position);
 }
 
 /// What is no mesh, at a point of its own frame.

@@ -42,11 +42,11 @@ struct SurfaceHit {
         /// How far rounding may have put the point off its own surface: of floats in meshes, of
         /// doubles in transforms. In world units.
         double reach = 0;
-        bool any = false;        ///< other surfaces may lie there: see Geometry::together()
+        bool any = false;  ///< other surfaces may lie there: see Geometry::coincidentSurfaces()
         std::uint8_t layer = 0;  ///< which of them this is
         bool turned = false;     ///< its normal is the opposite one of what was hit
         bool forCamera = false;  ///< as the camera sees them
-    } together = {};
+    } coincident = {};
 };
 
 /// A surface that passes through the place of a hit.
@@ -81,7 +81,7 @@ public:
     /// in the order of instances and primitives: those that pass through its position and have its
     /// normal or the opposite one, as far as rounding can tell. With a normal of length zero, all
     /// that pass through the position, whichever way they face.
-    void together(const SurfaceHit& hit, std::vector<CoincidentSurface>& found) const;
+    void coincidentSurfaces(const SurfaceHit& hit, std::vector<CoincidentSurface>& found) const;
     /// One of them in the hit's stead: what it says of itself, at the hit's position.
     SurfaceHit inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& other) const;
 

@@ -34,7 +34,7 @@ struct NearestSurface {
     bool found = false;
     double t = 0;           ///< of the nearest so far
     double slack = 0;       ///< what rounding may make of t
-    bool together = false;  ///< something else was met within that
+    bool coincident = false;  ///< something else was met within that
     std::uint32_t instance = 0;
     MeshPoint point;  ///< of meshes
 };

@@ -84,12 +84,13 @@ struct NearestTriangle final : TriangleVisitor {
         if (alsoLeft && alsoLeft(index)) return false;
         // An error of the search makes `tolerance`; what rounding makes is in proportion.
         const double thisSlack = 4 * mesh.largestRounding() * point->tolerance / (error * speed);
-        const bool together = found && std::abs(t - nearest.t) <= std::max(slack, thisSlack);
+        const bool coincident = found && std::abs(t - nearest.t) <= std::max(slack, thisSlack);
         if (!(t < nearest.t)) {
-            nearest.together = nearest.together || together;
+            nearest.coincident = nearest.coincident || coincident;
             return false;
         }
-        nearest = {t, index, point->weights, error / point->tolerance * speed, thisSlack, together};
+        nearest = {t,         index,     point->weights, error / point->tolerance * speed,
+                   thisSlack, coincident};
         slack = thisSlack;
         beyond = thisSlack * speed + 3 * EmbreeTree::margin;
         side = thisSide;

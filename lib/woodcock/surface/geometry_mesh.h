@@ -28,7 +28,7 @@ struct MeshPoint {
     std::array<double, 3> weights{};
     double slope = 1;       ///< direction . unit normal, of the side that faces the ray
     double slack = 0;       ///< what rounding of its corners may make of t, at the most
-    bool together = false;  ///< another triangle was met where rounding cannot tell them apart
+    bool coincident = false;  ///< another triangle was met where rounding cannot tell them apart
 };
 
 /// A mesh in a frame of its own, in which floats are as precise as it is large, with its tree.

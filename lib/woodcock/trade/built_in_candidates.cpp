@@ -77,7 +77,7 @@ void addClamps(std::vector<Candidate>& list, const SceneFacts& facts, Extent ext
 SceneFacts sceneFacts(const SceneDescription& description, const Scene& scene) {
     SceneFacts facts;
     std::vector<const Medium*> media{&scene.medium};
-    for (const Medium& medium : scene.interiors) media.push_back(&medium);
+    for (const Medium& medium : scene.interiorMedia) media.push_back(&medium);
     for (const Medium* medium : media)
         for (const MediumPart& part : medium->parts) {
             facts.grids |= part.field() != nullptr;

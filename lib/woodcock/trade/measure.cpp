@@ -40,7 +40,7 @@ std::size_t bytesOf(const Scene& scene) {
         }
     };
     add(scene.medium);
-    for (const Medium& medium : scene.interiors) add(medium);
+    for (const Medium& medium : scene.interiorMedia) add(medium);
     return bytes;
 }
 

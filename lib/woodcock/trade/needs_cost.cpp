@@ -75,19 +75,19 @@ void lengthen(const Scene& scene, RenderSettings& s, double seconds) {
 
 NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double seconds,
                  double precision) {
-    const Scene pretending = pretend(scene, need);
+    const Scene forced = forceNeed(scene, need);
     const double end = wallSeconds() + seconds;
     NeedCost cost{.need = need, .sameBits = true};
     std::vector<double> with, without, ratios, variances;
     Moments difference;
     const std::uint64_t seed = settings.seed;
-    run(pretending, settings);
+    run(forced, settings);
     while (true) {
         settings.seed = seed + static_cast<std::uint64_t>(cost.pairs);
         // A B, B A, A B: what drifts, drifts for both.
         const bool swap = cost.pairs % 2;
-        const Run first = run(swap ? pretending : scene, settings);
-        const Run second = run(swap ? scene : pretending, settings);
+        const Run first = run(swap ? forced : scene, settings);
+        const Run second = run(swap ? scene : forced, settings);
         const Run &a = swap ? second : first, &b = swap ? first : second;
         without.push_back(a.seconds), with.push_back(b.seconds);
         ratios.push_back(b.seconds / a.seconds);
@@ -124,8 +124,8 @@ Measured NeedCost::cost() const {
             std::hypot(ratio.se * variance.value, variance.se * ratio.value)};
 }
 
-Scene pretend(Scene scene, Need need) {
-    scene.pretended.*memberOf(need) = true;
+Scene forceNeed(Scene scene, Need need) {
+    scene.forcedNeeds.*memberOf(need) = true;
     if (need == Need::Surfaces && !scene.surfaces)
         scene.surfaces = std::make_shared<SurfaceSet>(SurfaceSet{Geometry({}, {}), {}, {}, {}});
     return scene;

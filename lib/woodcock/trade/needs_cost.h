@@ -28,7 +28,7 @@ bool has(const Needs& needs, Need need);
 
 /// The scene, to be drawn as if it had a need that it has not: the same picture up to noise, by the
 /// more general way. Grey media as three channels that agree, no surfaces as an empty set of them.
-Scene pretend(Scene scene, Need need);
+Scene forceNeed(Scene scene, Need need);
 
 /// Whether radiance and alpha of two films of equal size agree to the last bit.
 bool sameBits(const Film& a, const Film& b);

@@ -2,33 +2,37 @@
 #include <algorithm>
 #include <limits>
 
-#include "woodcock/render/interiors.h"
+#include "woodcock/render/nested_media.h"
 
-// Surfaces in one place have one answer, whichever of them a ray meets first and however their
-// numbers were rounded:
-//   - of those that light cannot enter, the one of highest rank counts, alone. A sheet with holes
-//     of a higher rank lies before it;
-//   - what light can enter touches its like without a gap: all are crossed at once;
-//   - but from what light cannot enter it is parted by a gap of no width. So a block of glass on a
-//     floor is what it is a hair above it.
-// A path that such a place holds goes from layer to layer, a step of no length each.
+// Surfaces that coincide have one answer. It depends neither on which of them a ray meets first nor
+// on rounding:
+//   - Of opaque surfaces, the one of highest rank counts, alone. A sheet with holes of a higher
+//     rank lies before it.
+//   - Closed surfaces that light can enter touch without a gap: a ray crosses all at once.
+//   - A gap of no width parts them from opaque surfaces. So a block of glass on a floor looks as it
+//     does a hair above the floor.
+// A path goes from layer to layer, by steps of no length.
 
 namespace woodcock {
 
 namespace {
 
-/// Which side of the first normal of the place a surface's inside lies on: behind its own.
+/// On which side of the place's first normal the inside of a surface lies: 1 behind it, -1 before
+/// it.
 double sideOf(const CoincidentSurface& surface, const SurfaceHit& hit) {
-    return hit.together.turned ? -surface.facing : surface.facing;
+    return hit.coincident.turned ? -surface.facing : surface.facing;
 }
 
-Vec3d firstNormal(const SurfaceHit& hit) { return hit.together.turned ? -hit.normal : hit.normal; }
+Vec3d firstNormal(const SurfaceHit& hit) {
+    return hit.coincident.turned ? -hit.normal : hit.normal;
+}
 
 }  // namespace
 
-/// Priority, then what shines towards the side (1: that of the first normal), then what was added
-/// later. A lamp counts least from behind, where it is black.
-Interiors::Rank Interiors::rank(const CoincidentSurface& surface, double side) const {
+/// By priority, then by whether the surface emits towards the side (1: that of the first normal),
+/// then by order: later ones rank higher. An emitter of one side counts least from behind, where it
+/// is black.
+NestedMedia::Rank NestedMedia::rank(const CoincidentSurface& surface, double side) const {
     int light = 1;
     if (const std::uint8_t shines = shines_[surface.object]; shines > 0)
         light = shines == 2 || side > 0 ? 2 : 0;
@@ -36,22 +40,22 @@ Interiors::Rank Interiors::rank(const CoincidentSurface& surface, double side) c
             surface.primitive};
 }
 
-bool Interiors::inLayer(const CoincidentSurface& surface, const SurfaceHit& hit) const {
-    if (hit.together.forCamera && !set_.objects[surface.object].cameraVisible) return false;
+bool NestedMedia::inLayer(const CoincidentSurface& surface, const SurfaceHit& hit) const {
+    if (hit.coincident.forCamera && !set_.objects[surface.object].cameraVisible) return false;
     if (!holds_[surface.object]) return false;
-    if (hit.together.layer == OneBoundary) return true;
-    return (sideOf(surface, hit) > 0) == (hit.together.layer == Back);
+    if (hit.coincident.layer == OneBoundary) return true;
+    return (sideOf(surface, hit) > 0) == (hit.coincident.layer == Back);
 }
 
-bool Interiors::nextLayer(const SurfaceHit& hit, Vec3d direction, const InteriorStack& inside,
-                          bool cameraRay, SurfaceHit& next) const {
-    if (hit.together.layer == OneBoundary || hit.together.layer == FromCamera) return false;
+bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const MediumStack& inside,
+                            bool cameraRay, SurfaceHit& next) const {
+    if (hit.coincident.layer == OneBoundary || hit.coincident.layer == FromCamera) return false;
     std::vector<CoincidentSurface> all;
-    set_.geometry.together(hit, all);
-    if (all.size() < 2 && hit.together.layer == NoLayer &&
+    set_.geometry.coincidentSurfaces(hit, all);
+    if (all.size() < 2 && hit.coincident.layer == NoLayer &&
         !(cameraRay && !object(hit).cameraVisible)) {
         next = hit;  // only neighbours at an edge
-        next.together = {};
+        next.coincident = {};
         return true;
     }
     const bool forward = dot(direction, firstNormal(hit)) < 0;
@@ -97,24 +101,24 @@ bool Interiors::nextLayer(const SurfaceHit& hit, Vec3d direction, const Interior
                 return !parted && (interior[0] || interior[1]);
         }
     };
-    int layer = hit.together.layer;
+    int layer = hit.coincident.layer;
     if (layer == NoLayer && !forward) layer = FromCamera;
     do layer += forward ? 1 : -1;
     while (layer > NoLayer && layer < FromCamera && !exists(layer));
     if (layer <= NoLayer || layer >= FromCamera) return false;
 
     SurfaceHit place = hit;
-    place.together.layer = static_cast<std::uint8_t>(layer);
-    place.together.forCamera = cameraRay;
+    place.coincident.layer = static_cast<std::uint8_t>(layer);
+    place.coincident.forCamera = cameraRay;
     const CoincidentSurface* counts = nullptr;
     if (layer == Solid || layer == FrontSheet || layer == BackSheet) {
         // A sheet alone may be met from behind.
         const std::size_t seenFrom = layer == BackSheet || (layer == Solid && !forward);
         counts = (layer == Solid ? solid : sheet)[seenFrom].surface;
     } else {
-        // The face of what fills the place on either side; of both, the higher one's, but that of
-        // glass before that of a mere interface, or fog on glass would take its reflections away.
-        InteriorStack near = inside, beyond = inside;
+        // The face of the medium that counts on either side. Of two, that of higher rank; but glass
+        // goes before a mere interface, or fog on glass would take its reflections away.
+        MediumStack near = inside, beyond = inside;
         crossLayer(place, all, direction, near, beyond);
         const std::uint32_t from = filling(near), to = filling(beyond);
         for (const CoincidentSurface& s : all) {
@@ -133,17 +137,17 @@ bool Interiors::nextLayer(const SurfaceHit& hit, Vec3d direction, const Interior
     return true;
 }
 
-void Interiors::crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurface> surfaces,
-                           Vec3d direction, InteriorStack& near, InteriorStack& beyond) const {
+void NestedMedia::crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurface> surfaces,
+                             Vec3d direction, MediumStack& near, MediumStack& beyond) const {
     const bool forward = dot(direction, firstNormal(hit)) < 0;
     for (std::size_t i = 0; i < surfaces.size();) {
-        // Faces of one body that lie back to back cancel; of the same way, they are one.
+        // Faces of one body that lie back to back cancel. Those that face the same way are one.
         const std::uint32_t instance = surfaces[i].instance;
         int outwards = 0;
         for (; i < surfaces.size() && surfaces[i].instance == instance; ++i)
             if (inLayer(surfaces[i], hit)) outwards += sideOf(surfaces[i], hit) > 0 ? 1 : -1;
         if (outwards == 0) continue;
-        // On either side as if it were just entered or left, wherever the stack believes to be.
+        // As if the ray just entered or left it, whatever the stack says.
         if ((outwards > 0) == forward)
             near.leave(instance), beyond.enter(instance);
         else
@@ -151,22 +155,22 @@ void Interiors::crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurf
     }
 }
 
-bool Interiors::startsOn(const SurfaceHit& hit, std::uint32_t emitter) const {
+bool NestedMedia::startsOn(const SurfaceHit& hit, std::uint32_t emitter) const {
     if (emitter == SurfaceObject::dark) return false;
-    if (!hit.together.any) return this->emitter(hit) == emitter;
+    if (!hit.coincident.any) return this->emitter(hit) == emitter;
     std::vector<CoincidentSurface> all;
-    set_.geometry.together(hit, all);
+    set_.geometry.coincidentSurfaces(hit, all);
     return std::any_of(all.begin(), all.end(), [&](const CoincidentSurface& s) {
         const std::uint32_t first = set_.firstEmitter[s.instance];
         return first != SurfaceObject::dark && first + s.primitive == emitter;
     });
 }
 
-Interiors::Start Interiors::around(Vec3d position) const {
-    Start start{position, {}, {}};
+NestedMedia::CameraPosition NestedMedia::cameraPosition(Vec3d position) const {
+    CameraPosition start{position, {}, {}};
     SurfaceHit place;
     place.position = position;
-    set_.geometry.together(place, start.touched);
+    set_.geometry.coincidentSurfaces(place, start.touched);
     if (!anyHolds_) return start;
     const auto touched = [&](std::uint32_t instance) {
         return std::any_of(start.touched.begin(), start.touched.end(),
@@ -177,8 +181,8 @@ Interiors::Start Interiors::around(Vec3d position) const {
     return start;
 }
 
-Interiors::Place Interiors::place(const Start& start, Vec3d direction) const {
-    Place place{start.inside, {}};
+NestedMedia::RayStart NestedMedia::rayStart(const CameraPosition& start, Vec3d direction) const {
+    RayStart place{start.inside, {}};
     if (start.touched.empty()) return place;
     for (std::size_t i = 0; i < start.touched.size();) {
         const std::uint32_t instance = start.touched[i].instance;
@@ -191,8 +195,8 @@ Interiors::Place Interiors::place(const Start& start, Vec3d direction) const {
     place.left.emplace();
     place.left->position = start.position;
     place.left->instance = std::numeric_limits<std::uint32_t>::max();
-    place.left->together.any = true;
-    place.left->together.layer = FromCamera;
+    place.left->coincident.any = true;
+    place.left->coincident.layer = FromCamera;
     return place;
 }
 

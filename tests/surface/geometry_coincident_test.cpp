@@ -18,7 +18,7 @@ Shape box(Vec3d lower, Vec3d upper) {
 
 std::vector<CoincidentSurface> togetherAt(const Geometry& geometry, const SurfaceHit& hit) {
     std::vector<CoincidentSurface> found;
-    geometry.together(hit, found);
+    geometry.coincidentSurfaces(hit, found);
     return found;
 }
 
@@ -46,7 +46,7 @@ TEST_P(SameBody, IsFoundWholeByEveryRayAndLeftAtOnce) {
         SurfaceHit hit, next;
         Vec3d direction = normalize(to - from);
         ASSERT_TRUE(geometry.intersect(from, direction, infinity, nullptr, hit));
-        ASSERT_TRUE(hit.together.any);
+        ASSERT_TRUE(hit.coincident.any);
         const std::vector<CoincidentSurface> outside = togetherAt(geometry, hit);
         // Beside an edge it may be the body's neighbouring face of which one more is found.
         if (outside.size() != 3) continue;
@@ -55,7 +55,7 @@ TEST_P(SameBody, IsFoundWholeByEveryRayAndLeftAtOnce) {
         EXPECT_GT(next.t, 1e-3 * scale) << "the same place again";
         if (next.object < 3) continue;
         ++inner;
-        ASSERT_TRUE(next.together.any);
+        ASSERT_TRUE(next.coincident.any);
         const std::vector<CoincidentSurface> ball = togetherAt(geometry, next);
         ASSERT_EQ(ball.size(), 2U);
         EXPECT_EQ(ball[0].object, 3U);
@@ -69,7 +69,7 @@ TEST_P(SameBody, IsFoundWholeByEveryRayAndLeftAtOnce) {
         const Vec3d back = -direction;
         ASSERT_TRUE(geometry.intersect(next.position, back, infinity, &next, hit));
         EXPECT_LT(hit.object, 3U);
-        EXPECT_TRUE(hit.together.any);
+        EXPECT_TRUE(hit.coincident.any);
     }
     EXPECT_GT(outer, 19000);
     EXPECT_GT(inner, 1000);
@@ -86,7 +86,7 @@ TEST(Together, AGapThatFloatsCanTellIsAGap) {
     SurfaceHit hit, next;
     ASSERT_TRUE(geometry.intersect({0.1, 0.5, 0.2}, {0, -1, 0}, infinity, nullptr, hit));
     EXPECT_EQ(hit.object, 0U);
-    EXPECT_FALSE(hit.together.any && togetherAt(geometry, hit).size() > 1);
+    EXPECT_FALSE(hit.coincident.any && togetherAt(geometry, hit).size() > 1);
     ASSERT_TRUE(geometry.intersect(hit.position, {0, -1, 0}, infinity, &hit, next));
     EXPECT_EQ(next.object, 1U);
     EXPECT_NEAR(next.t, 1e-6, 1e-12);
@@ -98,7 +98,7 @@ TEST(Together, OnlyWhereBothAre) {
     for (const double x : {-0.5, 0.1, 0.5}) {
         SurfaceHit hit;
         ASSERT_TRUE(geometry.intersect({x, -1, 0.3}, {0, 1, 0}, infinity, nullptr, hit));
-        const std::size_t count = hit.together.any ? togetherAt(geometry, hit).size() : 1;
+        const std::size_t count = hit.coincident.any ? togetherAt(geometry, hit).size() : 1;
         EXPECT_EQ(count, x == 0.1 ? 2U : 1U) << x;
     }
 }
@@ -108,7 +108,7 @@ TEST(Together, FacesKnowWhichWayTheyLook) {
                             {{0, 0, Affine3d{}}, {0, 1, Affine3d::translate({1, 0, 0})}});
     SurfaceHit hit;
     ASSERT_TRUE(geometry.intersect({0.5, 0.3, 0.6}, {1, 0, 0}, infinity, nullptr, hit));
-    ASSERT_TRUE(hit.together.any);
+    ASSERT_TRUE(hit.coincident.any);
     const std::vector<CoincidentSurface> faces = togetherAt(geometry, hit);
     ASSERT_EQ(faces.size(), 2U);
     EXPECT_EQ(faces[0].normal.x, 1);

@@ -75,7 +75,7 @@ std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit&
     const Vec3d normal = gradient * (1 / perUnit);
     if (!isFinite(normal)) return std::nullopt;  // a triangle without area
     if (!(std::abs(height) / perUnit <=
-          hit.together.reach + reach(i, primitive, normal, hit.position)))
+          hit.coincident.reach + reach(i, primitive, normal, hit.position)))
         return std::nullopt;
     const double facing = dot(normal, hit.normal);
     if (dot(hit.normal, hit.normal) > 0 && !(facing * facing >= 1 - parallel * parallel))
@@ -92,7 +92,8 @@ std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit&
     return CoincidentSurface{i, instances[i].object, primitive, facing, normal};
 }
 
-void Geometry::together(const SurfaceHit& hit, std::vector<CoincidentSurface>& found) const {
+void Geometry::coincidentSurfaces(const SurfaceHit& hit,
+                                  std::vector<CoincidentSurface>& found) const {
     found.clear();
     const Impl& impl = *impl_;
     const auto add = [&](std::uint32_t i, std::uint32_t primitive) {
@@ -100,7 +101,7 @@ void Geometry::together(const SurfaceHit& hit, std::vector<CoincidentSurface>& f
     };
     for (const std::uint32_t plane : impl.planes) add(plane, 0);
     if (impl.tree)
-        impl.tree.around(impl.frame.point(hit.position), hit.together.reach * impl.frame.scale,
+        impl.tree.around(impl.frame.point(hit.position), hit.coincident.reach * impl.frame.scale,
                          [&](std::uint32_t box) {
                              const std::uint32_t i = impl.finite[box];
                              if (!impl.shapeOf(i).mesh) return add(i, 0);
@@ -108,7 +109,7 @@ void Geometry::together(const SurfaceHit& hit, std::vector<CoincidentSurface>& f
                              const Columns& m = impl.localOfWorld[i];
                              const double stretch = length(m[0]) + length(m[1]) + length(m[2]);
                              const FramedMesh& mesh = *impl.shapeOf(i).mesh;
-                             mesh.around(p, stretch * hit.together.reach,
+                             mesh.around(p, stretch * hit.coincident.reach,
                                          [&](std::uint32_t triangle) { add(i, triangle); });
                          });
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
@@ -142,7 +143,7 @@ SurfaceHit Geometry::inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& o
     const Vec3d shading = own.shadingNormal;
     own.normal = turned ? -hit.normal : hit.normal;
     if (!(dot(shading, own.normal) > 0)) own.shadingNormal = own.normal;
-    own.together.turned = hit.together.turned != turned;
+    own.coincident.turned = hit.coincident.turned != turned;
     return own;
 }
 

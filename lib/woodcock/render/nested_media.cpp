@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/render/interiors.h"
+#include "woodcock/render/nested_media.h"
 
 #include <algorithm>
 #include <tuple>
@@ -8,21 +8,22 @@
 
 namespace woodcock {
 
-void InteriorStack::enter(std::uint32_t instance) {
+void MediumStack::enter(std::uint32_t instance) {
     const auto end = instances_.begin() + count_;
     if (std::find(instances_.begin(), end, instance) != end) return;
     if (count_ == capacity)
         throw inputError(
-            "more than {} closed surfaces of glass or interfaces overlap at one place; so many "
-            "cannot be told apart",
+            "more than {} closed surfaces (glass, interfaces) overlap at one point; let fewer of "
+            "them "
+            "overlap",
             capacity);
     instances_[count_++] = instance;
 }
 
-void InteriorStack::leave(std::uint32_t instance) {
+void MediumStack::leave(std::uint32_t instance) {
     const auto end = instances_.begin() + count_;
     const auto found = std::find(instances_.begin(), end, instance);
-    if (found == end) return;  // it started inside, or is one-sided by rounding
+    if (found == end) return;  // the path started inside, or rounding hid the entry
     *found = instances_[--count_];
 }
 
@@ -44,7 +45,7 @@ bool hasHoles(std::span<const Material> materials, std::uint32_t index) {
 
 }  // namespace
 
-Interiors::Interiors(const Scene& scene)
+NestedMedia::NestedMedia(const Scene& scene)
     : set_(*scene.surfaces), holds_(scene.surfaces->holdsMedium()) {
     for (const SurfaceObject& object : set_.objects) {
         anyHolds_ |= object.holdsMedium;
@@ -54,7 +55,7 @@ Interiors::Interiors(const Scene& scene)
     }
 }
 
-std::uint32_t Interiors::filling(const InteriorStack& inside) const {
+std::uint32_t NestedMedia::filling(const MediumStack& inside) const {
     std::uint32_t best = outside;
     for (const std::uint32_t instance : inside.instances()) {
         const auto rank = [&](std::uint32_t i) {
@@ -66,32 +67,32 @@ std::uint32_t Interiors::filling(const InteriorStack& inside) const {
     return best;
 }
 
-double Interiors::ior(std::uint32_t instance) const {
+double NestedMedia::ior(std::uint32_t instance) const {
     return instance == outside ? 1 : objectOf(instance).ior;
 }
 
-std::uint32_t Interiors::medium(const InteriorStack& inside) const {
+std::uint32_t NestedMedia::medium(const MediumStack& inside) const {
     const std::uint32_t instance = filling(inside);
     return instance == outside ? 0 : objectOf(instance).medium;
 }
 
-Crossing Interiors::cross(const InteriorStack& inside, Vec3d direction,
-                          const SurfaceHit& hit) const {
+Crossing NestedMedia::cross(const MediumStack& inside, Vec3d direction,
+                            const SurfaceHit& hit) const {
     const bool holds = holds_[hit.object];
     const bool entering = dot(direction, hit.normal) < 0;
-    InteriorStack near = inside, beyond = inside;
+    MediumStack near = inside, beyond = inside;
     BsdfPoint point{hit.normal, hit.shadingNormal, hit.u, hit.v, 1, 1};
     bool hidden = false;
-    if (holds && hit.together.any) {
+    if (holds && hit.coincident.any) {
         std::vector<CoincidentSurface> surfaces;
-        set_.geometry.together(hit, surfaces);
+        set_.geometry.coincidentSurfaces(hit, surfaces);
         crossLayer(hit, surfaces, direction, near, beyond);
         const std::uint32_t from = filling(near), to = filling(beyond);
         hidden = from == to;
         point.iorOutside = ior(entering ? from : to);
         point.iorInside = ior(entering ? to : from);
     } else if (holds) {
-        // On either side as if it were just entered or left, wherever the stack believes to be.
+        // As if the ray just entered or left it, whatever the stack says.
         if (entering)
             near.leave(hit.instance), beyond.enter(hit.instance);
         else
@@ -101,7 +102,7 @@ Crossing Interiors::cross(const InteriorStack& inside, Vec3d direction,
         point.iorOutside = ior(entering ? from : to);
         point.iorInside = ior(entering ? to : from);
     } else if (!inside.empty()) {
-        // An opaque thing in water: no light gets through, whatever the index.
+        // An opaque surface in water: no light gets through, whatever its index.
         point.iorOutside = point.iorInside = ior(filling(inside));
     }
     Bsdf bsdf(set_.materials, objectOf(hit.instance).material, point);
@@ -109,15 +110,15 @@ Crossing Interiors::cross(const InteriorStack& inside, Vec3d direction,
     return {near, beyond, std::move(bsdf), passes};
 }
 
-bool Interiors::nearest(Vec3d origin, Vec3d direction, double tMax, const Place& start,
-                        bool cameraRay, SurfaceHit& hit) const {
+bool NestedMedia::nearest(Vec3d origin, Vec3d direction, double tMax, const RayStart& start,
+                          bool cameraRay, SurfaceHit& hit) const {
     const SurfaceHit* left = start.left ? &*start.left : nullptr;
-    if (left && left->together.any && nextLayer(*left, direction, start.inside, cameraRay, hit))
+    if (left && left->coincident.any && nextLayer(*left, direction, start.inside, cameraRay, hit))
         return hit.t < tMax;
     if (!set_.geometry.intersect(origin, direction, tMax, left, hit)) return false;
     double travelled = 0;
     while (true) {
-        if (hit.together.any) {
+        if (hit.coincident.any) {
             const SurfaceHit place = hit;
             if (nextLayer(place, direction, start.inside, cameraRay, hit)) {
                 hit.t = place.t;

@@ -13,9 +13,9 @@
 
 namespace woodcock {
 
-/// The closed surfaces that a path is inside of, by instance. The one of highest priority fills the
-/// place: Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
-class InteriorStack {
+/// The closed surfaces that a path is inside of, by instance. The one of highest priority decides
+/// which medium is there: Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
+class MediumStack {
 public:
     static constexpr std::size_t capacity = 14;
 
@@ -32,39 +32,42 @@ private:
 
 /// What a ray meets where it hits a surface.
 struct Crossing {
-    InteriorStack near;    ///< what it is inside of before it is through
-    InteriorStack beyond;  ///< and after
+    MediumStack near;    ///< what the ray is inside of before the surface
+    MediumStack beyond;  ///< and behind it
     Bsdf bsdf;
     /// Light goes on unchanged: an interface, equal indices of refraction, or a surface within
     /// another one of higher priority.
     bool passes;
 };
 
-/// The surfaces of a scene and what they hold, as paths ask for them.
-class Interiors {
+/// The surfaces of a scene, and the media inside of them. Where closed surfaces overlap, their
+/// priorities say which medium a place has.
+class NestedMedia {
 public:
     /// `scene` must have surfaces, and outlive this.
-    explicit Interiors(const Scene& scene);
+    explicit NestedMedia(const Scene& scene);
 
     /// Where a ray starts.
-    struct Place {
-        InteriorStack inside = {};
+    struct RayStart {
+        MediumStack inside = {};
         std::optional<SurfaceHit> left = {};  ///< the surface that it starts on
     };
 
-    /// Whatever a camera ray starts on, and is inside of whichever way it goes.
-    struct Start {
+    /// A point from which camera rays start: what encloses it, and which surfaces it lies on.
+    struct CameraPosition {
         Vec3d position;
-        InteriorStack inside;
+        MediumStack inside;
         std::vector<CoincidentSurface> touched;
     };
-    Start around(Vec3d position) const;
-    /// Where a ray starts there: on a surface, it is where it is going.
-    Place place(const Start& start, Vec3d direction) const;
+    CameraPosition cameraPosition(Vec3d position) const;
+    /// The start of a ray from there. A ray that starts on a surface is inside of it if it goes
+    /// inwards.
+    RayStart rayStart(const CameraPosition& start, Vec3d direction) const;
 
-    /// Index of the medium that fills the place: 0 is outside, others are interiors[index - 1].
-    std::uint32_t medium(const InteriorStack& inside) const;
-    Crossing cross(const InteriorStack& inside, Vec3d direction, const SurfaceHit& hit) const;
+    /// Index of the medium that counts: 0 is the scene's own, others are
+    /// Scene::interiorMedia[index - 1].
+    std::uint32_t medium(const MediumStack& inside) const;
+    Crossing cross(const MediumStack& inside, Vec3d direction, const SurfaceHit& hit) const;
 
     const SurfaceObject& object(const SurfaceHit& hit) const { return set_.objects[hit.object]; }
     /// The hit's triangle in the scene's MeshLight, or SurfaceObject::dark.
@@ -74,39 +77,41 @@ public:
     }
     /// Whether this emitter is the hit's triangle, or lies in the same place.
     bool startsOn(const SurfaceHit& hit, std::uint32_t emitter) const;
-    /// The nearest hit; camera rays go through what is invisible to them. Of surfaces in one place,
-    /// the next layer: see interiors_together.cpp.
-    bool nearest(Vec3d origin, Vec3d direction, double tMax, const Place& start, bool cameraRay,
+    /// The nearest hit before `tMax` (world units); false: none. Camera rays go through what is
+    /// invisible to them. Where surfaces coincide it is the next layer of them: see
+    /// coincident_surfaces.cpp.
+    bool nearest(Vec3d origin, Vec3d direction, double tMax, const RayStart& start, bool cameraRay,
                  SurfaceHit& hit) const;
 
 private:
     static constexpr std::uint32_t outside = 0xffffffffu;
 
-    /// Surfaces in one place, from the side that the hit's own normal points to on. What light may
-    /// be inside of ends before what it cannot enter; all such are one boundary.
+    /// The layers of surfaces that coincide, beginning at the side to which the hit's own normal
+    /// points. Closed surfaces that light can enter end before those that it cannot enter. All
+    /// that it can enter are one boundary.
     enum Layer : std::uint8_t {
-        NoLayer,      ///< comes from elsewhere
-        Front,        ///< interiors on this side
-        FrontSheet,   ///< with holes
-        Solid,        ///< ends the light's way
+        NoLayer,      ///< the ray comes from elsewhere
+        Front,        ///< closed surfaces on this side
+        FrontSheet,   ///< an opaque surface with holes
+        Solid,        ///< an opaque surface
         BackSheet,    ///< the sheet again, for light from the other side
-        Back,         ///< interiors on the other side
-        OneBoundary,  ///< all interiors, where nothing stands between them
-        FromCamera    ///< none: the place of a camera
+        Back,         ///< closed surfaces on the other side
+        OneBoundary,  ///< all closed surfaces, where nothing opaque lies between them
+        FromCamera    ///< none: the ray starts at a camera
     };
-    /// What decides among surfaces in one place, the larger counts.
+    /// What decides among surfaces that coincide: the larger rank counts.
     using Rank = std::tuple<int, int, std::uint32_t, std::uint32_t, std::uint32_t>;
     Rank rank(const CoincidentSurface& surface, double side) const;
     bool inLayer(const CoincidentSurface& surface, const SurfaceHit& hit) const;
-    /// The first layer beyond `hit`, which may be one itself, in a direction; false: there is none.
-    bool nextLayer(const SurfaceHit& hit, Vec3d direction, const InteriorStack& inside,
+    /// The first layer beyond `hit` in a direction; `hit` may be a layer itself. False: none.
+    bool nextLayer(const SurfaceHit& hit, Vec3d direction, const MediumStack& inside,
                    bool cameraRay, SurfaceHit& next) const;
-    /// What crossing all interiors of a layer leaves and enters.
+    /// Leaves and enters what a ray crosses with all closed surfaces of a layer.
     void crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurface> surfaces,
-                    Vec3d direction, InteriorStack& near, InteriorStack& beyond) const;
+                    Vec3d direction, MediumStack& near, MediumStack& beyond) const;
 
-    /// The instance that fills the place, or `outside`.
-    std::uint32_t filling(const InteriorStack& inside) const;
+    /// The instance of highest priority, or `outside`.
+    std::uint32_t filling(const MediumStack& inside) const;
     double ior(std::uint32_t instance) const;
     const SurfaceObject& objectOf(std::uint32_t instance) const {
         return set_.objects[set_.geometry.instances()[instance].object];

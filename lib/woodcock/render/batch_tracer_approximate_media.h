@@ -12,11 +12,11 @@ template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::gatherMedia() {
     std::vector<const Medium*> own{&scene_.medium};
     if constexpr (Surfaces)
-        for (const Medium& medium : scene_.interiors) own.push_back(&medium);
+        for (const Medium& medium : scene_.interiorMedia) own.push_back(&medium);
     for (const Medium* medium : own) media_.emplace_back(*medium);
-    standsIn_ = options_.standIns && !options_.standIns->sets.empty();
-    if (!standsIn_) return;
-    for (const StandIns::Set& set : options_.standIns->sets)
+    replacesMedia_ = options_.approximateMedia && !options_.approximateMedia->sets.empty();
+    if (!replacesMedia_) return;
+    for (const ApproximateMedia::Set& set : options_.approximateMedia->sets)
         for (std::size_t i = 0; i < own.size(); ++i) media_.emplace_back(set[i], *own[i]);
     bool flightsMeetLight = Surfaces || needs_.emission;
     for (const Light& light : scene_.lights.lights()) {
@@ -27,36 +27,36 @@ void BatchTracer<N, Surfaces>::gatherMedia() {
 }
 
 template <int N, bool Surfaces>
-void BatchTracer<N, Surfaces>::gatherStandIns() {
-    if (!Surfaces && standsIn_)
-        std::partition(paths_.begin(), paths_.end(), [](const Path& p) { return p.standIn > 0; });
+void BatchTracer<N, Surfaces>::sortByMediumSet() {
+    if (!Surfaces && replacesMedia_)
+        std::partition(paths_.begin(), paths_.end(), [](const Path& p) { return p.mediumSet > 0; });
 }
 
 template <int N, bool Surfaces>
 template <class Items, class F>
 void BatchTracer<N, Surfaces>::forRuns(const Items& items, F&& f) const {
-    if (!standsIn_) {
+    if (!replacesMedia_) {
         f(media_[0], std::size_t{0}, items.size());
         return;
     }
     for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
-        const std::uint8_t standIn = items[first].standIn;
-        while (end < items.size() && items[end].standIn == standIn) ++end;
-        f(media_[standIn], first, end - first);
+        const std::uint8_t mediumSet = items[first].mediumSet;
+        while (end < items.size() && items[end].mediumSet == mediumSet) ++end;
+        f(media_[mediumSet], first, end - first);
     }
 }
 
 template <int N, bool Surfaces>
-std::uint8_t BatchTracer<N, Surfaces>::standInAfter(std::int64_t scatterings) const {
+std::uint8_t BatchTracer<N, Surfaces>::mediumSetAfter(std::int64_t scatterings) const {
     const auto& after = options_.approximations.similarityAfter;
     return after && scatterings >= *after ? 1 : 0;
 }
 
 template <int N, bool Surfaces>
-std::uint32_t BatchTracer<N, Surfaces>::mediumIndex(std::uint8_t standIn,
-                                                    const InteriorStack& inside) const {
-    const auto setSize = static_cast<std::uint32_t>(1 + scene_.interiors.size());
-    return standIn * setSize + interiors_->medium(inside);
+std::uint32_t BatchTracer<N, Surfaces>::mediumIndex(std::uint8_t mediumSet,
+                                                    const MediumStack& inside) const {
+    const auto setSize = static_cast<std::uint32_t>(1 + scene_.interiorMedia.size());
+    return mediumSet * setSize + nestedMedia_->medium(inside);
 }
 
 /// With octaves, one of them by chance, in proportion to its amount: light of octave i is a^i x
@@ -65,15 +65,15 @@ std::uint32_t BatchTracer<N, Surfaces>::mediumIndex(std::uint8_t standIn,
 template <int N, bool Surfaces>
 auto BatchTracer<N, Surfaces>::onwardFrom(Path& p) const -> Onward {
     const int octaves = options_.approximations.octaves;
-    if (octaves == 0) return {standInAfter(p.scatterings + 1)};
+    if (octaves == 0) return {mediumSetAfter(p.scatterings + 1)};
     const int i = octave::draw(octaves, p.random.uniform());
     return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};
 }
 
 template <int N, bool Surfaces>
-double BatchTracer<N, Surfaces>::enterStandIn(Path& p) const {
+double BatchTracer<N, Surfaces>::enterMediumSet(Path& p) const {
     const Onward onward = onwardFrom(p);
-    p.standIn = onward.standIn;
+    p.mediumSet = onward.mediumSet;
     p.throughput *= static_cast<float>(onward.amount);
     return onward.phase;
 }
