@@ -147,7 +147,7 @@ defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
 
 defect "shadow rays see the outside's medium alone" 'SurfaceLayers*' "media inside surfaces" \
     $surfaces \
-    'mediumIndex(shadow.standIn, place.inside)' 'shadow.standIn'
+    'mediumIndex(shadow.mediumSet, place.inside)' 'shadow.mediumSet'
 
 defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
     lib/woodcock/render/nested_media.cpp \
@@ -155,7 +155,7 @@ defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
 
 defect "refracted light stays in the medium it came from" 'SurfaceLayers*' "plates of glass" \
     $surfaces \
-    'if (b.transmitted) s.place.inside = crossing.beyond;' ''
+    'if (b.transmitted) s.start.inside = crossing.beyond;' ''
 
 defect "lamps with a shape counted in full by both samplings" 'SurfaceLayers*' "emissive surfaces" \
     $surfaces \
@@ -212,7 +212,7 @@ defect "facets hidden from one side alone" 'Bsdf*:Ggx*' "" \
 
 defect "surfaces in one place met one by one" 'Together*:*SameBody*' "surfaces in one place" \
     lib/woodcock/surface/geometry.cpp \
-    'slack, together || point.together, i, point}' 'slack, false, i, point}'
+    'slack, coincident || point.coincident, i, point}' 'slack, false, i, point}'
 
 defect "what facets hide lost again" 'Bsdf*' "rough facets" \
     $bsdf \
