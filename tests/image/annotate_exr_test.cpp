@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/image/annotate_exr.h"
+#include "woodcock/image/write_exr.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "woodcock/proof/support/plain_grid.h"
-#include "woodcock/medium/blackbody_field.h"
 
 namespace woodcock::test {
 namespace {

@@ -10,7 +10,7 @@
 #include "build_commit.h"
 #include "build_facts.h"
 #include "woodcock/base/version.h"
-#include "woodcock/image/image_libraries.h"
+#include "woodcock/image/image_format.h"
 
 namespace woodcock::tool {
 

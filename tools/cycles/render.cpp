@@ -15,7 +15,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
-#include "woodcock/image/annotate_exr.h"
+#include "woodcock/image/write_exr.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock {

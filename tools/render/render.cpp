@@ -24,7 +24,7 @@
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
-#include "woodcock/render/needs_text.h"
+#include "woodcock/render/needs.h"
 #include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"

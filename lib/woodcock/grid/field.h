@@ -10,7 +10,6 @@
 #include "woodcock/base/vec.h"
 #include "woodcock/grid/block_table.h"
 #include "woodcock/grid/field_source.h"
-#include "woodcock/grid/fixed_scale.h"
 #include "woodcock/grid/half.h"
 
 namespace woodcock {
@@ -20,6 +19,25 @@ struct Range {
     float min = 0, max = 0;
     void add(Range r) { min = std::min(min, r.min), max = std::max(max, r.max); }
     bool operator==(const Range&) const = default;
+};
+
+/// The values that the voxels of one brick can have in fixed storage: low + step x code, for codes
+/// from 0 to `last`.
+struct FixedScale {
+    float low = 0, step = 0;
+
+    /// For values from `min` to `max`, range = max - min.
+    /// Where their signs agree, `min` is one of the values and none is above `max`. The error is
+    /// at most half of range / last, up to the rounding of floats.
+    /// Where their signs differ, zero is one of the values. The error is at most half of
+    /// 1.01 range / (last - 1), and values may lie outside by as much.
+    /// Below 1e-38 floats are too coarse for these bounds.
+    /// Throws Error{Input} where signs differ and `last` steps are more than a float holds.
+    static FixedScale of(float min, float max, unsigned last);
+
+    float value(unsigned code) const { return low + step * static_cast<float>(code); }
+    /// Of the value nearest to `v`.
+    unsigned code(float v, unsigned last) const;
 };
 
 /// A sparse grid made for reading: 8x8x8 bricks in flat memory, found in O(1). Values sit at

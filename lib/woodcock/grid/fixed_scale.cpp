@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/grid/fixed_scale.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/field.h"
 
 namespace woodcock {
 

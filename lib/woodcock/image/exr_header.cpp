@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/image/exr_header.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>

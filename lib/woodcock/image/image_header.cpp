@@ -10,7 +10,6 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
-#include "woodcock/image/exr_header.h"
 
 namespace woodcock {
 

@@ -21,4 +21,10 @@ std::string checkImageHeader(const RegularFile& file, const std::filesystem::pat
 void requirePlausible(const RegularFile& file, double width, double height, double pixelBytes,
                       double bestRatio);
 
+/// Walks the header of an OpenEXR file within the file's bounds, before OpenEXR allocates what it
+/// claims: attributes must fit the file, the table of chunks too, and the pixels must be what so
+/// many bytes can hold at the best ratio of their compression. Deep pixels are refused.
+/// Throws Error{Input}.
+void checkExrHeader(const RegularFile& file);
+
 }  // namespace woodcock

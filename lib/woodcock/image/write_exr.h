@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "woodcock/image/chromaticities.h"
+#include "woodcock/image/encode_image.h"
 #include "woodcock/image/film.h"
 
 namespace woodcock {
@@ -44,12 +46,18 @@ struct ExrSettings {
     std::optional<Chromaticities> chromaticities;  ///< of the working space, where it is known
 };
 
-/// Writes the film's means, premultiplied by alpha, with the crop as data window. Whole or not at
-/// all; throws Error{Failure}.
 /// Bytes of a pixel that writeExr() takes while it works: as floats, and as the file holds it.
 double exrBytesPerPixel(const ExrSettings& settings);
 
+/// Writes the film's means, premultiplied by alpha, with the crop as data window. Whole or not at
+/// all; throws Error{Failure}.
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
               const ExrSettings& settings);
+
+/// Writes the image `from`, of flat pixels in any format that is read, as an EXR of floats. It has
+/// the same channels, and these attributes in place of its own. Whole or not at all. Throws
+/// Error{Input} where `from` cannot be read, Error{Failure} where `to` cannot be written.
+void annotateExr(const std::filesystem::path& from, const std::filesystem::path& to,
+                 const std::vector<std::pair<std::string, ImageAttribute>>& attributes);
 
 }  // namespace woodcock

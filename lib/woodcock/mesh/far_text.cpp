@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/mesh/far_text.h"
+#include "woodcock/mesh/mesh_formats.h"
 
 #include <array>
 #include <charconv>

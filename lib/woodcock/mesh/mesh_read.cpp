@@ -11,9 +11,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
-#include "woodcock/mesh/far_text.h"
-#include "woodcock/mesh/gltf_check.h"
-#include "woodcock/mesh/ply_mesh.h"
+#include "woodcock/mesh/mesh_formats.h"
 #include "woodcock/mesh/polygon.h"
 #include "woodcock/mesh/surface_mesh.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/mesh/ply_mesh.h"
+#include "woodcock/mesh/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
-#include "woodcock/render/needs_text.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock {

@@ -9,7 +9,7 @@
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/image/read_image.h"
-#include "woodcock/medium/blackbody_field.h"
+#include "woodcock/medium/blackbody.h"
 #include "woodcock/scene/load_albedo.h"
 #include "woodcock/scene/load_textures.h"
 

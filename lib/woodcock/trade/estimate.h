@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "woodcock/trade/measured.h"
+#include "woodcock/trade/timing.h"
 
 namespace woodcock {
 

@@ -8,7 +8,7 @@
 #include "woodcock/bake/baker.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/vdb/load_field.h"
-#include "woodcock/grid/vdb/read_by_openvdb.h"
+#include "woodcock/grid/vdb/read_voxels.h"
 #include "woodcock/medium/optical_depth.h"
 
 namespace woodcock {

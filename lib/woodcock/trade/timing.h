@@ -3,9 +3,12 @@
 
 #include <vector>
 
-#include "woodcock/trade/measured.h"
-
 namespace woodcock {
+
+/// A number and its standard error.
+struct Measured {
+    double value = 0, se = 0;
+};
 
 /// Processor seconds that all threads of this process have taken so far. Unlike the wall clock's,
 /// they say the same beside other programs, but for what those do to caches and clock rates.

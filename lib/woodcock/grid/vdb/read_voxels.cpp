@@ -271,4 +271,16 @@ GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair
     return source;
 }
 
+VdbPeer readByOpenVdb(const std::filesystem::path& file, const std::string& grid) {
+    try {
+        openvdb::initialize();
+        openvdb::io::File in(file.string());
+        in.open(/*delayLoad=*/false);
+        const openvdb::GridBase::Ptr read = in.readGrid(grid);
+        return {read->activeVoxelCount(), read->memUsage()};
+    } catch (const openvdb::Exception& e) {
+        throw inputError("{}: OpenVDB cannot read grid '{}': {}", file.string(), grid, e.what());
+    }
+}
+
 }  // namespace woodcock

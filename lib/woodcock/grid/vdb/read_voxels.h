@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "woodcock/grid/field_source.h"
@@ -34,5 +37,15 @@ struct GridSource {
 /// Reads the voxels of one grid (channels > 0), in parallel. Errors: Input when the file cannot be
 /// read.
 GridSource readGridSource(const VdbFile& listed, const GridListing& grid, Repair repair);
+
+/// What OpenVDB itself makes of a grid, to measure loading against.
+struct VdbPeer {
+    std::uint64_t activeVoxels = 0;
+    std::uint64_t bytes = 0;  ///< of its tree
+};
+
+/// Reads a grid by OpenVDB's own file class, all of it at once. It trusts the file: use it only for
+/// files that this program has written. Throws Error{Input}.
+VdbPeer readByOpenVdb(const std::filesystem::path& file, const std::string& grid);
 
 }  // namespace woodcock
