@@ -234,7 +234,7 @@ TEST_F(AxExpressionTest, ErrorsHaveLineAndColumn) {
 }
 
 TEST_F(AxExpressionTest, WhatWouldEndTheProgramIsRefused) {
-    const std::string divided = "integers may be divided by positive numbers only";
+    const std::string divided = "integers may be divided by positive constants only";
     for (const char* code : {"i@n = 1 / i@n;",
                              "i@n = 1 / 0;",
                              "i@n = 1 % (2 - 2);",
@@ -345,7 +345,7 @@ TEST_F(AxExpressionTest, LoopsGoRoundAMillionTimes) {
         const auto grid = makeGrid<FloatGrid>("density");
         grid->tree().setValueOn({1, 2, 3}, 1);
         expectError(ErrorKind::Input,
-                    place + ": AX: its loops go round more than 1000000 times at a voxel",
+                    place + ": AX: its loops run more than 1000000 rounds at one voxel",
                     [&] { run("@density += 1; " + std::string(code), {grid}); });
     }
     // Each voxel has its own million.
@@ -382,7 +382,7 @@ TEST_F(AxExpressionTest, TextAndWhatHasNoDefinedValueIsRefused) {
     expectRefused("int a = 1; a >>= getcoordx();", "1:12: bits may be shifted");
     std::string nested;
     for (int i = 0; i < 40; ++i) nested += "for (;;) ";
-    expectRefused(nested + "break;", "1:289: more than 32 blocks within each other");
+    expectRefused(nested + "break;", "1:289: more than 32 nested blocks");
     const auto grid = makeGrid<FloatGrid>("density");
     grid->tree().setValueOn({0, 0, 0}, 0);
     run("@density = (3 << 31 >> 31) + (1 << 0);", {grid});

@@ -51,7 +51,7 @@ TEST(Recipe, MistakesAreNamedWithTheirPlace) {
         EXPECT_NE(mistake(text).find(part), std::string::npos) << mistake(text);
     };
     const std::string b = bounds, o = output, n = ball;
-    expect(b + o, "r.toml:6:8: output[0].node names no node: 'ball'");
+    expect(b + o, "r.toml:6:8: output[0].node is not a node: 'ball'");
     expect(b + "[node.bal]\ntype = \"sphere\"\nradius = 1\n" + o, "did you mean 'bal'");
     expect(b + "[node.ball]\ntype = \"spere\"\n" + o, "'spere'");
     expect(b + "[node.ball]\ntype = \"spere\"\n" + o, "sphere");
@@ -67,7 +67,7 @@ TEST(Recipe, MistakesAreNamedWithTheirPlace) {
                "[node.ball]\ntype = \"abs\"\ninput = \"a\"\n[node.a]\ntype = \"abs\"\n"
                "input = \"ball\"\n" +
                o,
-           "closes a circle: ball -> a -> ball");
+           "refers to itself: ball -> a -> ball");
     expect(b +
                "[node.ball]\ntype = \"abs\"\ninput = { type = \"curl\", size = 1 }\n[node.c]\n"
                "type = \"falloff\"\nedge = 1\ninput = \"ball\"\n" +
@@ -79,7 +79,7 @@ TEST(Recipe, MistakesAreNamedWithTheirPlace) {
     expect("[bounds]\nmin = [1, 0, 0]\nmax = [0, 1, 1]\n" + n + o, "lies below min along x");
     expect(b + n, "no [[output]]");
     expect(b + n + o + o, "is used by another output");
-    expect(b + n + o + "mask = \"dens\"\n", "is no other output");
+    expect(b + n + o + "mask = \"dens\"\n", "is not another output");
     expect("[let]\na = \"b\"\nb = \"a\"\n" + b + n + o, "needs itself");
     expect("[parameters]\nx = { default = 3, range = [4, 5] }\n" + b + n + o,
            "default outside its range");

@@ -88,7 +88,7 @@ TEST_F(LoadPictures, SeedsOfOneSizeAndChannels) {
     ImageFile other;
     other.width = 8;
     const auto small = write("small.exr", other);
-    expectError(ErrorKind::Input, "is no other seed of", [&] {
+    expectError(ErrorKind::Input, "is not another seed of", [&] {
         load({{a, {small}, {}}, {a, {}, {}}});
     });
     ImageFile grey;
@@ -106,8 +106,9 @@ TEST_F(LoadPictures, EqualSeedsAreNoted) {
     const auto a = write("a.exr", file);
     ASSERT_EQ(load({{a, {}, {}}, {a, {}, {}}}).notes.size(), 1u);
     EXPECT_NE(load({{a, {}, {}}, {a, {}, {}}}).notes[0].find("same seed, 4"), std::string::npos);
-    EXPECT_NE(load({{a, {a}, {}}, {a, {}, {}}}).notes[0].find("their scatter is not their error"),
-              std::string::npos);
+    EXPECT_NE(
+        load({{a, {a}, {}}, {a, {}, {}}}).notes[0].find("their differences do not show the error"),
+        std::string::npos);
 }
 
 TEST_F(LoadPictures, DataWindowsAreLaidOverEachOther) {
@@ -183,7 +184,7 @@ TEST_F(LoadPictures, OtherSizesAreRefusedOrAveraged) {
               std::string::npos)
         << loaded.notes[0];
     large.window = {0, 0, 8, 8};
-    expectError(ErrorKind::Input, "a part of its image only", [&] {
+    expectError(ErrorKind::Input, "only a part of its image", [&] {
         load({{write("crop.exr", large), {}, {}}, {b, {}, {}}}, true);
     });
 }

@@ -46,7 +46,7 @@ TEST(LevelSetToFog, RefusesWhatIsNone) {
     std::vector<std::string> notes;
     VdbGrids fog = sphere();
     fog.grids[0]->setGridClass(openvdb::GRID_FOG_VOLUME);
-    expectError(ErrorKind::Input, "grid 'ball' is no level set: its class is 'fog volume'",
+    expectError(ErrorKind::Input, "grid 'ball' is not a level set: its class is 'fog volume'",
                 [&] { levelSetToFog(fog, {}, notes); });
     VdbGrids faulty = sphere();
     static_cast<openvdb::FloatGrid&>(*faulty.grids[0])

@@ -269,7 +269,7 @@ TEST(MeshToFog, TooManyVoxelsAreRefusedBeforeTheyAreMade) {
     std::vector<std::string> notes;
     expectError(ErrorKind::Input, "take voxels of at least",
                 [&] { meshToFog(cube(), {.voxel = 1e-5}, notes); });
-    expectError(ErrorKind::Input, "indices end at",
+    expectError(ErrorKind::Input, "beyond the largest index",
                 [&] { meshToFog(cube(), {.voxel = 1e-12}, notes); });
     expectError(ErrorKind::Usage, "voxel size of 0", [&] { meshToFog(cube(), {}, notes); });
     TriangleMesh between = cube();  // no voxel's centre lies in it

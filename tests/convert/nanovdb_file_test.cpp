@@ -161,7 +161,7 @@ TEST(NanoVdbFile, WhatItCannotKeepIsAnErrorThatNamesTheGrid) {
                 writeNanoVdb(dir / "a.nvdb", {{ball(), grid}});
             });
     };
-    expectBad(openvdb::BoolGrid::create(), "holds bool where float, double or vec3s is expected");
+    expectBad(openvdb::BoolGrid::create(), "holds bool; expected float, double or vec3s");
     expectBad(openvdb::Vec3DGrid::create(), "holds vec3d");
     const auto tapered = openvdb::FloatGrid::create();
     tapered->setTransform(openvdb::math::Transform::createFrustumTransform(
@@ -184,8 +184,8 @@ TEST(NanoVdbFile, OtherFilesAreErrorsThatNameThem) {
         expectError(ErrorKind::Input, part, [&] { readAll(dir / "a.nvdb"); });
         expectError(ErrorKind::Input, "a.nvdb", [&] { readAll(dir / "a.nvdb"); });
     };
-    expectBad("", "is no NanoVDB file: it has 0 bytes");
-    expectBad("These are words, and more words.", "is no NanoVDB file");
+    expectBad("", "is not a NanoVDB file: it has 0 bytes");
+    expectBad("These are words, and more words.", "is not a NanoVDB file");
     expectError(ErrorKind::Input, "missing.nvdb", [&] { readAll(dir / "missing.nvdb"); });
 
     writeNanoVdb(dir / "good.nvdb", {{ball()}});
@@ -204,8 +204,8 @@ TEST(NanoVdbFile, OtherFilesAreErrorsThatNameThem) {
     expectBad(with(8, std::string("\0\0\x80\x03", 4)), "format 28, where 32 is expected");
     expectBad(with(12, std::string(2, '\0')), "a segment without grids");
     expectBad(with(14, "\x07"), "unknown compression");
-    expectBad(with(entry, huge), "are said to hold 4611686018427387904");
-    expectBad(with(14, std::string("\x02", 1)).replace(entry, 8, huge), "are said to hold");
+    expectBad(with(entry, huge), "cannot unpack to 4611686018427387904");
+    expectBad(with(14, std::string("\x02", 1)).replace(entry, 8, huge), "cannot unpack to");
     expectBad(with(entry + 8, huge), "bytes where");
     expectBad(with(grid, "x"), "does not begin with 'NanoVDB0'");
     expectBad(with(grid + 636, "\x08"), "grid 'density' holds mask");

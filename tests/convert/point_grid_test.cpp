@@ -92,7 +92,7 @@ TEST(PointGrid, PointsAndRadiiAreThoseOfTheFile) {
         write<points::NullCodec>(dir / "a.vdb", places, compression, true);
         const PointCloud cloud = readDust(dir / "a.vdb");
         EXPECT_EQ(cloud.radii.size(), places.size());
-        EXPECT_EQ(cloud.columns, "'P' is the place, 'id' is not used, 'pscale' is the radius");
+        EXPECT_EQ(cloud.columns, "'P' is the position, 'id' is not used, 'pscale' is the radius");
         expectSame(places, cloud, 1e-4);
         write<points::FixedPointCodec<false>>(dir / "b.vdb", places, compression, false);
         expectSame(places, readDust(dir / "b.vdb"), voxel / 65535 * 2 + 1e-4);

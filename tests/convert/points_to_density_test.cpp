@@ -115,7 +115,7 @@ TEST(PointsToDensity, LimitsAreSaid) {
     expectError(ErrorKind::Input, "take voxels of at least", [&] {
         pointsToDensity(scattered(60), {.voxel = 0.01, .mostVoxels = 1000000}, notes);
     });
-    expectError(ErrorKind::Input, "indices end at",
+    expectError(ErrorKind::Input, "beyond the largest index",
                 [&] { pointsToDensity(scattered(1), {.voxel = 1e-12}, notes); });
     expectError(ErrorKind::Input, "no points", [&] { pointsToDensity({}, {.voxel = 1}, notes); });
 }
@@ -237,7 +237,8 @@ TEST(PointsRead, WhatColumnsWereTakenForIsSaid) {
               "'x' is x, 'y' is y, 'z' is z, 'Intensity' is not used");
     expectError(ErrorKind::Usage, "'intensity' is none of x, y, z",
                 [&] { readPoints(dir / "a.csv", "x,y,z,intensity"); });
-    expectError(ErrorKind::Usage, "names no x, y and z", [&] { readPoints(dir / "a.csv", "x,y"); });
+    expectError(ErrorKind::Usage, "does not name x, y and z",
+                [&] { readPoints(dir / "a.csv", "x,y"); });
 }
 
 TEST(PointsRead, CoordinatesOfMapsKeepTheirDigits) {
@@ -263,7 +264,7 @@ TEST(PointsRead, ErrorsNameLineAndColumn) {
         writeText(dir / name, text);
         expectError(ErrorKind::Input, part, [&] { readPoints(dir / name); });
     };
-    expectBad("a.csv", "x,y,z\n1,2,3\n1, two,3\n", "a.csv:3:4: 'two' where a number is expected");
+    expectBad("a.csv", "x,y,z\n1,2,3\n1, two,3\n", "a.csv:3:4: 'two' is not a number");
     expectBad("a.csv", "x,y,z\n1,2\n", "a.csv:2: 2 columns where 3 are expected");
     expectBad("a.csv", "x,y\n1,2\n",
               "expected one x, one y and one z of each point; found: 'x' is x, 'y' is y");
@@ -272,10 +273,10 @@ TEST(PointsRead, ErrorsNameLineAndColumn) {
     expectBad("a.csv", std::string("\xff\xfex\0,\0", 6),
               "a.csv is text in UTF-16; save it as UTF-8");
     expectBad("a.csv", std::string("x\0,\0y\0", 6), "UTF-16");
-    expectBad("a.csv", "x;y;z\n1,000,000;2;3\n", "'1,000,000' where a number is expected");
+    expectBad("a.csv", "x;y;z\n1,000,000;2;3\n", "'1,000,000' is not a number");
     expectBad("a.csv", "x,y,z\n1,nan,2\n", "a.csv:2:3: 'nan'");
     expectBad("a.csv", "", "holds no points");
-    expectBad("a.ply", "words", "is no PLY file");
+    expectBad("a.ply", "words", "is not a PLY file");
     expectBad("a.ply",
               "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n",
               "99999999999 of element 'vertex'");

@@ -37,7 +37,7 @@ TEST(Info, SpeaksOfAllGridsAndWhatIsWrongWithThem) {
          {"density  float, fog volume", "bounds     [0, 0, 0] to [9, 1, 2], 10 x 2 x 3 voxels",
           "in world   [1, 2, 3] to [10, 3, 5]", "active     3 voxels (5 % of the bounds)",
           "values     1 to 70000, mean 23334.7, background 0", "exceed the range of half storage",
-          "all of its active voxels are -1", "dust  points", "it holds points, no values",
+          "all of its active voxels are -1", "dust  points", "it holds points and no values",
           "it is a level set", "it holds 1 NaN voxel (first at [1, 2, 3])"})
         EXPECT_TRUE(holds(r.out, part)) << part << "\n" << r.out;
 }

@@ -268,7 +268,7 @@ protected:
 
 TEST_F(HostileConfig, CirclesAreRefused) {
     const auto expectCircle = [](const std::string& message, const std::string& circle) {
-        EXPECT_NE(message.find("leads in a circle: " + circle), std::string::npos) << message;
+        EXPECT_NE(message.find("refers to itself: " + circle), std::string::npos) << message;
     };
     EXPECT_EQ(refusal(""), "no error");
     expectCircle(refusal("",

@@ -352,9 +352,10 @@ TEST(Marching, RefusesStepsThatWouldNeedMillions) {
 TEST(Marching, RefusesStandInsWhoseExtinctionFollowsTheAlbedo) {
     const Medium medium = chromaticMedium().medium();
     EXPECT_NO_THROW(prepareMarch(medium, {1, true}));
-    expectError(ErrorKind::Usage, "march_step contradicts similarity and octaves", [&] {
-        prepareMarch(similarMedium(medium), {1, true});
-    });
+    expectError(ErrorKind::Usage, "march_step cannot be used together with similarity or octaves",
+                [&] {
+                    prepareMarch(similarMedium(medium), {1, true});
+                });
 }
 
 TEST(Marching, RaysOfEveryKindEnd) {

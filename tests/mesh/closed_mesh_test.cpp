@@ -48,7 +48,7 @@ TEST(ClosedMesh, OpenOnesAreRefusedWithTheirPlace) {
     expectError(ErrorKind::Input, "4 edges", [&] { closedMesh(lidless); });
     expectError(ErrorKind::Input, "(first at 512000, 5411999, 1)", [&] { closedMesh(lidless); });
     expectError(ErrorKind::Input, "no triangles", [] { closedMesh({}); });
-    expectError(ErrorKind::Input, "none of its triangles has an area", [] {
+    expectError(ErrorKind::Input, "all of its triangles have zero area", [] {
         closedMesh({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{{0, 1, 2}}}});
     });
 }
@@ -68,7 +68,8 @@ TEST(ClosedMesh, TrianglesThatFaceTheWrongWayAreTurned) {
         std::swap(mesh.triangles[9][1], mesh.triangles[9][2]);
         const ClosedMesh closed = closedMesh(mesh);
         EXPECT_EQ(closed.volumes, std::vector<double>{facing == Facing::Outwards ? 8.0 : -8.0});
-        expectNote(closed, "2 triangles faced another way than their neighbours and were turned");
+        expectNote(closed,
+                   "2 triangles faced the other way than their neighbours, and were flipped");
     }
 }
 

@@ -33,7 +33,7 @@ TEST(FacetedMesh, ManyFacetsMakeABall) {
 
 TEST(FacetedMesh, TooManyAreRefused) {
     const std::vector<FacetRing> rings(26, {90, 1000, 1, 0});
-    expectError(ErrorKind::Usage, "more than 25000 facets; a mesh from a file has no such limit",
+    expectError(ErrorKind::Usage, "more than 25000 facets; a mesh from a file may have more",
                 [&] { facetedMesh(rings); });
 }
 
@@ -76,7 +76,7 @@ TEST(FacetedMesh, BrilliantIsClosed) {
 }
 
 TEST(FacetedMesh, RefusesWhatIsOpenOrSenseless) {
-    expectError(ErrorKind::Usage, "do not close", [] {
+    expectError(ErrorKind::Usage, "do not enclose a body", [] {
         facetedMesh(std::vector<FacetRing>{{90, 8, 1, 0}});
     });
     expectError(ErrorKind::Usage, "distance of 0", [] {

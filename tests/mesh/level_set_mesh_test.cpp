@@ -77,7 +77,7 @@ TEST(LevelSetMesh, WhatIsNoLevelSetIsAnError) {
         expectError(ErrorKind::Input, file, [&] { levelSetMesh(dir / file, grid, 0); });
     };
     expectBad("a.vdb", "", "several level sets");
-    expectBad("a.vdb", "density", "is no level set: its class is 'fog volume'");
+    expectBad("a.vdb", "density", "is not a level set: its class is 'fog volume'");
     expectBad("a.vdb", "colour", "no grid 'colour' in");
     expectBad("a.vdb", "whole", "holds int32 where float or double is expected");
     expectBad("a.vdb", "nan", "holds a NaN at [9, 0, 0]");

@@ -243,8 +243,8 @@ TEST(MeshRead, BadFilesAreErrorsThatNameThem) {
     expectBad("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n", "holds no triangles");
     expectBad("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "");
     expectBad("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "1 points that are not finite");
-    expectBad("empty.ply", "", "is no PLY file");
-    expectBad("words.ply", "These are words.\n", "is no PLY file");
+    expectBad("empty.ply", "", "is not a PLY file");
+    expectBad("words.ply", "These are words.\n", "is not a PLY file");
     expectBad("points.ply", plyText("", "0"), "has no element 'face'");
     expectBad("lines.ply", plyText("element face 1\n" + plyFaces, "2 0 1"), "no triangles");
     expectBad("index.ply", plyText("element face 1\n" + plyFaces, "3 0 1 3"),

@@ -145,7 +145,7 @@ TEST(Similarity, IsNotMarchedThroughAlbedoGrids) {
     settings.approximations.similarityAfter = 0;
     EXPECT_NO_THROW(render(scene, settings));
     settings.approximations.marchStep = 1;
-    expectError(ErrorKind::Usage, "march_step contradicts similarity",
+    expectError(ErrorKind::Usage, "march_step cannot be used together with similarity",
                 [&] { render(scene, settings); });
 }
 

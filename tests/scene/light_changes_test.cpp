@@ -65,7 +65,7 @@ TEST(LightChanges, ElevationAndAzimuthTogetherReplaceADirection) {
     const std::string sun = volume + "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\n";
     expectTowards(sunOf(completed(sun, {"light[0].elevation=0", "light[0].azimuth=90"})),
                   {1, 0, 0});
-    test::expectError(ErrorKind::Input, "light[0].azimuth stands beside direction",
+    test::expectError(ErrorKind::Input, "light[0].azimuth cannot be used together with direction",
                       [&] { completed(sun, {"light[0].azimuth=90"}); });
 }
 

@@ -99,11 +99,12 @@ TEST(ParseErrors, OfVolumes) {
         "= { min = [0, 0, 0], max = [1, 1, 1] }");
     EXPECT_EQ(
         volumeMistake("sigma_s = 1\nscale = 2"),
-        "scene.toml:3:11: volume[0].sigma_s stands beside scale; give one of them: sigma_a and "
+        "scene.toml:3:11: volume[0].sigma_s cannot be used together with scale; give one of them: "
+        "sigma_a and "
         "sigma_s say what scale and albedo say (sigma_t = scale x density, sigma_s = albedo x "
         "sigma_t)");
     EXPECT_EQ(volumeMistake("albedo_grid = \"Cd\"\nsigma_a = 1").substr(0, 56),
-              "scene.toml:4:11: volume[0].sigma_a stands beside albedo_");
+              "scene.toml:4:11: volume[0].sigma_a cannot be used together with albedo_");
     EXPECT_EQ(volumeMistake("scale = -1"),
               "scene.toml:3:9: volume[0].scale is -1; it must not be negative");
     EXPECT_EQ(
@@ -135,7 +136,7 @@ TEST(ParseErrors, OfBoxes) {
               "scene.toml:4:11: volume[0].density needs a file: a box holds constant coefficients "
               "and no grids");
     EXPECT_EQ(mistakeIn(box + "file = \"a.vdb\"\nscale = 1").substr(0, 65),
-              "scene.toml:2:7: volume[0].box stands beside file; give one of the");
+              "scene.toml:2:7: volume[0].box cannot be used together with file; give one of the");
     EXPECT_EQ(mistakeIn("[[volume]]\nbox = { min = [0, 0, 0], max = [1, 0, 1] }\nscale = 1"),
               "scene.toml:2:36: volume[0].box.max[1] is 0; it must exceed min[1], which is 0");
     EXPECT_EQ(mistakeIn("[[volume]]\nbox = { min = [0, 0, 0] }\nscale = 1"),
@@ -155,14 +156,14 @@ TEST(ParseErrors, OfTransforms) {
     EXPECT_EQ(
         volumeMistake("matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [5, 0, 0, 1]]"),
         "scene.toml:3:10: volume[0].matrix is not affine: its last row is [5, 0, 0, 1] instead "
-        "of [0, 0, 0, 1] (translation stands in the last column)");
+        "of [0, 0, 0, 1] (the translation is the last column)");
     EXPECT_EQ(
         volumeMistake("matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
         "scene.toml:3:10: volume[0].matrix has 3 elements; expected four rows of four numbers");
     EXPECT_EQ(volumeMistake("matrix = [[1, 0, 0, inf], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
               "scene.toml:3:21: volume[0].matrix[0][3] is inf; it must be finite");
     EXPECT_EQ(volumeMistake("transform = {}\nmatrix = []").substr(0, 58),
-              "scene.toml:3:13: volume[0].transform stands beside matrix;");
+              "scene.toml:3:13: volume[0].transform cannot be used together with matrix;");
 }
 
 TEST(ParseErrors, OfPaths) {
@@ -187,7 +188,8 @@ TEST(ParseErrors, OfLights) {
     EXPECT_EQ(lightMistake("type = \"sun\"\ndirection = [0, 0, 0]"),
               "scene.toml:5:13: light[0].direction is [0, 0, 0], which points nowhere");
     EXPECT_EQ(lightMistake("type = \"sun\"\ndirection = [0, -1, 0]\nelevation = 3"),
-              "scene.toml:6:13: light[0].elevation stands beside direction; give one of them: both "
+              "scene.toml:6:13: light[0].elevation cannot be used together with direction; give "
+              "one of them: both "
               "say where the sun stands");
     EXPECT_EQ(lightMistake("type = \"sun\"\nelevation = 91"),
               "scene.toml:5:13: light[0].elevation is 91; it must lie between -90 and 90");
@@ -206,7 +208,8 @@ TEST(ParseErrors, OfLights) {
     EXPECT_EQ(lightMistake("type = \"sphere\"\nradius = 1"),
               "scene.toml:3:1: light[0] has no position; give one, such as position = [0, 2, 0]");
     EXPECT_EQ(lightMistake("type = \"point\"\nposition = [0, 0, 0]\nintensity = 1\npower = 1"),
-              "scene.toml:7:9: light[0].power stands beside intensity; give one of them: power = 4 "
+              "scene.toml:7:9: light[0].power cannot be used together with intensity; give one of "
+              "them: power = 4 "
               "pi x intensity");
 }
 
@@ -225,7 +228,8 @@ TEST(ParseErrors, OfCameras) {
     EXPECT_EQ(sectionMistake("[camera]\nfov = 180"),
               "scene.toml:4:7: camera.fov is 180; it must lie strictly between 0 and 180");
     EXPECT_EQ(sectionMistake("[camera]\nfov = 30\nfocal_length = 50"),
-              "scene.toml:5:16: camera.focal_length stands beside fov; give one of them: the angle "
+              "scene.toml:5:16: camera.focal_length cannot be used together with fov; give one of "
+              "them: the angle "
               "follows from the focal length and the sensor");
     EXPECT_EQ(
         sectionMistake("[camera]\nfocal_length = 50"),

@@ -40,10 +40,10 @@ TEST(SurfaceErrors, OfMaterials) {
               "colour_space, times");
     EXPECT_EQ(materialMistake("type = \"conductor\"\neta = 1.5"),
               "scene.toml:4:7: material[0].eta needs a k beside it, such as k = [3.9, 2.5, 2.1]");
-    EXPECT_EQ(
-        materialMistake("type = \"conductor\"\neta = 1.5\nk = 1\ncolour = 1"),
-        "scene.toml:4:7: material[0].eta stands beside colour; give one of them: both say how "
-        "much light the metal reflects");
+    EXPECT_EQ(materialMistake("type = \"conductor\"\neta = 1.5\nk = 1\ncolour = 1"),
+              "scene.toml:4:7: material[0].eta cannot be used together with colour; give one of "
+              "them: both say how "
+              "much light the metal reflects");
     EXPECT_EQ(materialMistake("type = \"dielectric\"\nroughness = 1.5"),
               "scene.toml:4:13: material[0].roughness is 1.5; it must lie between 0 and 1");
     EXPECT_EQ(mistakeIn("[[surface]]\nplane = {}\n[[material]]\ntype = \"diffuse\""),
@@ -99,7 +99,8 @@ TEST(SurfaceErrors, OfShapes) {
         "lathe, facets, such as file = \"mesh.obj\" or sphere = { centre = [0, 0, 0], radius = 1 "
         "}");
     EXPECT_EQ(surfaceMistake("file = \"a.obj\"\ndisk = {}"),
-              "scene.toml:9:8: surface[0].disk stands beside file; give one of them: a surface has "
+              "scene.toml:9:8: surface[0].disk cannot be used together with file; give one of "
+              "them: a surface has "
               "one shape, and others are surfaces too");
     EXPECT_EQ(surfaceMistake("sphere = { center = [0, 0, 0] }"),
               "scene.toml:8:12: unknown key 'center' in surface[0].sphere; did you mean 'centre'? "
@@ -161,7 +162,8 @@ TEST(SurfaceErrors, OfMedia) {
               "scene.toml:10:37: surface[0].medium.distance is 1e-300: too short for a float's "
               "sigma_a");
     EXPECT_EQ(surfaceMistake(ball + "medium = { colour = 0.5, distance = 1, sigma_a = 1 }"),
-              "scene.toml:10:21: surface[0].medium.colour stands beside sigma_a; give one of them: "
+              "scene.toml:10:21: surface[0].medium.colour cannot be used together with sigma_a; "
+              "give one of them: "
               "both say how much the medium absorbs");
     EXPECT_EQ(surfaceMistake("sphere = {}\nmaterial = \"paint\"\nmedium = { sigma_a = 1 }"),
               "scene.toml:10:10: surface[0].medium can never be seen: 'paint', of type diffuse, "

@@ -224,12 +224,12 @@ TEST(Geometry, TransformsThatAreNoneAreErrors) {
     Affine3d nan;
     nan.translation.x = std::nan("");
     expectError(ErrorKind::Input, "instance 1 (object 8) is not finite", [&] { make(nan); });
-    expectError(ErrorKind::Input, "instance 1 (object 8) makes its shape flat", [&] {
+    expectError(ErrorKind::Input, "instance 1 (object 8) flattens its shape", [&] {
         make(Affine3d::scale({1, 0, 1}));
     });
     Affine3d flat;
     flat.column[2] = {1, 1, 0};
-    expectError(ErrorKind::Input, "makes its shape flat", [&] { make(flat); });
+    expectError(ErrorKind::Input, "flattens its shape", [&] { make(flat); });
     EXPECT_NO_THROW(make(Affine3d::scale({1e-6, 1e6, 1})));
 }
 

@@ -65,7 +65,7 @@ TEST(TextureImage, KnowsItsMaximumAndMean) {
 
 TEST(TextureImage, RefusesNumbersThatDoNotFillIt) {
     for (const std::size_t count : {0u, 5u, 7u, 9u})
-        test::expectError(ErrorKind::Failure, "cannot be made of",
+        test::expectError(ErrorKind::Failure, "cannot have",
                           [&] { TextureImage(2, 1, std::vector<float>(count)); });
     test::expectError(ErrorKind::Failure, "0 x 1", [] { TextureImage(0, 1, {}); });
 }

@@ -339,7 +339,7 @@ TEST_F(BakeCommand, APreviewsMistakesAreNamedBeforeTheBake) {
     refused("[[light]]\ntype = \"environment\"", "shows no volume");
     refused("[[volume]]\nfile = \"${VOLUME}\"\nalbdo = 1", "albdo");
     refused("[[volume]]\nfile = \"${VOLUME}\"\nscale = $(2 * nothing)", "nothing");
-    refused("[[volume]]\nfile = \"${VOLUME}\"\nscale = $(2", "$( without its )");
+    refused("[[volume]]\nfile = \"${VOLUME}\"\nscale = $(2", "$( without a closing )");
 }
 
 TEST_F(BakeCommand, WrongUseIsNamed) {

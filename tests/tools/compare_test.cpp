@@ -183,7 +183,7 @@ TEST_F(CompareCommand, WhatCannotBeCompared) {
     expectFailure({a}, 2, {"2 to 26 images, not 1"});
     expectFailure({}, 2, {"nothing to compare"});
     expectFailure({a, a, "--more", "C=x.exr"}, 2, {"--more: 'C=x.exr'", "A to B"});
-    expectFailure({a, a, "--more", "B=" + small}, 3, {"small.exr", "is no other seed of"});
+    expectFailure({a, a, "--more", "B=" + small}, 3, {"small.exr", "is not another seed of"});
     expectFailure({a, a, "--colour-space", "B=foo"}, 3, {"'foo'", "ACEScg"});
     expectFailure({a, a, "--fail-above", "rmes=1"}, 2, {"'rmes'", "did you mean 'rmse'"});
     expectFailure({a, a, "--fail-above", "rmse"}, 2, {"rmse needs a value"});

@@ -443,12 +443,14 @@ TEST_F(Convert, WhatIsNotReadIsNamedWithAWayOn) {
     dicom.replace(128, 4, "DICM");
     writeText(file("slice.raw"), dicom);
     writeText(file("slice.txt"), dicom);
-    expectRefused(3, "slice.raw is a DICOM file, which is not read; load the whole series",
+    expectRefused(3,
+                  "slice.raw is a DICOM file, which woodcock does not read; load the whole series",
                   "slice.raw", "a.vdb", {"--dims", "10,10,2", "--type", "u8"});
     expectRefused(3, "is a DICOM file", "slice.txt", "a.vdb");
     expectDone("slice.raw", "forced.vdb", {"--from", "raw", "--dims", "10,10,2", "--type", "u8"});
     writeText(file("scan.las"), "LASF");
-    expectRefused(3, "a LAS or LAZ point cloud, which is not read; run `pdal", "scan.las", "a.vdb");
+    expectRefused(3, "a LAS or LAZ point cloud, which woodcock does not read; run `pdal",
+                  "scan.las", "a.vdb");
     expectRefused(3, "load the whole series", "slice.####.dcm", "a.vdb");
     expectRefused(3, "is a folder", ".", "a.vdb");
 }

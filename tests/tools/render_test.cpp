@@ -214,7 +214,8 @@ TEST_F(Render, FireIsSeenInAPicture) {
         "[camera]\ntype = \"orthographic\"\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nheight = 3\n";
     const ProgramResult result = renderScene(fire, {"-o", file("f.png"), "-o", file("f.webp"), "-o",
                                                     file("f.tif"), "--view", "Standard"});
-    expectSaid(result, 0, {"f.png: ", "of the pixels shine more than they cover, as fire does"});
+    expectSaid(result, 0,
+               {"f.png: ", "of the pixels emit more light than their alpha covers, as fire does"});
     const ReadBack exr = readBack(dir / "out.exr");
     EXPECT_NEAR(exr.at(8, 4, "G"), 0.5, 0.01);
     EXPECT_EQ(exr.at(8, 4, "A"), 0.0f);
@@ -352,7 +353,7 @@ TEST_F(Render, WhatASceneDoesNotUseIsNoNews) {
     expectSaid(plain, 0, {"info: the scene uses scattering, light sampling\n"});
     expectNotSaid(plain, "emission");
     expectSaid(render({"smoke.vdb"}, {"-o", file("x.exr"), "--log-level", "debug"}), 0,
-               {"has no use for three colour channels, overlapping media, emission"});
+               {"does not need three colour channels, overlapping media, emission"});
 }
 
 TEST_F(Render, NothingThatSetNamesIsWrittenOver) {

@@ -92,7 +92,7 @@ TEST_F(TradeParts, ScalingIsMeasuredAndReported) {
     }
     for (const char* name :
          {"voxels", "optical depth", "albedo", "forward scattering", "overlapping volumes",
-          "majorant cells", "threads", "load time", "memory", "random looks"})
+          "majorant cells", "threads", "load time", "memory", "random lookups"})
         EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
     for (const json& table : report.at("tables"))
         for (const json& row : table.at("rows"))

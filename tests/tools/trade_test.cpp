@@ -143,7 +143,7 @@ TEST_F(Trade, MistakesAreOneClearLine) {
     writeText(dir / "bad.toml", "[[candidate]]\nname = \"a\"\nset = [\"camera.fov=3\"]\n");
     expectFailure({"trade", scene, "--candidates", file("bad.toml")}, 3, "bad.toml:3");
     writeText(dir / "twins.toml", "[[candidate]]\nname = \"a\"\n[[candidate]]\nname = \"b\"\n");
-    expectFailure({"trade", scene, "--candidates", file("twins.toml")}, 3, "come to the same");
+    expectFailure({"trade", scene, "--candidates", file("twins.toml")}, 3, "make the same");
     writeText(dir / "plain", "");
     expectFailure({"trade", scene, "--report", file("plain")}, 2, "--report");
     expectFailure({"trade", file("none.vdb")}, 3, "none.vdb");

@@ -75,7 +75,7 @@ TEST_F(Candidates, MistakesAreNamedWithTheirPlace) {
     for (const std::string key :
          {"render.resolution=[8, 8]", "camera.fov=20", "light[0].radiance=2",
           "volume[0].file=other.vdb", "volume[0].scale=2", "render.spp=3"})
-        expectMistake(set("\"" + key + "\""), "candidates must draw the same picture");
+        expectMistake(set("\"" + key + "\""), "candidates must render the same picture");
 }
 
 TEST_F(Candidates, ThatContradictThemselvesOrEachOtherAreRefused) {

@@ -95,7 +95,7 @@ TEST(TimeRenders, LeavesOutWhatTakesTooLong) {
 }
 
 TEST(Scaling, BudgetsThatAreTooSmallAreRefused) {
-    expectError(ErrorKind::Usage, "10.0 s is the least", [] { measureScaling({.budget = 3}); });
+    expectError(ErrorKind::Usage, "give at least 10.0 s", [] { measureScaling({.budget = 3}); });
 }
 
 }  // namespace

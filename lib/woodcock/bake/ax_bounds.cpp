@@ -85,8 +85,9 @@ private:
     void boundLoop(ast::Loop& loop) {
         const auto* const condition = dynamic_cast<const ast::Expression*>(loop.condition());
         if (!condition) {
-            logger_.error("a loop's condition must not declare a variable; declare it before",
-                          location(*loop.condition()));
+            logger_.error(
+                "a loop's condition must not declare a variable; declare it before the loop",
+                location(*loop.condition()));
             return;
         }
         hasLoops_ = true;
@@ -105,7 +106,7 @@ private:
             return;
         }
         delete replacement;
-        logger_.error("this is not possible here; write it to a variable first", place);
+        logger_.error("this is not possible here; assign it to a variable first", place);
     }
 
     AxLocation location(const ast::Node& node) const {

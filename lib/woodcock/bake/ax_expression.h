@@ -28,10 +28,10 @@ bool axAvailable();
 /// times at a voxel.
 class AxExpression {
 public:
-    /// `name` is the place of the code, as "cumulus.toml:12:8"; messages begin with it, followed by
-    /// AX's own line and column within the code: "cumulus.toml:12:8: AX 2:14: ...".
-    /// Errors: Input, for code that AX cannot compile or that is refused, and in a build without
-    /// AX; Failure, where the library that holds it cannot be loaded.
+    /// `name` is the position of the code, as "cumulus.toml:12:8"; messages begin with it, followed
+    /// by AX's own line and column within the code: "cumulus.toml:12:8: AX 2:14: ...". Errors:
+    /// Input, for code that AX cannot compile or that is refused, and in a build without AX;
+    /// Failure, where the library that holds it cannot be loaded.
     AxExpression(const std::string& code, const std::string& name);
 
     /// Runs the code over the grids that it writes. `goesOn` is asked now and then, from one other

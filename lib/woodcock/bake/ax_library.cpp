@@ -237,7 +237,7 @@ public:
         watch.end();
         if (hasOverrun())
             throw inputError(
-                "{}: AX: its loops go round more than {} times at a voxel; make them end earlier",
+                "{}: AX: its loops run more than {} rounds at one voxel; make them end earlier",
                 name_, mostAxRounds);
         return !ended;
     }

@@ -66,7 +66,7 @@ Graph::Entry ax(NodeReader& r) {
                                                  : "density"};
     std::vector<int> channels{r.input("input", 0)};
     for (const auto& [name, inputChannels] : r.namedInputs("with")) {
-        if (name == names.front()) throw r.table().error("has two inputs of the name '{}'", name);
+        if (name == names.front()) throw r.table().error("has two inputs named '{}'", name);
         names.push_back(name);
         channels.push_back(inputChannels);
     }

@@ -106,7 +106,7 @@ public:
     void check(const ast::Node& node, int blocks = 0) const {
         blocks += node.nodetype() == ast::Node::BlockNode;
         if (blocks > mostBlocks) {
-            report_(fmt::format("more than {} blocks within each other", mostBlocks), node);
+            report_(fmt::format("more than {} nested blocks", mostBlocks), node);
             return;
         }
         switch (node.nodetype()) {
@@ -161,8 +161,8 @@ private:
     void checkDivision(const ast::Node& lhs, const ast::Node& rhs, const ast::Node& node) const {
         if (!mayBeInteger(lhs) || !mayBeInteger(rhs) || isSafeDivisor(rhs)) return;
         report_(
-            "integers may be divided by positive numbers only, as division by 0 would end the "
-            "program; for anything else, make one of them a float: float(...)",
+            "integers may be divided by positive constants only, as a division by 0 would end the "
+            "program; otherwise make one of them a float: float(...)",
             node);
     }
 
@@ -174,13 +174,13 @@ private:
             operation == ast::tokens::SHIFTLEFTEQUALS || operation == ast::tokens::SHIFTRIGHTEQUALS;
         const std::optional<std::uint64_t> bits = integerLiteral(rhs);
         if (shifts && !(bits && *bits < 32))
-            report_("bits may be shifted by a number from 0 to 31 only", node);
+            report_("bits may be shifted by a constant from 0 to 31 only", node);
     }
 
     void checkCall(const ast::FunctionCall& call) const {
         const std::string& name = call.name();
         if ((name == "rand" || name == "rand32") && call.numArgs() == 0)
-            report_(name + "() needs a seed, or its value depends on threads", call);
+            report_(name + "() needs a seed; without it the value depends on threads", call);
         if (name == "external" || name == "externalv")
             report_(name + "() has no data to read here", call);
         if (name == "print") report_("print() is not possible here", call);

@@ -71,7 +71,8 @@ Affine3d transformOf(const std::filesystem::path& file, const std::string& grid)
     if (!grid.empty()) return of(findGrid(listed, grid).grid);
     for (const GridListing& listing : listed.grids)
         if (listing.usable()) return of(listing);
-    throw inputError("{} has no grid to be like; it has: {}", file.string(), describeGrids(listed));
+    throw inputError("{} has no grid of numbers to start from; it has: {}", file.string(),
+                     describeGrids(listed));
 }
 
 RecipeText recipeOfGrids(const std::filesystem::path& file) {
@@ -89,7 +90,7 @@ RecipeText recipeOfGrids(const std::filesystem::path& file) {
             tomlText(listing.uniqueName));
     }
     if (bounds.empty())
-        throw inputError("{} has no voxels to be sampled; it has: {}", file.string(),
+        throw inputError("{} has no grid of voxels to sample; it has: {}", file.string(),
                          describeGrids(listed));
     return {fmt::format("about = {}\n[bounds]\nmin = {}\nmax = {}\n{}",
                         tomlText("the grids of " + file.string()), tomlVector(bounds.lower),

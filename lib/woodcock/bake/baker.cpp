@@ -23,8 +23,8 @@ void Baker::findIndexBox() {
     for (int i = 0; i < 3; ++i) {
         if (!(box.lower[i] > -most && box.upper[i] < most))
             throw inputError(
-                "{}: the recipe's bounds reach to voxel {:.3g} along {}; at most {:.0f} can be "
-                "numbered. Choose larger voxels",
+                "{}: the recipe's bounds reach voxel {:.3g} along {}; the largest possible index "
+                "is {:.0f}. Choose larger voxels",
                 recipe_.boundsPlace, std::max(std::abs(box.lower[i]), std::abs(box.upper[i])),
                 "xyz"[i], most);
         // Rounding shall not leave out a voxel that sits on the bounds.
@@ -234,15 +234,15 @@ void Baker::refuseEmpty(const std::vector<OutputParts>& outputs, std::uint64_t e
                 recipe_.boundsPlace, recipe_.bounds.lower[i], recipe_.bounds.upper[i], "xyz"[i]);
     if (evaluated == 0)
         throw inputError(
-            "{}: nothing is left: output '{}' is at most {:g} everywhere within the recipe's "
+            "{}: the grid is empty: output '{}' is at most {:g} everywhere within the recipe's "
             "bounds, "
             "[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}]",
             output.place, output.name, output.tolerance, recipe_.bounds.lower.x,
             recipe_.bounds.lower.y, recipe_.bounds.lower.z, recipe_.bounds.upper.x,
             recipe_.bounds.upper.y, recipe_.bounds.upper.z);
     throw inputError(
-        "{}: nothing is left: the largest of {} values of output '{}' is {:g}, and what is at most "
-        "{:g} is left out. Are its features smaller than the voxels?",
+        "{}: the grid is empty: the largest of {} values of output '{}' is {:g}, and values of at "
+        "most {:g} are left out. Are its features smaller than the voxels?",
         output.place, evaluated, output.name, outputs.front().greatestAnywhere, output.tolerance);
 }
 

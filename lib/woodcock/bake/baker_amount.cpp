@@ -11,8 +11,8 @@ Error Baker::tooMuch(double voxels) const {
     // What varies grows with surfaces: a factor of two in size is one of four in voxels.
     const double factor = std::max(std::sqrt(voxels / settings_.mostVoxels), 1.1);
     return inputError(
-        "the recipe would be evaluated at about {:.2g} voxels, and the limit is {:.2g}. Voxels "
-        "{:.2g} times as large would do; or raise the limit with --max-voxels",
+        "the recipe would be evaluated at about {:.2g} voxels; the limit is {:.2g}. Make voxels "
+        "{:.2g} times as large, or raise the limit with --max-voxels",
         voxels, settings_.mostVoxels, factor);
 }
 

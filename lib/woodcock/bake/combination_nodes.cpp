@@ -109,7 +109,7 @@ Graph::Entry remap(NodeReader& r) {
     };
     const auto [a, b] = ends("from", 0, 1);
     const auto [c, d] = ends("to", 0, 1);
-    if (a == b) throw r.table().error("has no width in from = [{}, {}]", a, b);
+    if (a == b) throw r.table().error("has an empty range, from = [{}, {}]", a, b);
     const std::size_t profile = r.choice("profile", profiles, 0);
     const int channels = r.input("input", 0);
     const auto value = [=, a = a, b = b, c = c, d = d](double v) {

@@ -59,7 +59,7 @@ void ParameterSet::declare(const std::string& name, const TomlValue& value) {
     try {
         define(name, p.value);
     } catch (const mu::Parser::exception_type&) {
-        throw value.error("cannot be the name of a parameter: it is no plain word");
+        throw value.error("cannot be the name of a parameter; expected letters, digits and _");
     }
     std::erase_if(parameters_, [&](const Parameter& other) { return other.name == name; });
     parameters_.push_back(std::move(p));
@@ -90,7 +90,8 @@ void ParameterSet::derive(const TomlTable& definitions) {
         if (done.contains(name)) return;
         if (!open.insert(name).second) throw value.error("needs itself");
         constexpr std::size_t deepest = 100;  // each takes some of the stack
-        if (++depth > deepest) throw value.error("needs a chain of more than {} others", deepest);
+        if (++depth > deepest)
+            throw value.error("needs a chain of more than {} other parameters", deepest);
         if (values_.contains(name)) throw value.error("is already a parameter");
         if (value.isText()) {
             mu::Parser parser = parser_->parser;
@@ -106,7 +107,7 @@ void ParameterSet::derive(const TomlTable& definitions) {
         try {
             define(name, result);
         } catch (const mu::Parser::exception_type&) {
-            throw value.error("cannot be a name: it is no plain word");
+            throw value.error("cannot be a name; expected letters, digits and _");
         }
         done.insert(name);
         --depth;

@@ -30,10 +30,10 @@ int Program::add(const Graph& graph, int entry, int domain) {
     constexpr std::size_t mostSteps = 20000, mostNumbers = std::size_t{1} << 26;
     if (steps_.size() >= mostSteps || stepOf_.size() * graph.entries.size() > mostNumbers)
         throw inputError(
-            "{}: the recipe has too many steps for each point: a node counts once for each set of "
-            "moved points that it is asked at, and {} steps are the most",
+            "{}: the recipe takes more than {} steps for each point; a node counts once for each "
+            "set of moved points at which it is evaluated",
             node.place, mostSteps);
-    if (node.stage) throw inputError("{}: needs grids, which only a bake makes", node.place);
+    if (node.stage) throw inputError("{}: needs grids, which exist only while baking", node.place);
     Step step{.entry = &node, .domain = domain};
     for (const int input : node.inputs) step.inputs.push_back(add(graph, input, domain));
     step.result = columns_;

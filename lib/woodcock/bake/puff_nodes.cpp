@@ -155,7 +155,7 @@ Graph::Entry puffs(NodeReader& r) {
         }
         if (puff.radius > 0) grow(puff, growth, 0, random, all);
     }
-    if (all.empty()) throw r.table().error("makes no puffs, as all radii are zero");
+    if (all.empty()) throw r.table().error("makes no puffs: all radii are zero");
     return {.node = std::make_unique<Puffs>(std::move(all), width)};
 }
 
@@ -168,8 +168,8 @@ Graph::Entry points(NodeReader& r) {
     const double radius = ownRadii ? r.number("radius", 1, positive) : r.number("radius", positive);
     if (cloud.points.size() > mostPuffs)
         throw r.table().error(
-            "{} has {} points, and at most {} melt into each other; woodcock convert makes a "
-            "density of more",
+            "{} has {} points; this node takes at most {}. `woodcock convert` makes a density of "
+            "more",
             file.string(), cloud.points.size(), mostPuffs);
     std::vector<Puff> all;
     for (std::size_t i = 0; i < cloud.points.size(); ++i)

@@ -103,7 +103,7 @@ private:
                 open += source[end] == '(' ? 1 : source[end] == ')' ? -1 : 0;
                 if (open == 0) break;
             }
-            if (end == source.size()) throw text.error("has a $( without its )");
+            if (end == source.size()) throw text.error("has a $( without a closing )");
             toml::table expression;
             expression.insert("expression", source.substr(start + 2, end - start - 2));
             try {
@@ -134,7 +134,7 @@ private:
         const auto outputs = table_.find("output");
         if (!outputs)
             throw inputError(
-                "{}: the recipe has no [[output]]; the least is\n[[output]]\nname = "
+                "{}: the recipe has no [[output]]; add at least\n[[output]]\nname = "
                 "\"density\"\nnode = \"the name of a node\"",
                 source_.name);
         std::vector<std::pair<std::size_t, TomlValue>> masks;
@@ -171,11 +171,11 @@ private:
             if (recipe_->outputs[i].name == wanted && i != index)
                 recipe_->outputs[index].mask = static_cast<int>(i);
         if (!recipe_->outputs[index].mask)
-            throw mask.error("is no other output: '{}'{}", shown(wanted),
+            throw mask.error("is not another output: '{}'{}", shown(wanted),
                              suggestName(wanted, "outputs", known));
         const auto target = static_cast<std::size_t>(*recipe_->outputs[index].mask);
         if (recipe_->outputs[target].mask)
-            throw mask.error("names an output that has a mask itself");
+            throw mask.error("names an output that has a mask of its own");
     }
 
     /// What a value stands for: a number, a node's name, or a node of its own.
@@ -192,14 +192,14 @@ private:
         const std::string name = value.text();
         const auto node = nodes_ ? nodes_->find(name) : std::nullopt;
         if (!node)
-            throw value.error("names no node: '{}'{}", shown(name),
+            throw value.error("is not a node: '{}'{}", shown(name),
                               suggestName(name, "nodes", nodeNames()));
         if (const auto known = entryOf_.find(name); known != entryOf_.end()) return known->second;
         for (std::size_t i = 0; i < open_.size(); ++i)
             if (open_[i] == name) {
                 std::string circle;
                 for (; i < open_.size(); ++i) circle += shown(open_[i]) + " -> ";
-                throw value.error("closes a circle: {}{}", circle, shown(name));
+                throw value.error("refers to itself: {}{}", circle, shown(name));
             }
         open_.push_back(name);
         const int entry = addNode(*node);
@@ -208,7 +208,7 @@ private:
     }
 
     int addNode(const TomlValue& value) {
-        if (!value.isTable()) throw value.error("is no node; expected a table with a type");
+        if (!value.isTable()) throw value.error("is not a node; expected a table with a type");
         NodeReader reader(value.table(), recipe_->parameters, source_.directory, recipe_->graph,
                           [this](const TomlValue& input) { return addValue(input); });
         if (++depth_ > deepest) throw value.error("is nested more than {} nodes deep", deepest);

@@ -52,7 +52,7 @@ Graph::Entry ring(NodeReader& r) {
 /// The half-space behind a plane.
 Graph::Entry plane(NodeReader& r) {
     const Vec3d direction = r.vector("normal", {0, 1, 0});
-    if (length(direction) == 0) throw r.table().error("has a normal of no length");
+    if (length(direction) == 0) throw r.table().error("has a normal of length zero");
     const Vec3d normal = normalize(direction);
     const double offset = r.number("offset", 0);
     return {.node = ofPosition([=](Vec3d p) { return dot(p, normal) - offset; })};

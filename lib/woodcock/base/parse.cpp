@@ -124,7 +124,8 @@ std::pair<double, double> parseAngles(std::string_view text) {
                 parseNumber(text.substr(comma + 1), -3600, 3600)};
     } catch (const Error&) {
         throw usageError(
-            "'{}' is no place of the sun; expected ELEVATION,AZIMUTH in degrees, such as 40,120: "
+            "'{}' is not a position of the sun; expected ELEVATION,AZIMUTH in degrees, such as "
+            "40,120: "
             "elevation from -90 to 90, azimuth 0 towards -z (towards +y where z is up), 90 towards "
             "+x",
             text);

@@ -67,10 +67,8 @@ std::string readRegularFile(const std::filesystem::path& file, std::string_view 
                             std::uint64_t mostBytes) {
     const RegularFile open(file, what);
     if (open.size() > mostBytes)
-        throw open.unreadable(
-            fmt::format("it has {} bytes, and {} are the most that such a file "
-                        "may have",
-                        open.size(), mostBytes));
+        throw open.unreadable(fmt::format("it has {} bytes; such a file may have {} at most",
+                                          open.size(), mostBytes));
     return open.read(0, static_cast<std::size_t>(open.size()));
 }
 

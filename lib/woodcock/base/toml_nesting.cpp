@@ -41,10 +41,8 @@ void refuseDeepKeys(std::string_view text, const std::string& name) {
             i = std::min(text.find('\n', i), text.size()) - 1;
         } else if (c == '.') {
             if (++dots >= mostKeyParts)
-                throw inputError(
-                    "{}:{}: a key has more than {} parts; no key that is known has "
-                    "so many",
-                    name, line, mostKeyParts);
+                throw inputError("{}:{}: a key has more than {} parts; no known key has so many",
+                                 name, line, mostKeyParts);
         } else if (std::string_view("\n=,{}[]").find(c) != std::string_view::npos) {
             dots = 0;
             line += c == '\n';

@@ -173,7 +173,7 @@ Affine3d TomlValue::affine() const {
     if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] != 1)
         throw error(
             "is not affine: its last row is [{}, {}, {}, {}] instead of [0, 0, 0, 1] "
-            "(translation stands in the last column)",
+            "(the translation is the last column)",
             m[3][0], m[3][1], m[3][2], m[3][3]);
     Affine3d map;
     for (size_t j = 0; j < 3; ++j) map.column[j] = {m[0][j], m[1][j], m[2][j]};
@@ -244,7 +244,7 @@ void TomlTable::allowOnly(const std::vector<std::string>& known, std::string_vie
 
 void TomlTable::exclude(std::string_view key, std::string_view other, std::string_view why) const {
     if (has(key) && has(other))
-        throw find(key)->error("stands beside {}; give one of them: {}", other, why);
+        throw find(key)->error("cannot be used together with {}; give one of them: {}", other, why);
 }
 
 }  // namespace woodcock

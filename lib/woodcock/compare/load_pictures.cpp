@@ -60,10 +60,10 @@ std::string dimensions(const LayeredImage& image) {
 /// Seeds of one image must be the same picture in all but noise.
 void requireSame(const LayeredImage& image, const LayeredImage& first) {
     if (image.width != first.width || image.height != first.height || image.window != first.window)
-        throw inputError("'{}' is no other seed of '{}': it is {}, not {}", image.file.string(),
+        throw inputError("'{}' is not another seed of '{}': it is {}, not {}", image.file.string(),
                          first.file.string(), dimensions(image), dimensions(first));
     if (planeNames(image) != planeNames(first))
-        throw inputError("'{}' is no other seed of '{}': its channels are {}, not {}",
+        throw inputError("'{}' is not another seed of '{}': its channels are {}, not {}",
                          image.file.string(), first.file.string(), joinNames(planeNames(image)),
                          joinNames(planeNames(first)));
 }
@@ -145,9 +145,10 @@ Whole load(const PictureSource& source, char letter, const ColorConfig& config,
             !seed.empty() && seed == fact(images.front(), "woodcock/seed") &&
             fact(images.back(), "woodcock/sampleRange") ==
                 fact(images.front(), "woodcock/sampleRange"))
-            notes.push_back(fmt::format(
-                "'{}' has the same seed and samples as '{}': their scatter is not their error",
-                file.string(), source.file.string()));
+            notes.push_back(
+                fmt::format("'{}' has the same seed and samples as '{}': their differences do not "
+                            "show the error",
+                            file.string(), source.file.string()));
     }
     const LayeredImage& first = images.front();
     Whole whole{{}, first.width, first.height, first.window};
@@ -194,9 +195,9 @@ void cutToCommon(std::vector<Whole>& all, std::vector<std::string>& notes) {
     if (common.width() < 1 || common.height() < 1)
         throw inputError("the images' data windows have no pixel in common");
     if (std::any_of(all.begin(), all.end(), [&](const Whole& w) { return w.window != common; }))
-        notes.push_back(
-            fmt::format("data windows differ: compared is what all have, [{}, {}) x [{}, {})",
-                        common.x0, common.x1, common.y0, common.y1));
+        notes.push_back(fmt::format(
+            "data windows differ: only their common part is compared, [{}, {}) x [{}, {})",
+            common.x0, common.x1, common.y0, common.y1));
     for (Whole& w : all) cut(w, common);
 }
 
@@ -208,7 +209,7 @@ void makeOneSize(std::vector<Whole>& all, bool resample, std::vector<std::string
         equal = equal && w.width == first.width && w.height == first.height;
         if (!equal && !resample)
             throw inputError(
-                "'{}' is {} x {} pixels and '{}' is {} x {}: render them at one size, or give "
+                "'{}' is {} x {} pixels and '{}' is {} x {}: render them at one size, or add "
                 "--resample to average the larger one down",
                 first.picture.files.front().string(), first.width, first.height,
                 w.picture.files.front().string(), w.width, w.height);
@@ -217,7 +218,7 @@ void makeOneSize(std::vector<Whole>& all, bool resample, std::vector<std::string
     if (equal) return;
     for (Whole& w : all) {
         if (w.window != Film::Window{0, 0, w.width, w.height})
-            throw inputError("'{}' holds a part of its image only, which cannot be resampled",
+            throw inputError("'{}' holds only a part of its image, which cannot be resampled",
                              w.picture.files.front().string());
         if (w.width != width || w.height != height)
             notes.push_back(fmt::format("{}: averaged over areas from {} x {} to {} x {} pixels",
@@ -267,10 +268,10 @@ void noteEqualSeeds(const std::vector<Whole>& all, std::vector<std::string>& not
         for (std::size_t k = i + 1; k < all.size(); ++k)
             if (const Picture& a = all[i].picture, &b = all[k].picture;
                 !a.seed.empty() && a.seed == b.seed)
-                notes.push_back(fmt::format(
-                    "{} and {} have the same seed, {}: noise that they share hides nothing, but "
-                    "standard errors are too large for their difference",
-                    a.letter, b.letter, a.seed));
+                notes.push_back(
+                    fmt::format("{} and {} have the same seed, {}: their noise is alike, so the "
+                                "standard error of their difference is overestimated",
+                                a.letter, b.letter, a.seed));
 }
 
 }  // namespace

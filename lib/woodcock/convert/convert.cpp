@@ -93,13 +93,13 @@ void write(const fs::path& in, const fs::path& out, Source& source, const Format
 
 void requirePictures(const std::vector<fs::path>& in, const ConvertOptions& options) {
     if (options.from && *options.from != "images")
-        throw usageError("--from {}: of several inputs only pictures make one volume",
+        throw usageError("--from {}: only pictures make one volume of several inputs",
                          *options.from);
     for (const fs::path& file : in)
         if (!options.from && !isPicture(file))
             throw usageError(
-                "several inputs are the slices of one volume, and '{}' is no picture; convert "
-                "other files one by one",
+                "several inputs are slices of one volume, but '{}' is not a picture; convert other "
+                "files one by one",
                 file.string());
 }
 

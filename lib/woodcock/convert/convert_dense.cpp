@@ -59,8 +59,10 @@ std::string describePlace(const DenseVolume& volume, const Placement& placement)
         length(m.column[0]), length(m.column[1]), length(m.column[2]), m.translation.x,
         m.translation.y, m.translation.z);
     const bool assumed = !volume.placed && !volume.unitCube && !placement.sized();
-    return assumed ? text + "; assumed, as the file has no sizes: see --voxel, --size, --origin"
-                   : text;
+    return assumed
+               ? text +
+                     "; assumed, as the file gives no sizes; set them by --voxel, --size, --origin"
+               : text;
 }
 
 /// Computed tomography counts from air, -1000, over water, 0. Scanners write from -1024 or fill
@@ -71,20 +73,19 @@ void hintAtHounsfield(const DenseVolume& volume, const ValueSummary& found,
     if (!(found.min <= -900 && found.min >= -3100 && found.max >= 100 && found.max <= 33000))
         return;
     say(options.warn,
-        fmt::format("'{}' has values from {:.6g} to {:.6g}, which look like Hounsfield units (air "
-                    "-1000, water 0), and a density must not be negative: --scale 0.001 --offset 1 "
-                    "--clamp 0,5 makes air 0 and water 1; add --threshold 0.5 to leave out what is "
-                    "nearly air",
-                    volume.name, found.min, found.max));
+        fmt::format(
+            "'{}' has values from {:.6g} to {:.6g}, which look like Hounsfield units (air -1000, "
+            "water 0). A density must not be negative: --scale 0.001 --offset 1 --clamp 0,5 makes "
+            "air 0 and water 1. Add --threshold 0.5 to leave out what is nearly air",
+            volume.name, found.min, found.max));
 }
 
 void noteColour(const DenseVolume& volume, const ConvertOptions& options) {
     if (volume.channels == 3)
         say(options.info,
             fmt::format(
-                "'{}' becomes a vec3 grid of its three channels; as a density it is that of "
-                "red, green and blue apart: --name Cd makes a colour of it, --channel takes "
-                "one",
+                "'{}' becomes a vec3 grid of its three channels, a density for each of red, green "
+                "and blue. --name Cd makes it a colour; --channel takes one channel",
                 volume.name));
 }
 

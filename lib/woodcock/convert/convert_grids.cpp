@@ -38,7 +38,9 @@ void finishGrids(Source& source, const fs::path& in, const ConvertOptions& optio
 void requireNoPlacement(const ConvertOptions& options) {
     const Placement& placement = options.placement;
     if (placement.any() || options.channel)
-        throw usageError("--voxel, --size, --origin and --channel are for sources that are no VDB");
+        throw usageError(
+            "--voxel, --size, --origin and --channel are not for VDB files, which have a transform "
+            "of their own");
 }
 
 bool holdsPoints(const VdbFile& file, const GridListing& grid) {
@@ -88,14 +90,12 @@ Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
         if (addPointGrid(source.grids, file, grid, options))
             source.uniqueNames.push_back(grid.uniqueName);
     if (source.grids.grids.empty())
-        throw inputError("{} holds nothing but grids without points", in.string());
+        throw inputError("{} holds only grids of points, and these are empty", in.string());
     const double loss = useFloatingPoint(source.grids);
     if (loss > 0)
         say(options.warn,
-            fmt::format(
-                "{}: whole numbers beyond 2^53 become doubles, which changes them by {:.3g} "
-                "at most",
-                in.string(), loss));
+            fmt::format("{}: integers beyond 2^53 become doubles; they change by {:.3g} at most",
+                        in.string(), loss));
     finishGrids(source, in, options);
     return source;
 }

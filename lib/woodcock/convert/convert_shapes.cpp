@@ -25,14 +25,14 @@ constexpr int usualResolution = 256;
 /// The size of voxels that is asked for, else a part of the longest side.
 double voxelFor(const Box3d& bounds, const ConvertOptions& options) {
     if (options.placement.size || options.placement.sizeSides || options.placement.origin)
-        throw usageError("--size and --origin are for grids of voxels; shapes lie where they are");
+        throw usageError(
+            "--size and --origin are for volumes on a lattice; a mesh or points keep their place");
     if (options.placement.voxelSides)
-        throw usageError("--voxel takes one number for shapes: their voxels are cubes");
+        throw usageError("--voxel takes one number for meshes and points: their voxels are cubes");
     if (options.placement.voxel) return *options.placement.voxel;
     const Vec3d size = bounds.size();
     const double longest = std::max({size.x, size.y, size.z});
-    if (!(longest > 0))
-        throw usageError("all points are one: the size of voxels must be given, by --voxel");
+    if (!(longest > 0)) throw usageError("all points coincide: give the size of voxels by --voxel");
     const double voxel = longest / usualResolution;
     say(options.info, fmt::format("voxels of {:.4g}: {} along the longest side; see --voxel", voxel,
                                   usualResolution));
@@ -55,11 +55,10 @@ void noteFloats(std::size_t count, PlaceOf placeOf, double voxel, const ConvertO
         static_cast<double>(std::nextafter(from, std::numeric_limits<float>::infinity()) - from);
     if (apart > voxel / 8)
         say(options.warn,
-            fmt::format(
-                "the coordinates are floats: near {:.9g} these are {:.3g} apart, and voxels "
-                "are {:.3g}, so shapes are rough or in layers; write them as doubles, as "
-                "text, or nearer to the origin",
-                furthest, apart, voxel));
+            fmt::format("the coordinates are floats. Near {:.9g} floats are {:.3g} apart, and "
+                        "voxels are {:.3g} wide, so the shape becomes rough or layered. Write "
+                        "doubles or text, or move the shape nearer to the origin",
+                        furthest, apart, voxel));
 }
 
 /// What a shape is wrong about is said with its file.
@@ -168,8 +167,7 @@ bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& point
                   const ConvertOptions& options) {
     if (options.placement.size || options.placement.origin || options.channel)
         throw usageError(
-            "--size, --origin and --channel are for grids of voxels; points lie where "
-            "they are");
+            "--size, --origin and --channel are for volumes on a lattice; points keep their place");
     const PointCloud cloud = readPointGrid(file, points);
     if (cloud.points.empty()) {
         say(options.warn, fmt::format("grid '{}' of {} is left out: it holds no points",

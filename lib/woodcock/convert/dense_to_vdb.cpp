@@ -104,7 +104,7 @@ VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options, Valu
                     const WorkProgress& progress) {
     if (volume.channels != 1 && volume.channels != 3)
         throw inputError(
-            "'{}' has {} channels, where a grid has 1 or 3; choose one by --channel, 0 to {}",
+            "'{}' has {} channels, and a grid has 1 or 3; choose one by --channel, 0 to {}",
             volume.name, volume.channels, volume.channels - 1);
     openvdb::initialize();
     const auto make = [&]<class ScalarTree, class VectorTree>(ScalarTree*, VectorTree*) {

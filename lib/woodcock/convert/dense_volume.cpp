@@ -123,7 +123,7 @@ void fillUnitCube(DenseVolume& volume) {
 
 DenseVolume selectChannel(DenseVolume volume, int channel) {
     if (channel < 0 || channel >= volume.channels)
-        throw usageError("there is no channel {} in '{}'; there are {}, from 0 on", channel,
+        throw usageError("there is no channel {} in '{}'; it has {}, numbered from 0", channel,
                          volume.name, volume.channels);
     volume.first += channel * volume.channelStride;
     volume.channels = 1;
@@ -161,8 +161,8 @@ AxisOrder parseAxisOrder(std::string_view text) {
     }
     if (wrong || found != 3 || minus)
         throw usageError(
-            "'{}' is no order of axes; expected each of x, y and z once, a minus reversing one, "
-            "such as xzy or x,-z,y",
+            "'{}' is not an order of axes; expected each of x, y and z once, with a minus to "
+            "reverse one, such as xzy or x,-z,y",
             text);
     return order;
 }

@@ -40,8 +40,8 @@ ReadSource volumes(std::vector<DenseVolume> (*read)(const fs::path&,
 Source readRawSource(const fs::path& in, const ConvertOptions& options) {
     if (!options.dims || !options.type)
         throw usageError(
-            "'{}' is a file of bare numbers: say how many by --dims X,Y,Z and of which kind by "
-            "--type u8|u16|f32|...",
+            "'{}' is a file of numbers without a header: give their count by --dims X,Y,Z and "
+            "their type by --type u8|u16|f32|...",
             in.string());
     return sourceOf(
         {readRaw(in, {*options.dims, options.channels.value_or(1), *options.type,
@@ -67,7 +67,7 @@ std::vector<Format> makeFormats() {
              .takes = {.grid = true, .band = true}},
             {.name = "raw",
              .extensions = {".raw", ".bin", ".dat"},
-             .what = "bare numbers",
+             .what = "numbers without a header",
              .read = readRawSource,
              .dense = {.write = writeRaw},
              .takes = {.layout = true}},
@@ -152,7 +152,8 @@ void refuseForeign(const fs::path& in, const Format* named) {
     const auto foreign = foreignFormat(in);
     if (!foreign || foreign->readByConvert) return;
     if (named && (!foreign->knownByContent || foreign->archive)) return;
-    throw inputError("{} is {}, which is not read; {}", in.string(), foreign->what, foreign->way);
+    throw inputError("{} is {}, which woodcock does not read; {}", in.string(), foreign->what,
+                     foreign->way);
 }
 
 }  // namespace
@@ -186,15 +187,15 @@ const Format& inputFormat(const fs::path& in, const ConvertOptions& options) {
     std::error_code ignored;
     if (fs::is_directory(in, ignored))
         throw inputError(
-            "'{}' is a folder; of a stack of slices name the files, as {}; of a DICOM series load "
-            "the folder into 3D Slicer and save it as .nrrd, or run `dcm2niix -e y {}`",
+            "'{}' is a folder. If it holds slices, name the files: {}. If it holds a DICOM series, "
+            "load it into 3D Slicer and save it as .nrrd, or run `dcm2niix -e y {}`",
             in.string(), (in / "slice.####.png").string(), in.string());
     if (isPicture(in))
         throw inputError(
             "'{}' is one picture, and a volume needs several: name all of its slices, or their "
-            "pattern, as slice.####{}",
+            "pattern, such as slice.####{}",
             in.string(), in.extension().string());
-    throw inputError("the name of '{}' tells no format that is known; known: {} (--from names one)",
+    throw inputError("the name of '{}' does not tell a known format; known: {} (--from names one)",
                      in.string(), listFormats(false));
 }
 
@@ -204,7 +205,7 @@ const Format& outputFormat(const fs::path& out) {
         throw usageError("cannot write '{}': header and values are written in one file, .nrrd",
                          out.string());
     if (format && format->written()) return *format;
-    throw usageError("the name of '{}' tells no format that can be written; these can: {}",
+    throw usageError("the name of '{}' does not tell a format that can be written; these can: {}",
                      out.string(), listFormats(true));
 }
 

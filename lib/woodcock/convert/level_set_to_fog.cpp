@@ -26,14 +26,15 @@ openvdb::GridBase::Ptr convert(const openvdb::GridBase& source, const LevelSetTo
                              it.getCoord().x(), it.getCoord().y(), it.getCoord().z());
     const auto known = static_cast<double>(grid->background());
     if (!(known > 0) || !std::isfinite(known))
-        throw inputError("level set '{}' has a background of {}, where a distance is expected",
+        throw inputError("level set '{}' has a background of {}; expected a positive distance",
                          source.getName(), known);
     if (options.band > known)
-        notes.push_back(fmt::format(
-            "level set '{}' knows distances up to {}: its fog is full there already, not at {}",
-            source.getName(), known, options.band));
+        notes.push_back(
+            fmt::format("level set '{}' holds distances up to {} only: its fog reaches full "
+                        "density at that depth instead of {}",
+                        source.getName(), known, options.band));
     distancesToFog(*grid, options.band > 0 ? std::min(options.band, known) : known);
-    if (grid->empty()) throw inputError("level set '{}' has no inside", source.getName());
+    if (grid->empty()) throw inputError("level set '{}' encloses nothing", source.getName());
     grid->setName(options.name);
     return grid;
 }
@@ -42,12 +43,12 @@ openvdb::GridBase::Ptr convertOne(const openvdb::GridBase& grid,
                                   const LevelSetToFogOptions& options,
                                   std::vector<std::string>& notes) {
     if (grid.getGridClass() != openvdb::GRID_LEVEL_SET)
-        throw inputError("grid '{}' is no level set: its class is '{}'", grid.getName(),
+        throw inputError("grid '{}' is not a level set: its class is '{}'", grid.getName(),
                          openvdb::GridBase::gridClassToString(grid.getGridClass()));
     if (grid.isType<openvdb::FloatGrid>()) return convert<openvdb::FloatGrid>(grid, options, notes);
     if (grid.isType<openvdb::DoubleGrid>())
         return convert<openvdb::DoubleGrid>(grid, options, notes);
-    throw inputError("level set '{}' holds {} where float or double is expected", grid.getName(),
+    throw inputError("level set '{}' holds {}; expected float or double", grid.getName(),
                      grid.valueType());
 }
 

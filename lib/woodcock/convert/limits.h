@@ -22,8 +22,8 @@ inline void requireIndices(Vec3d lower, Vec3d upper, double voxel) {
     const double index = std::max({furthest.x, furthest.y, furthest.z});
     if (!(index < most))
         throw inputError(
-            "with voxels of {} it reaches index {:.3g}, and indices end at {}; take voxels of at "
-            "least {:.3g}",
+            "with voxels of {} it reaches index {:.3g}, beyond the largest index, {}; take voxels "
+            "of at least {:.3g}",
             voxel, index, most, voxel * index / most);
 }
 
@@ -32,8 +32,8 @@ inline void requireIndices(Vec3d lower, Vec3d upper, double voxel) {
 inline void requireVoxels(double voxels, double voxel, std::uint64_t most) {
     if (!(voxels > static_cast<double>(most))) return;
     throw inputError(
-        "voxels of {} would make about {:.3g} of them, where {} are allowed; take voxels of at "
-        "least {:.3g}, or allow more",
+        "voxels of {} would be about {:.3g} in number; {} are allowed; take voxels of at least "
+        "{:.3g}, or allow more",
         voxel, voxels, most, voxel * std::sqrt(voxels / static_cast<double>(most)));
 }
 

@@ -175,17 +175,16 @@ std::string share(double part) { return fmt::format("{:.2g} %", 100 * part); }
 void noteInside(const MeshInside& inside, double voxel, std::vector<std::string>& notes) {
     if (inside.nestedSolids() > 0)
         notes.push_back(fmt::format(
-            "{} closed part{} of the mesh within others face{} the same way as the outermost, and "
-            "{} solid; for a cavity, turn the faces inwards",
+            "{} closed part{} of the mesh within others face{} the same way as the outermost part, "
+            "and {} taken as solid; for a cavity, turn the faces inwards",
             inside.nestedSolids(), inside.nestedSolids() == 1 ? "" : "s",
             inside.nestedSolids() == 1 ? "s" : "", inside.nestedSolids() == 1 ? "is" : "are"));
     constexpr double few = 0.05, much = 0.3;
     const auto voxels = static_cast<double>(inside.voxels());
     if (inside.missedShare() > few)
         notes.push_back(
-            fmt::format("the mesh is thinner than a voxel at {} of its places, and has holes "
-                        "there; take voxels "
-                        "smaller than {:.6g}, or --shell",
+            fmt::format("the mesh is thinner than a voxel over {} of its surface, and the fog has "
+                        "holes there; take voxels smaller than {:.6g}, or --shell",
                         share(inside.missedShare()), voxel));
     else if (!inside.hasInnerSurfaces() &&
              std::abs(voxels - inside.volume()) > much * inside.volume())
@@ -231,8 +230,8 @@ ClosedMesh closedOrShell(const TriangleMesh& mesh) {
     try {
         return closedMesh(mesh);
     } catch (const Error& e) {
-        throw Error(e.kind(), fmt::format("{}; so nothing is inside: close it, or take --shell for "
-                                          "fog around its surface",
+        throw Error(e.kind(), fmt::format("{}; so it has no inside. Close the mesh, or use --shell "
+                                          "for fog around its surface",
                                           e.what()));
     }
 }
@@ -281,10 +280,10 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
             options.voxel);
     noteInside(inside, options.voxel, notes);
     if (const double most = largestValue(*grid); most < 0.999)
-        notes.push_back(fmt::format(
-            "the density is {:.3g} at most: no voxel lies deeper than {:.4g} in the mesh, and it "
-            "is one from a depth of {:.4g} on (--band)",
-            most, most * band, band));
+        notes.push_back(
+            fmt::format("the density is {0:.3g} at most: it reaches one at a depth of {2:.4g} "
+                        "(--band), and no voxel lies deeper than {1:.4g} in the mesh",
+                        most, most * band, band));
     return named(grid, openvdb::GRID_FOG_VOLUME, options.name);
 }
 

@@ -153,8 +153,7 @@ private:
                                      return a.name == b.name && a.type == b.type &&
                                             a.codec == b.codec;
                                  }))
-                throw inputError("{}: its points have different attributes in different places",
-                                 file_.path().string());
+                throw inputError("{}: its leaves have different attributes", file_.path().string());
         }
         for (std::size_t a = 0; a < attributes_.size(); ++a) {
             ArrayHead head;
@@ -239,11 +238,11 @@ private:
                 throw file_.damaged("counts of points that shrink");
         for (const ArrayHead& head : leaf.arrays)
             if (head.size < leaf.ends.back())
-                throw file_.damaged(fmt::format("an attribute of {} points, where {} are",
+                throw file_.damaged(fmt::format("an attribute of {} points in a leaf of {}",
                                                 head.size, leaf.ends.back()));
         count_ += leaf.ends.back();
         if (count_ > mostPoints_)
-            throw inputError("{} says of more than {} points, which its {} bytes are too few for",
+            throw inputError("{} claims more than {} points, and its {} bytes cannot hold so much",
                              file_.path().string(), mostPoints_, file_.size());
     }
 
@@ -362,7 +361,7 @@ private:
         }
         for (std::size_t a = 0; a < attributes_.size(); ++a)
             cloud_.columns += fmt::format("{}'{}' {}", a == 0 ? "" : ", ", attributes_[a].name,
-                                          attributes_[a].name == "P" ? "is the place"
+                                          attributes_[a].name == "P" ? "is the position"
                                           : a == radius_             ? "is the radius"
                                                                      : "is not used");
         return std::move(cloud_);

@@ -42,9 +42,9 @@ void requireSound(const PointCloud& cloud, const PointsToDensityOptions& options
     requireVoxel(options.voxel);
     if (!(options.radius >= 0) || !std::isfinite(options.radius))
         throw usageError("a point's radius of {}; it must be positive", options.radius);
-    if (cloud.points.empty()) throw inputError("there are no points to make a density of");
+    if (cloud.points.empty()) throw inputError("there are no points");
     if (cloud.points.size() > std::numeric_limits<std::uint32_t>::max())
-        throw inputError("{} points, where at most {} are expected", cloud.points.size(),
+        throw inputError("{} points; at most {} are possible", cloud.points.size(),
                          std::numeric_limits<std::uint32_t>::max());
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         if (!isFinite(cloud.points[i])) throw inputError("point {} is not finite", i + 1);
@@ -116,8 +116,8 @@ private:
         const double bytes = count * sizeof(Share);
         if (bytes > static_cast<double>(memoryLimit()) / 4)
             throw inputError(
-                "points of these radii touch {:.3g} blocks of 8 voxels, to sort which takes {} of "
-                "memory; take larger voxels than {} or smaller radii",
+                "points of these radii touch {:.3g} blocks of 8 voxels, and sorting them takes {} "
+                "of memory; take voxels larger than {}, or smaller radii",
                 count, formatGiB(bytes), options_.voxel);
         shares_.reserve(static_cast<std::size_t>(count));
         for (std::uint32_t i = 0; i < bumps_.size(); ++i)
@@ -172,14 +172,16 @@ VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& 
     const Lattice lattice(originFor(bounds), options.voxel);
     const Summer summer(cloud, options, lattice);
     const auto grid = openvdb::FloatGrid::create(summer.sum());
-    if (grid->empty()) throw inputError("the density is zero everywhere: all points weigh nothing");
+    if (grid->empty())
+        throw inputError("the density is zero everywhere: the weights of all points are zero");
     grid->setTransform(lattice.transform());
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     grid->setName(options.name);
     if (summer.widened() > 0)
-        notes.push_back(fmt::format(
-            "{} of {} points are smaller than 1.5 voxels and were widened to that, mass kept",
-            summer.widened(), cloud.points.size()));
+        notes.push_back(
+            fmt::format("{} of {} points have a radius below 1.5 voxels; they were widened to 1.5 "
+                        "voxels, with their mass kept",
+                        summer.widened(), cloud.points.size()));
     return {{grid}};
 }
 

@@ -43,7 +43,7 @@ std::vector<std::string> sampleTypeNames() {
 SampleType sampleTypeFromName(std::string_view name) {
     for (const auto& [known, type] : types)
         if (name == known) return type;
-    throw usageError("'{}' is no type of numbers{}", name,
+    throw usageError("'{}' is not a type of numbers{}", name,
                      suggestName(name, "known", sampleTypeNames()));
 }
 

@@ -59,14 +59,14 @@ DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional
             (bytes ? static_cast<double>(*bytes) : 1e30) + static_cast<double>(typed.memUsage());
         if (needed > static_cast<double>(memoryLimit()))
             throw inputError(
-                "grid '{}' spans {} x {} x {} voxels, too many for the {} of memory of this "
-                "machine; choose a part by --bounds",
+                "grid '{}' spans {} x {} x {} voxels, too many for this machine's {} of memory; "
+                "choose a part by --bounds",
                 volume.name, volume.dims[0], volume.dims[1], volume.dims[2],
                 formatGiB(static_cast<double>(memoryLimit())));
         copyVoxels(typed, box, *bytes, volume);
     });
     if (!copied)
-        throw inputError("grid '{}' holds values of type {}, which are no numbers", volume.name,
+        throw inputError("grid '{}' holds values of type {}, which are not numbers", volume.name,
                          grid.valueType());
     return volume;
 }

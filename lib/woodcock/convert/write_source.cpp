@@ -47,7 +47,7 @@ void useFloats(VdbGrids& grids, const ConvertOptions& options) {
     if (options.precision == Precision::Float)
         sayLoss("--precision float", loss, options);
     else if (loss.absolute > 0)
-        sayLoss("doubles are written as floats, unless by --precision double", loss, options);
+        sayLoss("doubles are written as floats (--precision double keeps them)", loss, options);
 }
 
 /// Doubles as they are asked for; NanoVDB's own code cannot write vectors of them.

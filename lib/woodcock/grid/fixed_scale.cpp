@@ -29,7 +29,7 @@ FixedScale FixedScale::of(float min, float max, unsigned last) {
                                      double{std::numeric_limits<float>::min()});
         if (!(step * last <= largest))
             throw inputError(
-                "voxels of one brick are further apart than fixed storage can hold; use float "
+                "the values of one brick differ by more than fixed storage can hold; use float "
                 "storage");
         return {static_cast<float>(-std::ceil(-min / step) * step), static_cast<float>(step)};
     }

@@ -129,7 +129,7 @@ const std::vector<Row>& rows() {
         {"a PLY file", convertIt, {{"ply\n"sv}, {"ply\r\n"sv}}, {".ply"}, true},
         {"a mesh", convertIt, {{"glTF"sv}}, {".obj", ".stl", ".gltf", ".glb"}, true},
         {"a table of points", convertIt, {}, {".csv", ".xyz"}, true},
-        {"a file of bare numbers", convertIt, {}, {".raw"}, true},
+        {"a file of numbers without a header", convertIt, {}, {".raw"}, true},
         {"a pbrt scene", convertIt, {}, {".pbrt"}, true},
         {"an OpenEXR image",
          "of slices, name all of them to `woodcock convert`: slice.####.exr",

@@ -120,7 +120,7 @@ std::string explainNumber(const VdbFile& file, std::string_view name) {
     const std::string_view base = name.substr(0, name.find('['));
     const bool known = base.size() < name.size() && name.ends_with(']') &&
                        firstWhere(file, [&](const GridListing& g) { return g.name == base; });
-    return known ? "; [0], [1], ... tell grids of one name apart, in the file's order" : "";
+    return known ? "; [0], [1], ... number the grids of one name, in the file's order" : "";
 }
 
 }  // namespace
@@ -178,10 +178,9 @@ FoundGrid findGrid(const VdbFile& file, GridRole role) {
                 candidates.push_back(&grid);
         if (candidates.size() == 1) {
             const GridListing& only = *candidates.front();
-            return {only,
-                    fmt::format("{} has no grid named density; took '{}', its only scalar grid "
-                                "that may be one",
-                                file.path.string(), only.uniqueName)};
+            return {only, fmt::format("{} has no grid named density; took '{}', the only scalar "
+                                      "grid that may be a density",
+                                      file.path.string(), only.uniqueName)};
         }
     }
     std::string names;

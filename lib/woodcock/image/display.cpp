@@ -264,7 +264,8 @@ std::shared_ptr<const ColorConfig::Impl> ColorConfig::load(const std::filesystem
     if (!impl->config->hasRole(OCIO::ROLE_SCENE_LINEAR) ||
         !impl->config->getColorSpace(OCIO::ROLE_SCENE_LINEAR))
         throw inputError(
-            "the OpenColorIO config {} has no role 'scene_linear', the space to render in",
+            "the OpenColorIO config {} has no role 'scene_linear', which names the colour space to "
+            "render in",
             impl->origin);
     return impl;
 }

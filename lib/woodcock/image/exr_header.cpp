@@ -101,9 +101,10 @@ public:
     void run() {
         const auto version = walk_.value<std::uint32_t>();
         if ((version & 0xff) != 2)
-            throw file_.unreadable(
-                fmt::format("it is an OpenEXR file of version {}; known is 2", version & 0xff));
-        if (version & deepFlag) throw file_.unreadable("it has no flat pixels");
+            throw file_.unreadable(fmt::format(
+                "it is an OpenEXR file of version {}; only version 2 is known", version & 0xff));
+        if (version & deepFlag)
+            throw file_.unreadable("it has deep pixels, which woodcock does not read");
         const bool parts = version & partsFlag;
         double chunks = 0;
         for (int part = 0; part == 0 || parts; ++part) {
@@ -145,7 +146,7 @@ private:
                         const std::string& bytes) const {
         const auto fail = [&] {
             return damaged(
-                fmt::format("attribute '{}' does not hold what it says", shown(name, 40)));
+                fmt::format("the contents of attribute '{}' do not fit its type", shown(name, 40)));
         };
         if (type == "preview") {
             if (bytes.size() < 8) throw fail();
@@ -174,7 +175,7 @@ private:
               const std::string& bytes) const {
         const auto need = [&](const char* expected, std::size_t size) {
             if (type != expected || bytes.size() != size)
-                throw damaged(fmt::format("attribute '{}' is no {}", name, expected));
+                throw damaged(fmt::format("attribute '{}' is not a {}", name, expected));
         };
         if (name == "dataWindow") {
             need("box2i", 16);
@@ -214,9 +215,9 @@ private:
 
     /// The number of its chunks.
     double check(const Part& part) const {
-        if (part.deep) throw file_.unreadable("it has no flat pixels");
+        if (part.deep) throw file_.unreadable("it has deep pixels, which woodcock does not read");
         if (!part.window || !part.compression || part.pixelBytes == 0)
-            throw damaged("its header names no window of pixels, no channels or no compression");
+            throw damaged("its header lacks the window of pixels, the channels or the compression");
         if (*part.compression >= compressions.size())
             throw file_.unreadable(
                 fmt::format("its compression, number {}, is not known", *part.compression));
@@ -227,7 +228,7 @@ private:
         requirePlausible(file_, width, height, part.pixelBytes, compression.ratio);
         if (part.tiled) {
             if (!part.tile || (*part.tile)[0] == 0 || (*part.tile)[1] == 0)
-                throw damaged("it is tiled, and its header names no tiles");
+                throw damaged("it is tiled, and its header does not describe tiles");
             const double x = (*part.tile)[0], y = (*part.tile)[1];
             requirePlausible(file_, x, y, part.pixelBytes, compression.ratio);
             return std::max(part.chunkCount, std::ceil(width / x) * std::ceil(height / y));

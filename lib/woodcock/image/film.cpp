@@ -50,12 +50,13 @@ Film::Film(int width, int height, Window crop, Kept kept)
         throw usageError("an image of {} x {} pixels is empty", width, height);
     if (crop.width() <= 0 || crop.height() <= 0)
         throw usageError(
-            "the crop from ({}, {}) to ({}, {}) is empty: its end, which is not part "
-            "of it, must lie beyond its start",
+            "the crop from ({}, {}) to ({}, {}) is empty: its end must lie beyond its start (the "
+            "end itself is not part of it)",
             crop.x0, crop.y0, crop.x1, crop.y1);
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > width || crop.y1 > height)
-        throw usageError("the crop from ({}, {}) to ({}, {}) leaves the image of {} x {} pixels",
-                         crop.x0, crop.y0, crop.x1, crop.y1, width, height);
+        throw usageError(
+            "the crop from ({}, {}) to ({}, {}) reaches beyond the image of {} x {} pixels",
+            crop.x0, crop.y0, crop.x1, crop.y1, width, height);
     pixels_.resize(static_cast<std::size_t>(crop.width()) *
                    static_cast<std::size_t>(crop.height()));
     if (kept.surfaces) surfacePixels_.resize(pixels_.size());
@@ -133,10 +134,11 @@ void Film::add(int x, int y, const CatcherSample& sample) {
 
 void Film::merge(const Film& other) {
     if (width_ != other.width_ || height_ != other.height_ || crop_ != other.crop_)
-        throw usageError("films of {} x {} and {} x {} pixels, or with different crops, do not add",
-                         width_, height_, other.width_, other.height_);
+        throw usageError(
+            "films of {} x {} and {} x {} pixels cannot be added, nor films with different crops",
+            width_, height_, other.width_, other.height_);
     if (foregroundPixels_.size() != other.foregroundPixels_.size())
-        throw usageError("films of a scene with and one without a visible background do not add");
+        throw usageError("a film with a visible background and one without it cannot be added");
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
         Pixel& p = pixels_[i];
         const Pixel& q = other.pixels_[i];

@@ -47,7 +47,7 @@ void checkPng(const RegularFile& file, std::string_view head) {
     constexpr std::array<double, 7> channels{1, 0, 3, 1, 2, 0, 4};
     const auto colour = static_cast<std::size_t>(static_cast<unsigned char>(head[25]));
     if (head.substr(12, 4) != "IHDR" || colour >= channels.size() || channels[colour] == 0)
-        throw damaged(file, "its header is no PNG's");
+        throw damaged(file, "it does not begin with the header of a PNG");
     const double bits = static_cast<unsigned char>(head[24]) * channels[colour];
     requirePlausible(file, width, height, bits / 8, bestDeflate);
 }
@@ -60,7 +60,7 @@ void checkJpeg(const RegularFile& file, std::string_view) {
         const std::string bytes = file.read(at, 10);
         requireHead(file, bytes, 4);
         if (static_cast<unsigned char>(bytes[0]) != 0xff)
-            throw damaged(file, "its segments do not follow each other");
+            throw damaged(file, "its segments do not follow one another");
         const auto marker = static_cast<unsigned char>(bytes[1]);
         if (marker == 0xff) {  // filling
             at += 1;
@@ -229,10 +229,10 @@ const std::array<KnownFormat, 9> known{{
 /// Endings of formats that readers may have at hand, which are not read.
 std::string adviceFor(const std::string& head) {
     if (head.size() > 132 && head.compare(128, 4, "DICM") == 0)
-        return "it is a DICOM image, which is not read: convert its series to NRRD, as by 3D "
-               "Slicer or dcm2niix -e y";
+        return "it is a DICOM image, which woodcock does not read; convert its series to NRRD by "
+               "3D Slicer or dcm2niix -e y";
     return fmt::format(
-        "its contents are of no format that is read ({}); oiiotool and most image editors convert "
+        "its format is not one that woodcock reads ({}); oiiotool and most image editors convert "
         "others",
         imageFormatsRead());
 }
@@ -272,7 +272,7 @@ void requirePlausible(const RegularFile& file, double width, double height, doub
     const double bytes = width * height * pixelBytes, size = static_cast<double>(file.size());
     if (bytes > alwaysBelieved + bestRatio * size)
         throw damaged(file, fmt::format("its header says {} x {} pixels, {} of memory, and {} "
-                                        "bytes cannot hold so many",
+                                        "bytes cannot hold so much",
                                         width, height, formatGiB(bytes), file.size()));
 }
 

@@ -31,7 +31,7 @@ auto OpenImage::guarded(Act act) const {
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
-        throw failure("cannot read {} '{}': there is too little memory for it", what_,
+        throw failure("cannot read {} '{}': there is not enough memory for it", what_,
                       file_.string());
     } catch (const std::exception& e) {
         throw unreadable(fmt::format("it is damaged ({})", e.what()));
@@ -78,7 +78,7 @@ bool OpenImage::goTo(int part) {
 
 void OpenImage::check() {
     if (spec_.deep || spec_.depth > 1 || spec_.width < 1 || spec_.height < 1 || spec_.nchannels < 1)
-        throw unreadable("it has no flat pixels");
+        throw unreadable("it does not hold a flat picture");
     // Some readers leave names out, and OpenImageIO's own functions rely on them.
     while (spec_.channelnames.size() < static_cast<std::size_t>(spec_.nchannels))
         spec_.channelnames.push_back(fmt::format("channel{}", spec_.channelnames.size()));

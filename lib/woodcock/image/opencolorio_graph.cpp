@@ -79,10 +79,10 @@ private:
         if (const auto open = std::find(open_.begin(), open_.end(), node); open != open_.end()) {
             std::string circle;
             for (auto i = open; i != open_.end(); ++i) circle += *i + " -> ";
-            throw refused("leads in a circle: " + circle + node);
+            throw refused("refers to itself: " + circle + node);
         }
         if (open_.size() == deepest)
-            throw refused(fmt::format("refers from {} on through more than {} others",
+            throw refused(fmt::format("has a chain of more than {1} references, from {0} on",
                                       open_.front(), deepest));
         open_.push_back(node);
         const double before = std::exchange(steps_, 1);

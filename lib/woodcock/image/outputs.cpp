@@ -47,14 +47,14 @@ std::string Outputs::write(const Film& film, const RenderMetadata& metadata) con
                              {settings_.withAlpha, settings_.glows, settings_.display.exposure});
             if (raised > 0 && note.empty())
                 note = fmt::format(
-                    "{}: {:.2g} % of the pixels shine more than they cover, as fire does. A "
-                    "picture cannot add light, so their alpha is raised to their brightest "
-                    "channel; an EXR keeps light and alpha as they are",
+                    "{}: {:.2g} % of the pixels emit more light than their alpha covers, as fire "
+                    "does. This format cannot add light, so their alpha is raised to their "
+                    "brightest channel. An EXR keeps light and alpha as they are",
                     file.string(), 100 * raised);
         } catch (const Error& e) {
             failures += (failures.empty() ? "" : "\n") + std::string(e.what());
         } catch (const std::bad_alloc&) {
-            failures += fmt::format("{}cannot write '{}': there is too little memory to encode it",
+            failures += fmt::format("{}cannot write '{}': there is not enough memory to encode it",
                                     failures.empty() ? "" : "\n", file.string());
         }
     }

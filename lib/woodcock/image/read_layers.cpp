@@ -114,7 +114,8 @@ LayeredImage readLayers(const std::filesystem::path& file) {
         if (spec.full_width != image.width || spec.full_height != image.height ||
             windowOf(spec) != image.window)
             throw input.unreadable(fmt::format(
-                "its part {} has another window than the first, which is not supported", part));
+                "its part {} has another window of pixels than the first, which is not supported",
+                part));
         readPart(input, part, image);
     }
     return image;
@@ -124,8 +125,8 @@ void makeSceneLinear(LayeredImage& image, const std::string& space, const ColorC
     const std::string from = space.empty() && image.resolution == 0 ? config.pictureSpace() : space;
     if (image.resolution == 0 && from.empty())
         throw inputError(
-            "the OpenColorIO config has no colour space that is known for pictures such as '{}': "
-            "name the one to read it in",
+            "the OpenColorIO config has no known colour space for pictures such as '{}'; name the "
+            "colour space to read it in",
             image.file.string());
     if (from.empty() && !image.straightAlpha) return;
     for (ImagePlane& red : image.planes) {

@@ -56,7 +56,8 @@ std::optional<std::uint64_t> numberOf(const std::string& name, const NumberPlace
 
 std::map<std::uint64_t, fs::path> findSlices(const fs::path& pattern) {
     const std::optional<NumberPlace> place = findNumber(pattern.filename().string());
-    if (!place) throw inputError("'{}' has no place for a number: #### or %04d", pattern.string());
+    if (!place)
+        throw inputError("'{}' has no pattern for a number: #### or %04d", pattern.string());
     const fs::path directory = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
     std::error_code error;
     std::map<std::uint64_t, fs::path> slices;
@@ -116,8 +117,8 @@ std::size_t findRun(const std::vector<fs::path>& files) {
         }
         if (!alike)
             throw inputError(
-                "'{}' and '{}' are no slices of one volume: their names must be equal but for one "
-                "number, in one folder",
+                "'{}' and '{}' are not slices of one volume: their names must differ in one number "
+                "only, and be in one folder",
                 files.front().string(), file.string());
     }
     if (!run) throw inputError("'{}' is given more than once", files.front().string());
@@ -236,12 +237,12 @@ Slices readPages(const fs::path& file, const std::function<void(double)>& report
     if (slices.count < 2) {
         if (imageJ.starts_with("ImageJ=") && imageJ.find("images=") != imageJ.npos)
             throw inputError(
-                "'{}' is a stack that ImageJ wrote beyond TIFF's own limits, as one page and bare "
-                "numbers; save it as an image sequence",
+                "'{}' is a stack that ImageJ wrote beyond TIFF's own limits, as one page and "
+                "numbers without a header; save it as an image sequence",
                 file.string());
         throw inputError(
-            "'{}' is one picture, and a volume needs several: of slices in files of their own name "
-            "all, as slice.####{}",
+            "'{}' is one picture, and a volume needs several: if each slice is a file, name all of "
+            "them, such as slice.####{}",
             file.string(), file.extension().string());
     }
     for (std::uint64_t page = 0; page < slices.count; ++page) {

@@ -24,8 +24,8 @@ void convert(Image& image, const std::filesystem::path& file, const std::string&
     const std::string space = colourSpace.empty() ? config.pictureSpace() : colourSpace;
     if (space.empty())
         throw inputError(
-            "texture '{}' holds integers, and the OpenColorIO config knows no space of ordinary "
-            "pictures by any usual name, as 'sRGB - Texture': name the texture's colour space",
+            "texture '{}' holds integers, and the OpenColorIO config has no colour space of a "
+            "usual name, such as 'sRGB - Texture', for them; name the texture's colour space",
             file.string());
     try {
         config.toSceneLinear(image.rgb, space);
@@ -35,7 +35,7 @@ void convert(Image& image, const std::filesystem::path& file, const std::string&
     for (float& v : image.rgb) {
         if (!std::isfinite(v))
             throw inputError(
-                "texture '{}' holds values that colour space '{}' turns into {}: is it in another "
+                "texture '{}' holds values that colour space '{}' turns into {}; is it in another "
                 "space?",
                 file.string(), space, v);
         v = std::max(v, 0.0f);

@@ -24,8 +24,8 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
             background_ = std::max(background_, std::abs(double{field.background(c)}));
             if (field.limits()) continue;
             throw inputError(
-                "an emission grid's background is {}; expected 0, as what glows everywhere is "
-                "infinitely bright",
+                "an emission grid's background is {}; expected 0: a medium that emits everywhere "
+                "is infinitely bright",
                 field.background(c));
         }
     support_ = field.support(), extent_ = field.extent();

@@ -319,15 +319,15 @@ void prepareMarch(const Medium& medium, const MarchSettings& settings) {
     for (const MediumPart& part : medium.parts) {
         if (part.extinctionVaries())
             throw usageError(
-                "march_step contradicts similarity and octaves where a volume's albedo is a grid: "
-                "its extinction then changes with the albedo");
+                "march_step cannot be used together with similarity or octaves where a volume's "
+                "albedo is a grid: its extinction would change with the albedo");
         const double voxels = std::min(length(part.support().size()),
                                        part.marchCells().varyingBlocks() * blockDiagonal);
         const double least = voxels * (settings.jackknife ? 2 : 1) / mostLookUps;
         if (part.field() && settings.step < least)
             throw usageError(
                 "march_step is {:.3g} voxels: a ray through {:.3g} voxels would need more than "
-                "{:.0e} look-ups; expected at least {:.3g}",
+                "{:.0e} lookups; expected at least {:.3g}",
                 settings.step, voxels, mostLookUps, least);
     }
 }

@@ -112,7 +112,7 @@ private:
                              mesh().points[c].as<double>() - p)) > 0)
                 return;
         }
-        throw inputError("the mesh encloses nothing: none of its triangles has an area");
+        throw inputError("the mesh encloses nothing: all of its triangles have zero area");
     }
 
     void keep(const std::vector<bool>& kept) {
@@ -175,9 +175,9 @@ private:
             }
         }
         keep(kept);
-        result_.notes.push_back(
-            fmt::format("{} triangle{} of the mesh coincide{} with others and {} left out", dropped,
-                        s(dropped), dropped == 1 ? "s" : "", dropped == 1 ? "was" : "were"));
+        result_.notes.push_back(fmt::format(
+            "{} triangle{} of the mesh coincide{} with others, and {} left out", dropped,
+            s(dropped), dropped == 1 ? "s" : "", dropped == 1 ? "was" : "were"));
     }
 
     std::size_t countOpen() {
@@ -230,9 +230,9 @@ private:
                            corners[2] != corners[0]);
         }
         keep(kept);
-        result_.notes.push_back(fmt::format(
-            "{} point{} at open edges less than {:.3g} from another {} made one with it", joined,
-            s(joined), reach, joined == 1 ? "was" : "were"));
+        result_.notes.push_back(
+            fmt::format("{} point{} at open edges less than {:.3g} from another {} merged with it",
+                        joined, s(joined), reach, joined == 1 ? "was" : "were"));
     }
 
     void requireClosed() {
@@ -265,7 +265,7 @@ private:
         if (odd > 0)
             throw inputError(
                 "the mesh does not divide space into inside and outside: {} edge{} belong{} to an "
-                "odd number of triangles, as where a wall ends within (first at {})",
+                "odd number of triangles, as where a wall ends inside (first at {})",
                 odd, s(odd), odd == 1 ? "s" : "", placeOf(firstOdd));
     }
 
@@ -327,7 +327,7 @@ private:
         }
         if (turned > 0)
             result_.notes.push_back(fmt::format(
-                "{} triangle{} faced another way than {} neighbours and {} turned", turned,
+                "{} triangle{} faced the other way than {} neighbours, and {} flipped", turned,
                 s(turned), turned == 1 ? "its" : "their", turned == 1 ? "was" : "were"));
         std::size_t parts = 0;
         result_.partOf = labels(sets, triangles.size(), parts);

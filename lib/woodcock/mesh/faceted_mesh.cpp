@@ -133,7 +133,7 @@ std::vector<Plane> planesOf(std::span<const FacetRing> rings) {
         if (!(ring.angle >= 0 && ring.angle <= 180))
             throw usageError("facets at an angle of {}; it must lie between 0 and 180", ring.angle);
         if (ring.count < 1 || ring.count > 1000)
-            throw usageError("a ring of {} facets; there must be 1 to 1000", ring.count);
+            throw usageError("a ring of {} facets; it must have 1 to 1000", ring.count);
         const double tilt = ring.angle * pi / 180;
         for (int i = 0; i < ring.count; ++i) {
             const double turn = ring.turn * pi / 180 + 2 * pi * i / ring.count;
@@ -142,8 +142,7 @@ std::vector<Plane> planesOf(std::span<const FacetRing> rings) {
                  ring.distance});
         }
         if (planes.size() > mostFacets)
-            throw usageError("more than {} facets; a mesh from a file has no such limit",
-                             mostFacets);
+            throw usageError("more than {} facets; a mesh from a file may have more", mostFacets);
     }
     return planes;
 }
@@ -164,7 +163,7 @@ SurfaceMesh facetedMesh(std::span<const FacetRing> rings) {
         for (const Vec3d p : face) {
             if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > size / 2)
                 throw usageError(
-                    "the facets do not close: the body reaches further than {} times their "
+                    "the facets do not enclose a body: it reaches further than {} times their "
                     "distance",
                     500);
             soup.points.push_back(p.as<float>());
@@ -172,7 +171,7 @@ SurfaceMesh facetedMesh(std::span<const FacetRing> rings) {
         for (std::uint32_t i = 2; i < face.size(); ++i)
             soup.triangles.push_back({first, first + i - 1, first + i});
     }
-    if (soup.triangles.empty()) throw usageError("the facets leave nothing of the body");
+    if (soup.triangles.empty()) throw usageError("the facets cut away the whole body");
     return {weld(soup), {}, {}};
 }
 

@@ -35,7 +35,7 @@ const GridListing& chooseLevelSet(const VdbFile& file, const std::string& name) 
                          name.empty() ? "no level set" : fmt::format("no grid '{}'", name),
                          file.path.string(), describeGrids(file));
     if (found->gridClass != GridClass::LevelSet)
-        throw inputError("grid '{}' of {} is no level set: its class is '{}'", found->uniqueName,
+        throw inputError("grid '{}' of {} is not a level set: its class is '{}'", found->uniqueName,
                          file.path.string(), gridClassName(found->gridClass));
     if (!isReadable(*found) || found->channels != 1)
         throw inputError("level set '{}' of {} cannot be read: it holds {}", found->uniqueName,

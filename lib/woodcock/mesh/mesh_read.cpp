@@ -45,7 +45,8 @@ std::string requireReadable(const fs::path& file) {
     constexpr std::array known{".obj", ".ply", ".stl", ".gltf", ".glb"};
     if (std::find(known.begin(), known.end(), extension) == known.end())
         throw inputError(
-            "cannot read mesh '{}': its name ends in '{}', where .obj, .ply, .stl, .gltf or .glb "
+            "cannot read mesh '{}': its name ends in '{}'; expected .obj, .ply, .stl, .gltf or "
+            ".glb "
             "is expected",
             file.string(), extension);
     const double needed = memoryPerByte * static_cast<double>(fs::file_size(file, error));

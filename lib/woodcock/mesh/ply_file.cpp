@@ -70,7 +70,7 @@ private:
 
     void readHeader() {
         if (!bytes_.starts_with("ply") || line() != "ply")
-            throw inputError("{} is no PLY file: it does not begin with 'ply'", file_.string());
+            throw inputError("{} is not a PLY file: it does not begin with 'ply'", file_.string());
         bool hasFormat = false;
         for (std::string text = line(); text != "end_header"; text = line()) {
             std::istringstream words(text);
@@ -157,7 +157,7 @@ private:
         double v = 0;
         const auto [stop, error] = std::from_chars(bytes_.data() + at_, bytes_.data() + end, v);
         if (stop != bytes_.data() + end || stop == bytes_.data() + at_)
-            throw damaged(fmt::format("'{}' where a number is expected",
+            throw damaged(fmt::format("'{}' instead of a number",
                                       bytes_.substr(at_, std::min<std::size_t>(end - at_, 40))));
         at_ = end;
         return v;

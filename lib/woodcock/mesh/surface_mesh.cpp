@@ -147,7 +147,7 @@ Closedness checkClosed(const TriangleMesh& mesh) {
                                            count, what, first.x, first.y, first.z));
     };
     report(faults.open, "open edges", faults.firstOpen);
-    report(faults.crowded, "edges whose triangles are no pairs", faults.firstCrowded);
+    report(faults.crowded, "edges of more than two triangles", faults.firstCrowded);
     report(faults.inconsistent, "edges between triangles that face opposite ways",
            faults.firstInconsistent);
     const double volume = enclosedVolume(mesh);

@@ -64,14 +64,15 @@ private:
 
 SurfaceMesh latheMesh(std::span<const std::array<double, 2>> profile, int segments,
                       double smoothAngle) {
-    if (segments < 3) throw usageError("a lathe of {} segments; it needs 3 or more", segments);
+    if (segments < 3) throw usageError("a lathe of {} segments; at least 3 are needed", segments);
     if (profile.size() < 2)
-        throw usageError("a lathe whose profile has {} points; it needs 2 or more", profile.size());
+        throw usageError("a lathe whose profile has {} points; at least 2 are needed",
+                         profile.size());
     for (std::size_t i = 0; i < profile.size(); ++i)
         if (!(profile[i][0] >= 0) || !std::isfinite(profile[i][0]) || !std::isfinite(profile[i][1]))
             throw usageError(
-                "point {} of a lathe's profile is ({}, {}), where a radius of 0 or more and a "
-                "height are expected",
+                "point {} of a lathe's profile is ({}, {}); expected a radius of 0 or more, and a "
+                "height",
                 i, profile[i][0], profile[i][1]);
 
     SurfaceMesh mesh;

@@ -60,7 +60,7 @@ std::string usedOf(const Needs& needs) {
 
 std::string unusedOf(const Needs& needs) {
     const std::string names = namesOf(needs, false);
-    return names.empty() ? "" : "has no use for " + names;
+    return names.empty() ? "" : "does not need " + names;
 }
 
 std::string Needs::describe() const { return usedOf(*this); }

@@ -26,7 +26,7 @@ Needs findNeeds(const Scene& scene);
 
 /// "uses scattering, light sampling": the parts of the path loop that a scene runs.
 std::string usedOf(const Needs& needs);
-/// "has no use for emission, surfaces": the others; empty: there are none.
+/// "does not need emission, surfaces": the others; empty: there are none.
 std::string unusedOf(const Needs& needs);
 
 /// Counts of the inner loops, for --stats and for tests of cost.

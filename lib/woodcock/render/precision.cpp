@@ -54,8 +54,8 @@ private:
         const double value = part.field() ? double{part.field()->range().max} : 1;
         const double sigma = value * part.largestExtinction();
         if (!(sigma <= largestFloat)) {
-            add("{}: sigma_t reaches {:g} x {:g}, beyond the largest float, {:g}: what it scatters "
-                "is not finite; lower its scale",
+            add("{}: sigma_t reaches {:g} x {:g}, beyond the largest float, {:g}: its scattered "
+                "light is not finite; lower its scale",
                 name, value, part.largestExtinction(), largestFloat);
             return;
         }
@@ -68,16 +68,16 @@ private:
             add("{}: its bounds are not finite; check its transform", name);
         } else if (part.field() && voxel < resolved * rounding) {
             add("{}: positions there are rounded to {:.2g}, and its voxels are {:.2g} wide: they "
-                "blur; move the scene towards the origin",
+                "are blurred; move the scene towards the origin",
                 where, rounding, voxel);
         } else if (const double depth = sigma * length(box.size()); depth > deepest) {
-            add("{}: its optical depth is up to {:.2g}; depths beyond {:g} are not tested; lower "
+            add("{}: its optical depth is up to {:.2g}; woodcock is not tested beyond {:g}; lower "
                 "its scale",
                 name, depth, deepest);
         } else if (sigma * rounding * resolved > 1) {
             add("{}: positions there are rounded to {:.2g}, and its mean free path is down to "
-                "{:.2g}: its surface is exact no further than that; lower its scale or move the "
-                "scene towards the origin",
+                "{:.2g}, so its surface is inexact; lower its scale, or move the scene towards the "
+                "origin",
                 where, rounding, 1 / sigma);
         }
     }
@@ -87,7 +87,7 @@ private:
         const double rounding = largestCoordinate(eye) * epsilon, size = length(bounds_.size());
         if (!(size >= resolved * rounding))
             add("the camera is at {}, where positions are rounded to {:.2g}, and all volumes "
-                "together are {:.2g} wide: it cannot tell where they are; move it nearer to {}",
+                "together are {:.2g} wide: it cannot resolve them; move it nearer to {}",
                 text(eye), rounding, size, text(bounds_.centre()));
     }
 
@@ -112,8 +112,8 @@ private:
         const double distance = length(p - max(bounds_.lower, min(bounds_.upper, p)));
         const double arrives = power / distance / distance;
         if (!isFinite(p) || arrives < smallestFloat)
-            add("{} at {} is {:g} away from the volumes: of its light {:g} arrives, below the "
-                "smallest float, {:g}; move it nearer, make it brighter or use a sun",
+            add("{} at {} is {:g} away from the volumes: only {:g} of its light arrives, below the "
+                "smallest float, {:g}; move it nearer, make it brighter, or use a sun",
                 name, text(p), distance, arrives, smallestFloat);
     }
 

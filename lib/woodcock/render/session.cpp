@@ -39,14 +39,14 @@ void validate(const RenderSettings& s, const Film::Window& crop) {
         throw usageError("the image is {} x {}; both must be at least 1", s.width, s.height);
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > s.width || crop.y1 > s.height || crop.width() < 1 ||
         crop.height() < 1)
-        throw usageError("the crop {},{},{},{} is empty or leaves the {} x {} image", crop.x0,
-                         crop.y0, crop.x1, crop.y1, s.width, s.height);
+        throw usageError("the crop {},{},{},{} is empty or reaches beyond the {} x {} image",
+                         crop.x0, crop.y0, crop.x1, crop.y1, s.width, s.height);
     if (s.firstSample < 0 || s.endSample <= s.firstSample)
         throw usageError("the sample range {}:{} is empty", s.firstSample, s.endSample);
     if (s.adaptive && s.firstSample > 0)
         throw usageError(
-            "adaptive sampling cannot render samples {}:{} alone: how many samples a pixel gets "
-            "follows from its first ones",
+            "adaptive sampling cannot render samples {}:{} only: the first samples decide how many "
+            "each pixel gets; begin at 0",
             s.firstSample, s.endSample);
 }
 

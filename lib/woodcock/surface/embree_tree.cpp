@@ -47,7 +47,7 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Releaser<release>>;
 void requireNoError(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY)
-        throw failure("there is too little memory for the scene's surfaces");
+        throw failure("there is not enough memory for the scene's surfaces");
     if (error != RTC_ERROR_NONE) throw failure("Embree fails with error {}", int{error});
 }
 

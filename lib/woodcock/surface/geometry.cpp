@@ -55,7 +55,7 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
         throw inputError("the transform of instance {} (object {}) is not finite", i,
                          instance.object);
     if (!invertible || !(std::abs(m.determinant()) > flat * sides))
-        throw inputError("the transform of instance {} (object {}) makes its shape flat", i,
+        throw inputError("the transform of instance {} (object {}) flattens its shape", i,
                          instance.object);
     localOfWorld.push_back(inverse);
     if (shape.kind == PreparedShape::Kind::Plane) {

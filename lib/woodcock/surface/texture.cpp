@@ -34,7 +34,7 @@ TextureImage::TextureImage(int width, int height, std::vector<float> rgb)
     if (width < 1 || height < 1 ||
         rgb_.size() / 3 != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) ||
         rgb_.size() % 3 != 0)
-        throw failure("a texture of {} x {} texels cannot be made of {} numbers", width, height,
+        throw failure("a texture of {} x {} texels cannot have {} numbers", width, height,
                       rgb_.size());
 }
 

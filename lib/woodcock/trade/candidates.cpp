@@ -31,13 +31,14 @@ void checkKey(const TomlValue& value, const std::string& text) {
     const std::string key = overriddenKey(text);
     if (text.find('=') == std::string::npos)
         throw value.error("is '{}'; expected KEY=VALUE, such as \"render.clamp=10\"", text);
-    if (key == "render.quality") throw value.error("sets the quality; write quality = \"...\"");
+    if (key == "render.quality")
+        throw value.error("sets the quality; write quality = \"...\" instead");
     const std::vector<std::string> allowed = allowedKeys();
     if (isVolumeStorage(key) || std::find(allowed.begin(), allowed.end(), key) != allowed.end())
         return;
     throw value.error(
-        "sets '{}', which is no choice of how the picture is found: candidates must draw the "
-        "same picture{}",
+        "sets '{}', which changes the picture: candidates must render the same picture by other "
+        "means{}",
         key, suggestName(key, "known", allowed));
 }
 
@@ -97,7 +98,7 @@ std::vector<Candidate> readCandidates(const std::filesystem::path& file) {
     const auto list = table.find("candidate");
     if (!list)
         throw inputError(
-            "{}: there is no [[candidate]]; the least is\n[[candidate]]\nname = "
+            "{}: there is no [[candidate]]; add at least\n[[candidate]]\nname = "
             "\"clamped\"\nset = [\"render.clamp=10\"]",
             file.string());
     if (list->isTable()) throw list->error("is a single table; write [[candidate]]");
@@ -145,8 +146,8 @@ std::vector<ResolvedCandidate> resolveCandidates(const std::vector<Candidate>& c
         if (same == resolved.end())
             resolved.push_back(std::move(next));
         else if (strict)
-            throw inputError("candidates '{}' and '{}' come to the same choices",
-                             same->candidate.name, candidate.name);
+            throw inputError("candidates '{}' and '{}' make the same choices", same->candidate.name,
+                             candidate.name);
     }
     return resolved;
 }

@@ -144,9 +144,9 @@ private:
         const double error = result.reference.error.value;
         if (error <= bestError && error <= largestReferenceError) return;
         throw usageError(
-            "the budget is too small for the reference to converge: its relMSE is {:.2g} after "
-            "{} samples per pixel, and that of the best candidate, '{}', is {:.2g}; give more "
-            "time by --budget, or a smaller --res",
+            "the budget is too small for the reference to converge: its relMSE is {:.2g} after {} "
+            "samples per pixel; that of the best candidate, '{}', is {:.2g}; give more time by "
+            "--budget, or a smaller --res",
             error, result.reference.samples, best->candidate.name, bestError);
     }
 

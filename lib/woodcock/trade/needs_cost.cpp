@@ -143,8 +143,9 @@ std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
     const double oneSample = wallSecondsOf(scene, settings);
     const double least = missing * (2 * fewestPairs + 1) * oneSample;
     if (least > options.budget)
-        throw usageError("a budget of {} is too small: {} needs of this scene take {} at least",
-                         formatDuration(options.budget), missing, formatDuration(least));
+        throw usageError(
+            "a budget of {} is too small: measuring {} needs of this scene takes at least {}",
+            formatDuration(options.budget), missing, formatDuration(least));
     lengthen(scene, settings, std::clamp(wanted, shortestRun, longestRun));
     std::vector<NeedCost> costs;
     int left = missing;

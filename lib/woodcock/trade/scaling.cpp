@@ -65,7 +65,7 @@ private:
         Curve time{"load time",
                    "active voxels",
                    "seconds",
-                   "wall clock, from a file that the system holds in memory to what is rendered",
+                   "wall clock, from a file in the system's cache to the field that is rendered",
                    {{"woodcock", {}}, {"OpenVDB's own read", {}}}};
         Curve memory{"memory",
                      "active voxels",
@@ -96,11 +96,11 @@ private:
 
     /// Random looks by one thread, in turns over all fields.
     void lookups() {
-        tell("random looks");
-        Curve curve{"random looks",
+        tell("random lookups");
+        Curve curve{"random lookups",
                     "voxels",
-                    "million looks per second",
-                    "one thread, fields of nothing but values, of the same size; dependent: a look "
+                    "million lookups per second",
+                    "one thread, fields without empty space, of the same size; dependent: a lookup "
                     "ends before the next begins",
                     {{"independent", {}}, {"dependent", {}}}};
         constexpr std::uint64_t count = 1 << 18;
@@ -176,8 +176,7 @@ private:
         overOpticalDepth();
         const ScalingView usualView;
         const std::string cloud = fmt::format(
-            "{}^3 voxels; where nothing else is said, optical depth "
-            "{:g}, albedo {:g}, g {:g}",
+            "{}^3 voxels; unless said otherwise, optical depth {:g}, albedo {:g}, g {:g}",
             usual().side, usualView.opticalDepth, usualView.albedo, usualView.g);
         curve({"albedo", "albedo", microseconds, cloud, {}},
               {line("optical depth 10", {0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1}, "albedo",
@@ -188,7 +187,7 @@ private:
         curve({"overlapping volumes",
                "volumes",
                microseconds,
-               "in one place: each of its part of the optical depth; apart: one in sight, the "
+               "in one place: all overlap and share the optical depth; apart: one in sight, the "
                "others far away",
                {}},
               {line("in one place", {1, 4, 16, 64, 256}, "volumes",
@@ -288,7 +287,7 @@ private:
         curve({"threads",
                "threads",
                microseconds,
-               "wall clock: worth nothing where other programs run",
+               "wall clock: only meaningful where no other program runs",
                {}},
               {std::move(l)});
     }
@@ -306,7 +305,7 @@ private:
 
 ScalingReport measureScaling(const ScalingOptions& options) {
     if (options.budget < leastScalingBudget)
-        throw usageError("a budget of {} is too small to see how cost grows: {} is the least",
+        throw usageError("a budget of {} is too small to measure how cost grows; give at least {}",
                          formatDuration(options.budget), formatDuration(leastScalingBudget));
     return Scaling(options).run();
 }

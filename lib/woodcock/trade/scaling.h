@@ -27,7 +27,7 @@ inline constexpr double leastScalingBudget = 10;
 
 /// How the cost of a sample grows with voxels, optical depth, albedo, g, overlapping volumes, the
 /// size of majorant cells and threads; load time and memory beside OpenVDB's own; and the machine's
-/// limit, random looks at a field, beside the collisions that a render achieves. The points of a
+/// limit, random lookups at a field, beside the collisions that a render achieves. The points of a
 /// curve are measured in turns, in processor time of one thread. Throws Error{Usage} where the
 /// budget is below the least.
 ScalingReport measureScaling(const ScalingOptions& options);

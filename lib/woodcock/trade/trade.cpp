@@ -87,8 +87,8 @@ private:
 
     Error tooSmall(double needed) const {
         return usageError(
-            "a budget of {} is too small for {} candidates on this scene: it takes about {}, or "
-            "fewer candidates",
+            "a budget of {} is too small for {} candidates on this scene; give about {}, or fewer "
+            "candidates",
             formatDuration(settings_.budget), resolved_.size(),
             formatDuration(std::ceil(1.3 * needed)));
     }
@@ -142,8 +142,9 @@ private:
             return true;
         });
         if (!slow.empty())
-            notes_.push_back(fmt::format(
-                "there was no time or memory to load the scene anew for: {}", joined(slow)));
+            notes_.push_back(
+                fmt::format("there was not enough time or memory to load the scene again for: {}",
+                            joined(slow)));
         if (resolved_.empty()) throw tooSmall(watch_.seconds() / loadingShare);
     }
 
@@ -164,9 +165,9 @@ private:
             subjects_.emplace_back(store_.get(r.scene), r.scene, size_);
         referenceSubject_ = Subject(store_.get(reference_), reference_, size_);
         if (size_.pixels() < full_.pixels())
-            notes_.push_back(fmt::format(
-                "measured at {} x {} pixels; seconds are those of {} x {}, in proportion",
-                size_.width, size_.height, full_.width, full_.height));
+            notes_.push_back(
+                fmt::format("measured at {} x {} pixels; seconds are scaled to {} x {}",
+                            size_.width, size_.height, full_.width, full_.height));
     }
 
     PilotCost pilotOf(const Subject& subject, const std::string& name) {
@@ -240,7 +241,7 @@ private:
         }
         if (m.candidates.front().seeds.size() < tradeSeeds)
             notes_.push_back(fmt::format(
-                "time was up after {} seeds of {}: the machine was slower than in the pilot",
+                "time ran out after {} of {} seeds: the machine was slower than in the pilot run",
                 m.candidates.front().seeds.size(), tradeSeeds));
     }
 

@@ -52,7 +52,7 @@ TEST_F(ImageStack, NamesWhatIsMissingOrUnlike) {
     for (const char* n : {"03", "05", "06"}) write(std::string("s.") + n + ".exr");
     write("s.07.exr", 3, 2);
     refused("s.07.exr' is 3 x 2");
-    writeText(dir / "s.07.exr", "no picture");
+    writeText(dir / "s.07.exr", "not a picture");
     refused("s.07.exr");
 }
 
@@ -71,8 +71,8 @@ TEST_F(ImageStack, AListIsSortedByItsNumbers) {
         expectError(ErrorKind::Input, said, [&] { readImageFiles(files, {}); });
     };
     refused("are missing between 8 and 10: 9", {file("cut2.slice10.exr"), file("cut2.slice8.exr")});
-    refused("are no slices of one volume", {file("cut2.slice8.exr"), file("cut3.slice9.exr")});
-    refused("are no slices of one volume", {file("cut2.slice8.exr"), file("other8.exr")});
+    refused("are not slices of one volume", {file("cut2.slice8.exr"), file("cut3.slice9.exr")});
+    refused("are not slices of one volume", {file("cut2.slice8.exr"), file("other8.exr")});
     refused("is given more than once", {file("cut2.slice8.exr"), file("cut2.slice8.exr")});
     refused("have the same number, 8", {file("cut2.slice8.exr"), file("cut2.slice08.exr")});
 }

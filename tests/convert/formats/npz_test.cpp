@@ -138,7 +138,7 @@ TEST_F(Npz, WhatCannotBeGridsIsRefused) {
                   zip({two[0], {"heat.npy", npy("2, 3, 5", 30, 7), true}}));
     expectRefused("need 96 bytes, and there are 92",
                   zip({{"smoke.npy", npy("2, 3, 4", 23, 5), true}}));
-    expectRefused("is no zip archive", "no archive");
+    expectRefused("is not a zip archive", "no archive");
 }
 
 TEST_F(Npz, DamagedArchivesAreRefused) {

@@ -156,7 +156,7 @@ TEST_F(VdbFileTest, NewerFormatsAreTried) {
         const std::string doubt = "its VDB file format, " + std::to_string(number) +
                                   ", is newer than 225, the newest that is known (of OpenVDB 13)";
         EXPECT_EQ(listGrids(file_).warning,
-                  name() + ": " + doubt + "; it is read as if nothing had changed since");
+                  name() + ": " + doubt + "; it is read as the newest known format");
         EXPECT_EQ(loadGrid(file_, "density").field.voxel({3, 0, 0}), 4);
 
         // Two more bytes than are expected, or fewer: the walk through the file ends elsewhere.
@@ -187,7 +187,7 @@ TEST_F(VdbFileTest, AWrongNameListsWhatThereIs) {
                 [&] { findGrid(file, "desnity"); });
     expectError(ErrorKind::Input,
                 "grid 'flame[1]' not found in " + name() +
-                    "; [0], [1], ... tell grids of one name apart, in the file's order; it has: "
+                    "; [0], [1], ... number the grids of one name, in the file's order; it has: "
                     "density (float), flame (float), velocity (vec3s)",
                 [&] { findGrid(file, "flame[1]"); });
     expectError(ErrorKind::Input, "grid 'xyz' not found in " + name() + "; it has: density (float)",

@@ -273,7 +273,7 @@ TEST_F(VdbLoad, KindsThatCannotBeRenderedSayWhatToDo) {
     expectRefused({.voxels = one, .gridClass = "level set"},
                   "cannot be used: it is a level set (distances, no density); convert it to a fog");
     expectRefused({.voxels = one, .frustum = true}, "its transform is a frustum");
-    expectRefused({.type = VdbType::Points}, "it holds points, no values");
+    expectRefused({.type = VdbType::Points}, "it holds points and no values");
     expectRefused(
         {.type = VdbType::Vec3s, .voxels = one},
         "is a vector grid (vec3s) where a scalar one is needed; scalar grids there: none");

@@ -43,11 +43,11 @@ void placeInBox(DenseVolume& volume, Vec3d lower, Vec3d upper, const std::filesy
     if (!usable) {
         volume.unitCube = true;
         fillUnitCube(volume);
-        volume.notes.push_back(fmt::format(
-            "{}: its box, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), is "
-            "empty or none: it fills the unit cube, as in Mitsuba without "
-            "use_grid_bbox, where --voxel, --size or --origin do not place it",
-            file.string(), lower.x, lower.y, lower.z, upper.x, upper.y, upper.z));
+        volume.notes.push_back(
+            fmt::format("{}: its box, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}), "
+                        "is empty or not a box. The volume fills the unit cube, as in Mitsuba "
+                        "without use_grid_bbox, unless --voxel, --size or --origin place it",
+                        file.string(), lower.x, lower.y, lower.z, upper.x, upper.y, upper.z));
         return;
     }
     Vec3d voxel;
@@ -63,7 +63,7 @@ DenseVolume readMitsubaVolume(const std::filesystem::path& file) {
     auto bytes = std::make_shared<FileBytes>(file, "a Mitsuba volume");
     const std::span<const char> magic = bytes->bytes(3);
     if (std::string_view(magic.data(), 3) != "VOL")
-        throw inputError("{} is no Mitsuba volume: it begins with '{}' instead of 'VOL'",
+        throw inputError("{} is not a Mitsuba volume: it begins with '{}' instead of 'VOL'",
                          file.string(), printable(std::string(magic.data(), 3)));
     if (const int version = bytes->value<unsigned char>(); version != 3)
         throw inputError("{}: Mitsuba volume of version {}; known: 3", file.string(), version);
@@ -96,7 +96,7 @@ double writeMitsubaVolume(const std::filesystem::path& file, const DenseVolume& 
         !(voxel.x > 0 && voxel.y > 0 && voxel.z > 0))
         throw inputError(
             "cannot write '{}': '{}' is rotated or sheared in the world, and a Mitsuba volume has "
-            "but a box along the axes; NRRD keeps any transform",
+            "only a box along the axes; .nrrd keeps any transform",
             file.string(), volume.name);
     std::string header("VOL\x03", 4);
     appendLittleEndian(header, std::int32_t{1});

@@ -27,9 +27,8 @@ void requireWritable(const fs::path& file, const openvdb::GridBase& grid) {
     using namespace openvdb;
     const bool isScalar = grid.isType<FloatGrid>() || grid.isType<DoubleGrid>();
     if (!isScalar && !grid.isType<Vec3SGrid>())
-        throw usageError(
-            "cannot write '{}': grid '{}' holds {} where float, double or vec3s is expected",
-            file.string(), grid.getName(), grid.valueType());
+        throw usageError("cannot write '{}': grid '{}' holds {}; expected float, double or vec3s",
+                         file.string(), grid.getName(), grid.valueType());
     if (!isScalar && grid.getGridClass() == GRID_LEVEL_SET)
         throw usageError("cannot write '{}': level set '{}' holds vectors", file.string(),
                          grid.getName());

@@ -24,7 +24,7 @@ public:
         const std::string_view value = after("descr");
         const std::size_t end = value.size() > 1 ? value.find(value[0], 1) : value.npos;
         if (end == value.npos || (value[0] != '\'' && value[0] != '"'))
-            throw wrong("'descr' is no name of a type (records are not supported)");
+            throw wrong("'descr' is not the name of a type (records are not supported)");
         return std::string(value.substr(1, end - 1));
     }
 
@@ -37,7 +37,7 @@ public:
 
     std::vector<std::int64_t> shape() const {
         std::string_view value = after("shape");
-        if (!value.starts_with('(')) throw wrong("'shape' is no tuple");
+        if (!value.starts_with('(')) throw wrong("'shape' is not a tuple");
         value.remove_prefix(1);
         std::vector<std::int64_t> shape;
         for (skipSpace(value); !value.starts_with(')'); skipSpace(value)) {
@@ -51,7 +51,7 @@ public:
             if (value.starts_with(','))
                 value.remove_prefix(1);
             else if (!value.starts_with(')'))
-                throw wrong("'shape' is no tuple");
+                throw wrong("'shape' is not a tuple");
         }
         return shape;
     }
@@ -119,7 +119,7 @@ std::string readHeaderText(Bytes& file) {
     constexpr std::string_view magic = "\x93NUMPY";
     const std::span<const char> start = file.bytes(magic.size());
     if (std::string_view(start.data(), start.size()) != magic)
-        throw inputError("{} is no NumPy array: it does not begin with \\x93NUMPY",
+        throw inputError("{} is not a NumPy array: it does not begin with \\x93NUMPY",
                          file.path().string());
     const int version = file.template value<unsigned char>();
     file.skip(1);
@@ -144,7 +144,8 @@ void setType(DenseVolume& volume, const std::string& descr, const std::filesyste
     const auto type = types.find(marked ? descr.substr(1) : descr);
     if (type == types.end())
         throw inputError(
-            "{}: an array of type '{}' holds no plain numbers; known: b1, u1 to u8, i1 to i8, f2, "
+            "{}: an array of type '{}' does not hold plain numbers; known: b1, u1 to u8, i1 to i8, "
+            "f2, "
             "f4, f8",
             file.string(), printable(descr));
     volume.type = type->second;
@@ -162,8 +163,10 @@ DenseVolume describeArray(const NpyHeader& header, const std::filesystem::path& 
     for (std::size_t a = 0; a < 3; ++a) volume.dims[a] = shape[a];
     if (shape.size() == 4) {
         if (shape[3] < 1 || shape[3] > 1024)
-            throw inputError("{}: the last of four dimensions is that of channels, and is {}",
-                             file.string(), shape[3]);
+            throw inputError(
+                "{}: the last of four dimensions is the number of channels; it is {}, and 1 to "
+                "1024 are possible",
+                file.string(), shape[3]);
         volume.channels = static_cast<int>(shape[3]);
     }
     return volume;
@@ -199,7 +202,7 @@ std::optional<DenseVolume> readArray(FileBytes& file, const ZipEntry& entry, boo
     const NpyHeader header(readHeaderText(bytes), place);
     const std::vector<std::int64_t> shape = header.shape();
     if (shape.size() != 3 && shape.size() != 4 && !wanted) {
-        notes.push_back(fmt::format("{} is left out: an array of shape {} is no volume",
+        notes.push_back(fmt::format("{} is left out: an array of shape {} is not a volume",
                                     place.string(), shapeText(shape)));
         return {};
     }

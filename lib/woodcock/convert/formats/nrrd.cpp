@@ -78,8 +78,8 @@ NrrdData describeData(const NrrdHeader& header) {
     if (data.encoding == "txt" || data.encoding == "text") data.encoding = "ascii";
     if (data.encoding == "bz2" || data.encoding == "bzip2" || data.encoding == "hex")
         throw inputError(
-            "{}: NRRD data in {} are not read; `unu save -f nrrd -e gzip -i {} -o OUT.nrrd` packs "
-            "them by gzip, which is",
+            "{}: woodcock does not read NRRD data in {}; `unu save -f nrrd -e gzip -i {} -o "
+            "OUT.nrrd` packs them by gzip, which it reads",
             header.file.string(), data.encoding, header.file.filename().string());
     if (data.encoding != "raw" && data.encoding != "gzip" && data.encoding != "ascii")
         throw header.wrong("encoding", "raw, gzip or ascii");
@@ -98,7 +98,8 @@ NrrdData describeData(const NrrdHeader& header) {
 void skipLines(FileBytes& file, std::int64_t lines) {
     while (lines > 0) {
         if (file.left() == 0)
-            throw inputError("{}: the NRRD field 'lineskip' skips all of it", file.path().string());
+            throw inputError("{}: the NRRD field 'lineskip' skips the whole file",
+                             file.path().string());
         if (file.value<char>() == '\n') --lines;
     }
 }
@@ -183,7 +184,7 @@ std::uint64_t rawBegin(FileBytes& file, const NrrdData& data, std::uint64_t need
     const std::uint64_t left = file.left();
     const auto skip = static_cast<std::uint64_t>(std::max<std::int64_t>(data.skipBytes, 0));
     if (needed > left || skip > left - needed)
-        throw inputError("{} is too short: its values take {} bytes{}, and there are {}",
+        throw inputError("{} is too short: its values take {} bytes{}, and it has {}",
                          file.path().string(), needed,
                          skip > 0 ? fmt::format(" after {} that are skipped", skip) : "", left);
     return data.skipBytes < 0 ? file.size() - needed : file.position() + skip;
@@ -226,7 +227,7 @@ bool loadDetached(DenseVolume& volume, const NrrdHeader& header, const NrrdData&
                   std::span<char> to) {
     const std::vector<fs::path> files = dataFiles(header);
     if (to.size() / sampleBytes(volume.type) % files.size() != 0)
-        throw inputError("{}: {} do not share out among {} data files", header.file.string(),
+        throw inputError("{}: {} cannot be split evenly among {} data files", header.file.string(),
                          volume.describe(), files.size());
     const std::size_t part = to.size() / files.size();
     bool more = false;
@@ -282,7 +283,7 @@ void loadValues(DenseVolume& volume, const NrrdHeader& header, std::shared_ptr<F
                         : loadDetached(volume, header, data, to);
     }
     if (more)
-        volume.notes.push_back(fmt::format("{}: {} follow its values, and are ignored",
+        volume.notes.push_back(fmt::format("{}: {} after its values are ignored",
                                            header.file.string(),
                                            data.encoding == "ascii" ? "numbers" : "bytes"));
 }

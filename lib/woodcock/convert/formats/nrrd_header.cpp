@@ -39,8 +39,9 @@ void readMagic(FileBytes& file) {
     const std::span<const char> magic = file.bytes(std::min<std::uint64_t>(file.left(), 8));
     const std::string_view text(magic.data(), magic.size());
     if (text.size() < 8 || !text.starts_with("NRRD000") || text[7] < '1' || text[7] > '6')
-        throw inputError("{} is no NRRD file: it begins with '{}' instead of NRRD0001 to NRRD0006",
-                         file.path().string(), printable(text));
+        throw inputError(
+            "{} is not a NRRD file: it begins with '{}' instead of NRRD0001 to NRRD0006",
+            file.path().string(), printable(text));
     readLine(file);
 }
 
@@ -202,14 +203,14 @@ NrrdHeader readNrrdHeader(FileBytes& file) {
             const bool detached =
                 header.has("datafile") && nrrdLower(header.get("datafile")) != "local";
             if (detached) return header;
-            throw inputError("{}: the NRRD header has no end: no empty line follows it",
+            throw inputError("{}: the NRRD header does not end: no empty line follows it",
                              file.path().string());
         }
         if (line->empty()) return header;
         if (line->starts_with('#') || line->find(":=") != line->npos) continue;
         const std::size_t colon = line->find(':');
         if (colon == line->npos)
-            throw inputError("{}: the NRRD header has the line '{}', which is no 'field: value'",
+            throw inputError("{}: the NRRD header has the line '{}', which is not 'field: value'",
                              file.path().string(), printable(line->substr(0, 100)));
         std::string name = nrrdLower(trimmed(line->substr(0, colon)));
         std::erase(name, ' ');
@@ -286,12 +287,12 @@ NrrdAxes nrrdAxes(const NrrdHeader& header) {
         if (axes.sizes[a] == 1) continue;
         if (axes.channels)
             throw inputError(
-                "{}: its axes {} and {} are both no axes of space; one of them can be read: take a "
-                "slice of the other, as `unu slice -a {} -p 0` does",
+                "{}: neither axis {} nor axis {} is an axis of space, and only one such axis can "
+                "be read; take a slice of the other, as `unu slice -a {} -p 0` does",
                 header.file.string(), *axes.channels, a, a);
         axes.channels = a;
         if (axes.sizes[a] > 1024)
-            throw header.wrong("sizes", "at most 1024 along an axis that is none of space");
+            throw header.wrong("sizes", "at most 1024 along an axis that is not one of space");
         if (kinds[a] != AxisKind::List) continue;
         const auto words = perAxis(header, "kinds", count);
         axes.list = !words.empty() && nrrdLower(words[a]) == "list" ? "entries of a list" : "times";

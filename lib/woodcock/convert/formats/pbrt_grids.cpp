@@ -184,9 +184,8 @@ PbrtMedium chooseMedium(PbrtScene& scene, const std::optional<std::string>& want
         found += fmt::format("; medium '{}' is of type '{}'", medium.name, medium.type());
     for (const std::string& include : scene.includes)
         found += fmt::format("; it includes '{}', which may have one", include);
-    throw inputError(
-        "{} has no medium of type uniformgrid, rgbgrid or heterogeneous made by MakeNamedMedium{}",
-        file.string(), printable(found));
+    throw inputError("{} has no MakeNamedMedium of type uniformgrid, rgbgrid or heterogeneous{}",
+                     file.string(), printable(found));
 }
 
 std::int64_t countOf(const PbrtMedium& medium, const char* name,
@@ -279,7 +278,8 @@ std::vector<DenseVolume> readPbrtGrids(const std::filesystem::path& path,
                          path.string(), medium.name);
     if (!scene.transforms.empty())
         volumes.front().notes.push_back(fmt::format(
-            "{}: the scene's transforms ({}) are not applied: the grid lies where p0 and p1 say",
+            "{}: the scene's transforms ({}) are not applied: the grid lies in the box from p0 to "
+            "p1",
             path.string(),
             joinNames(std::vector<std::string>(scene.transforms.begin(), scene.transforms.end()))));
     return volumes;

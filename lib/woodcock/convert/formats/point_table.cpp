@@ -82,8 +82,8 @@ std::string readTableText(const std::filesystem::path& file) {
     const bool marked = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
     if (marked || text.find('\0') < 64)
         throw inputError(
-            "{} is {}; save it as UTF-8 (in a spreadsheet: CSV UTF-8)", file.string(),
-            marked ? "text in UTF-16" : "no text, or text in UTF-16: it has bytes of 0");
+            "{} is {}; save it as text in UTF-8 (in a spreadsheet: CSV UTF-8)", file.string(),
+            marked ? "text in UTF-16" : "not text, or text in UTF-16: it has zero bytes");
     for (std::size_t i = 0; i < text.size(); ++i)
         if (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n')) text[i] = '\n';
     std::erase(text, '\r');

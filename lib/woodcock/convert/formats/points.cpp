@@ -137,7 +137,7 @@ void requireColumns(const fs::path& file, const Columns& columns) {
                              [&](Column column) { return ((column == c) || ...); });
     };
     const auto wrong = [&](const char* what) {
-        return inputError("{}: {}; found: {}. --columns says what the columns are, as x,y,z,radius",
+        return inputError("{}: {}; found: {}. Name the columns by --columns, such as x,y,z,radius",
                           file.string(), what, columns.describe());
     };
     if (count(Column::X) != 1 || count(Column::Y) != 1 || count(Column::Z) != 1)
@@ -180,14 +180,15 @@ Columns columnsFromWords(const std::string& words) {
         const Column column = skipped ? Column::Other : columnNamed(name);
         if (!skipped && column == Column::Other)
             throw usageError(
-                "--columns: '{}' is none of x, y, z, radius, pscale, width, density, weight and "
-                "value; - stands for a column that is not used",
+                "--columns: '{}' is not one of x, y, z, radius, pscale, width, density, weight and "
+                "value; write - for a column that is not used",
                 printable(name));
         columns.add("", column);
     }
     if (!columns.hasPoints())
-        throw usageError("--columns: '{}' names no x, y and z; such as x,y,z,-,radius",
-                         printable(words));
+        throw usageError(
+            "--columns: '{}' does not name x, y and z; expected names such as x,y,z,-,radius",
+            printable(words));
     return columns;
 }
 
@@ -219,14 +220,14 @@ public:
         }
         cloud_.columns = columns_.describe();
         if (decimalCommas_)
-            cloud_.notes.push_back(
-                fmt::format("{}: commas within numbers are read as decimal ones", file_.string()));
+            cloud_.notes.push_back(fmt::format(
+                "{}: commas within numbers are read as decimal points", file_.string()));
         return std::move(cloud_);
     }
 
 private:
     Error wrong(const TableCell& cell, std::string_view expected) const {
-        return inputError("{}:{}:{}: '{}' where {} is expected", file_.string(), line_, cell.column,
+        return inputError("{}:{}:{}: '{}' is not {}", file_.string(), line_, cell.column,
                           printable(cell.text.substr(0, 40)), expected);
     }
     bool isNumber(const TableCell& cell) const {
@@ -261,8 +262,8 @@ private:
         }
         if (cells.size() < 3)
             throw inputError(
-                "{}:{}: {} number{}, where x, y and z are expected; a first line of names, or "
-                "--columns, says what columns are",
+                "{}:{}: {} number{}; expected x, y and z. Name the columns by a first line of "
+                "names, or by --columns",
                 file_.string(), line_, cells.size(), cells.size() == 1 ? "" : "s");
         constexpr Column usual[]{Column::X, Column::Y, Column::Z};
         for (std::size_t i = 0; i < cells.size(); ++i)
@@ -270,7 +271,7 @@ private:
         if (cells.size() > 3)
             cloud_.notes.push_back(fmt::format(
                 "{} does not name its {} columns: the first three are taken for x, y and z, and "
-                "the rest is not used; to use it, name all: --columns x,y,z,radius",
+                "the others are not used. To use them, name all: --columns x,y,z,radius",
                 file_.string(), cells.size()));
         return false;
     }
@@ -278,11 +279,12 @@ private:
     void readPoint() {
         const std::size_t found = row_.cells.size(), expected = columns_.is.size();
         if (found != expected)
-            throw inputError("{}:{}: {} column{} where {} are expected{}", file_.string(), line_,
-                             found, found == 1 ? "" : "s", expected,
-                             found == 2 * expected
-                                 ? "; if commas are decimal, columns need ; or tabs between them"
-                                 : "");
+            throw inputError(
+                "{}:{}: {} column{}; expected {}{}", file_.string(), line_, found,
+                found == 1 ? "" : "s", expected,
+                found == 2 * expected
+                    ? "; if commas are decimal points, separate the columns by ; or tabs"
+                    : "");
         Vec3d point;
         for (std::size_t i = 0; i < found; ++i) {
             if (columns_.is[i] == Column::Other) continue;
@@ -310,8 +312,7 @@ PointCloud readPoints(const fs::path& file, const std::optional<std::string>& co
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (extension != ".ply" && extension != ".csv" && extension != ".txt" && extension != ".xyz")
         throw inputError(
-            "cannot read points '{}': its name ends in '{}', where .ply, .csv, .txt or .xyz is "
-            "expected",
+            "cannot read points '{}': its name ends in '{}'; expected .ply, .csv, .txt or .xyz",
             file.string(), extension);
     if (extension == ".ply" && columns)
         throw usageError("--columns is for tables, and {} is a PLY file", file.string());

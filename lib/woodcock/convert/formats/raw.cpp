@@ -13,8 +13,8 @@ DenseVolume readRaw(const std::filesystem::path& file, const RawLayout& layout) 
     volume.swapped = layout.bigEndian != (std::endian::native == std::endian::big);
     auto bytes = std::make_shared<FileBytes>(file, "a file of numbers");
     if (layout.headerBytes > bytes->size())
-        throw inputError("{}: a header of {} bytes is expected, and the file has {} bytes in all",
-                         file.string(), layout.headerBytes, bytes->size());
+        throw inputError("{}: --header gives {} bytes, and the whole file has {}", file.string(),
+                         layout.headerBytes, bytes->size());
     loadSamples(volume, std::move(bytes), layout.headerBytes);
     volume.setStridesXFirst();
     return volume;

@@ -41,8 +41,8 @@ std::uint64_t requireDims(const DenseVolume& volume, const std::filesystem::path
     const auto bytes = denseBytes(volume.dims, volume.channels, volume.type);
     if (!bytes)
         throw inputError(
-            "{}: {} x {} x {} voxels with {} channels are no volume; each side must be from 1 to "
-            "{}",
+            "{}: {} x {} x {} voxels with {} channels are not a volume; each side must be from 1 "
+            "to {}",
             file.string(), volume.dims[0], volume.dims[1], volume.dims[2], volume.channels,
             mostVoxelsOfSide);
     return *bytes;

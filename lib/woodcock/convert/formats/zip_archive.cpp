@@ -35,10 +35,10 @@ struct Directory {
 };
 
 Directory readDirectory64(FileBytes& file, std::uint64_t endPlace) {
-    if (endPlace < locator64Bytes) throw file.damaged("no place of the archive's directory");
+    if (endPlace < locator64Bytes) throw file.damaged("no directory of the archive");
     file.seek(endPlace - locator64Bytes);
     if (little<std::uint32_t>(file) != locator64Sign)
-        throw file.damaged("no place of the archive's directory");
+        throw file.damaged("no directory of the archive");
     file.skip(4);
     const auto end64 = little<std::uint64_t>(file);
     if (end64 > file.size()) throw file.damaged("a directory beyond the end");
@@ -73,7 +73,7 @@ Directory findDirectory(FileBytes& file) {
             return readDirectory64(file, place);
         return directory;
     }
-    throw inputError("{} is no zip archive, or its end is missing", file.path().string());
+    throw inputError("{} is not a zip archive, or its end is missing", file.path().string());
 }
 
 /// The 64-bit numbers of an entry, in their fixed order, for those that do not fit 32.
@@ -128,7 +128,7 @@ void requireSize(const FileBytes& file, const ZipEntry& entry) {
     const bool fits =
         entry.deflated ? entry.size / largestInflation <= entry.stored : entry.size == entry.stored;
     if (!fits || entry.stored > file.size())
-        throw file.damaged(fmt::format("{} bytes of '{}' are said to hold {}", entry.stored,
+        throw file.damaged(fmt::format("{} bytes of '{}' cannot unpack to {}", entry.stored,
                                        entry.name, entry.size));
 }
 

@@ -377,7 +377,8 @@ const nanovdb::GridData& requireHead(const GridName& name, const NanoBuffer& buf
         throw name.damaged(fmt::format("it is of format {}, where {} is expected", major,
                                        NANOVDB_MAJOR_VERSION_NUMBER));
     if (head.mGridSize > gridBytes || head.mGridSize < headBytes)
-        throw name.damaged(fmt::format("it has {} bytes and says {}", gridBytes, head.mGridSize));
+        throw name.damaged(
+            fmt::format("it has {} bytes, and its head says {}", gridBytes, head.mGridSize));
     return head;
 }
 
@@ -422,8 +423,8 @@ VdbGrids readNanoVdbGrid(const fs::path& path, std::size_t index) {
     const nanovdb::GridData& head = requireHead(name, buffer, buffer.size());
     const ValueType type = valueTypeOf(head);
     if (!type.read)
-        throw inputError("{}: grid '{}' holds {}, which are no numbers to be read", path.string(),
-                         name.grid, typeName(head));
+        throw inputError("{}: grid '{}' holds {}, which are not numbers that can be read",
+                         path.string(), name.grid, typeName(head));
     const openvdb::GridBase::Ptr grid =
         type.read(name, {buffer.data(), static_cast<std::size_t>(head.mGridSize)});
     grid->setTransform(readTransform(name, affineOf(head.mMap)));

@@ -49,7 +49,7 @@ SegmentHeader readHeader(FileBytes& file) {
     const std::string& path = file.path().string();
     if (file.left() < sizeof(SegmentHeader)) {
         if (file.position() > 0) throw file.damaged("the header of a segment");
-        throw inputError("{} is no NanoVDB file: it has {} bytes", path, file.left());
+        throw inputError("{} is not a NanoVDB file: it has {} bytes", path, file.left());
     }
     const std::uint64_t place = file.position();
     const auto header = file.value<SegmentHeader>();
@@ -59,7 +59,7 @@ SegmentHeader readHeader(FileBytes& file) {
         if (place > 0)
             throw inputError("{} is cut short or damaged: no segment begins at byte {}", path,
                              place);
-        throw inputError("{} is no NanoVDB file: it does not begin with 'NanoVDB0'", path);
+        throw inputError("{} is not a NanoVDB file: it does not begin with 'NanoVDB0'", path);
     }
     if (const unsigned major = header.version >> 21; major != knownMajorVersion)
         throw inputError("{} is of NanoVDB's format {}, where {} is expected", path, major,
@@ -88,7 +88,7 @@ constexpr std::uint64_t mostPerByte = 1100;
 void requireSize(const FileBytes& file, const NanoListing& grid) {
     if (grid.codec == NanoCodec::None ? grid.size != grid.stored
                                       : grid.size / mostPerByte > grid.stored)
-        throw file.damaged(fmt::format("{} bytes of grid '{}' are said to hold {}", grid.stored,
+        throw file.damaged(fmt::format("{} bytes of grid '{}' cannot unpack to {}", grid.stored,
                                        grid.name, grid.size));
 }
 

@@ -93,7 +93,7 @@ VdbGridHead readGridHead(FileBytes& file) {
     } catch (const openvdb::Exception& e) {
         throw file.damaged(e.what());
     } catch (const std::ios_base::failure&) {
-        throw file.damaged("more is asked for than there is");
+        throw file.damaged("more than the file holds");
     }
     return head;
 }

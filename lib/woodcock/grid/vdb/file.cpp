@@ -51,8 +51,8 @@ void describeTransform(GridListing& listing) {
 void describeUse(GridListing& listing) {
     if (listing.valueType == "points") {
         markUnusable(listing,
-                     "it holds points, no values; `woodcock convert IN OUT.vdb` makes a "
-                     "density of them");
+                     "it holds points and no values; `woodcock convert IN OUT.vdb` makes a density "
+                     "of the points");
     } else if (listing.channels == 0) {
         markUnusable(
             listing,
@@ -107,11 +107,10 @@ GridListing describe(const NanoVdbHead& head) {
         return listing;
     }
     if (head.channels == 0)
-        markUnusable(listing,
-                     fmt::format("a NanoVDB grid of {} holds no numbers to be drawn; those "
-                                 "of float, double, int32, int64, vec3s, vec3d, Fp4, Fp8, "
-                                 "Fp16 and FpN do",
-                                 head.valueType));
+        markUnusable(listing, fmt::format("a NanoVDB grid of {} holds no values to render; grids "
+                                          "of float, double, int32, int64, vec3s, vec3d, Fp4, Fp8, "
+                                          "Fp16 and FpN do",
+                                          head.valueType));
     describeUse(listing);
     describeTransform(listing);
     return listing;
@@ -149,8 +148,8 @@ VdbFile listGrids(const std::filesystem::path& path) {
                    {},
                    false};
     if (!file.doubt().empty())
-        listed.warning = fmt::format("{}: {}; it is read as if nothing had changed since",
-                                     path.string(), file.doubt());
+        listed.warning = fmt::format("{}: {}; it is read as the newest known format", path.string(),
+                                     file.doubt());
     for (const VdbHeader::Entry& entry : header.entries)
         listed.grids.push_back(describe(file, entry));
     return listed;

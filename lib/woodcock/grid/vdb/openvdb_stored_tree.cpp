@@ -34,7 +34,7 @@ StoredTree loadStoredTree(FileBytes& file, const GridListing& grid) {
     const VdbHeader::Entry* entry = &findEntry(file, header, uniqueName);
     if (!entry->treeOf.empty()) entry = &findEntry(file, header, entry->treeOf);
     if (!entry->treeOf.empty())
-        throw inputError("grid '{}' in {} shares the tree of '{}', which has none of its own",
+        throw inputError("grid '{}' in {} shares the tree of '{}', which has no tree itself",
                          uniqueName, file.path().string(), entry->uniqueName);
     StoredTree stored;
     stored.treeType = entry->treeType;

@@ -53,7 +53,8 @@ void readLeafOf(const StoredTree& stored, TreeStream& stream, std::size_t i, Lea
     const openvdb::Coord origin = leaf.origin();
     stream.seek(stored.layout.leaves[i]);
     leaf.readBuffers(stream, stored.savedAsHalf);
-    if (leaf.origin() != origin) throw std::runtime_error("a leaf says it lies elsewhere");
+    if (leaf.origin() != origin)
+        throw std::runtime_error("the origin of a leaf differs from its place in the tree");
 }
 
 }  // namespace woodcock

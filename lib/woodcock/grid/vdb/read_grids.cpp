@@ -29,7 +29,7 @@ bool readAs(const StoredTree& stored, openvdb::GridBase& grid) {
     leaves.reserve(stored.layout.leaves.size());
     tree->getNodes(leaves);
     if (leaves.size() != stored.layout.leaves.size())
-        throw std::runtime_error("its leaves are not where they should be");
+        throw std::runtime_error("the leaves lie elsewhere than the tree says");
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 128),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           TreeStream stream(stored);

@@ -104,7 +104,7 @@ private:
         leaves->reserve(stored_ ? stored_->layout.leaves.size() : tree_->leafCount());
         tree_->getNodes(*leaves);
         if (stored_ && leaves->size() != stored_->layout.leaves.size())
-            throw std::runtime_error("its leaves are not where they should be");
+            throw std::runtime_error("the leaves lie elsewhere than the tree says");
         std::vector<LeafKind> kinds(leaves->size());
         // Deterministic, so that the mean of a grid is the same number each time.
         source_.statistics.voxels = tbb::parallel_deterministic_reduce(
