@@ -236,7 +236,6 @@ TEST_F(ConfigWithTables, AMissingTableIsNamed) {
     EXPECT_NE(message.find("filmic.spi1d"), std::string::npos) << message;
 }
 
-}  // namespace
 /// A config with these looks, colour spaces and views beside the plain ones.
 class HostileConfig : public testing::Test {
 protected:
@@ -360,4 +359,5 @@ TEST_F(HostileConfig, NumbersBeyondAllBoundsAreRefusedInWords) {
                       [&] { ColorConfig config(dir_ / "v.ocio"); });
 }
 
+}  // namespace
 }  // namespace woodcock
