@@ -7,7 +7,7 @@ namespace woodcock {
 
 std::string flawOf(const Affine3d& map) {
     constexpr double shortest = 1e-50, longest = 1e50;
-    // Not by squares, which may leave what doubles can hold.
+    // By hypot: squares may overflow or underflow a double.
     const auto sizeOf = [](Vec3d v) {
         return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     };

@@ -17,7 +17,7 @@ struct Affine3d {
     double determinant() const { return dot(column[0], cross(column[1], column[2])); }
     bool operator==(const Affine3d&) const = default;
 
-    /// (*this) after `first`.
+    /// The map that applies `first`, then this one.
     Affine3d operator*(const Affine3d& first) const {
         return {{vector(first.column[0]), vector(first.column[1]), vector(first.column[2])},
                 point(first.translation)};
@@ -56,9 +56,9 @@ struct Affine3d {
     }
 };
 
-/// What is wrong with a map that is to be followed both ways, such as "is not finite"; empty where
-/// nothing is. Axes are 1e-50 to 1e50 long, so that two maps in a row stay within doubles, and
-/// their squares too, and do not lie in one plane.
+/// Why a map cannot be used in both directions, such as "is not finite"; empty where it can. Its
+/// axes must be 1e-50 to 1e50 long and not lie in one plane. So two maps in a row, and the squares
+/// of their axes, stay within doubles.
 std::string flawOf(const Affine3d& map);
 
 }  // namespace woodcock

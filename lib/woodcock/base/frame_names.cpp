@@ -13,8 +13,8 @@ namespace {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// Texts and numbers in turn, beginning with a text: "a.", "0009", ".vdb". A minus behind a dot or
-/// an underscore belongs to the number.
+/// The texts and numbers of a name in turn, beginning with a text: "a.", "0009", ".vdb". A minus
+/// behind a dot or an underscore belongs to the number.
 std::vector<std::string> splitAtNumbers(const std::string& name) {
     std::vector<std::string> parts{""};
     for (size_t i = 0; i < name.size();) {
@@ -34,7 +34,7 @@ std::vector<std::string> splitAtNumbers(const std::string& name) {
     return parts;
 }
 
-/// What is the same in all names that differ in numbers alone.
+/// The name with its numbers left out: equal for all frames of a series.
 std::string skeleton(const std::vector<std::string>& parts) {
     std::string text;
     for (size_t i = 0; i < parts.size(); i += 2) text += parts[i] + '\0';
@@ -48,7 +48,7 @@ std::optional<long long> valueOf(std::string_view number) {
     return value;
 }
 
-/// By value, then by spelling.
+/// Compares numbers by value, then by spelling.
 bool isBefore(const std::string& a, const std::string& b) {
     const auto x = valueOf(a), y = valueOf(b);
     return x && y && *x != *y ? *x < *y : a < b;
@@ -62,7 +62,8 @@ void sortNumbers(std::vector<std::string>& numbers) {
 }  // namespace
 
 std::string framePattern(std::string_view name) {
-    // A single '#' or '@' is a pattern where it stands alone, as in "x.#.png"; "c#.png" has a name.
+    // A single '#' or '@' is a pattern only between separators, as in "x.#.png"; "c#.png" is a
+    // name.
     static const std::array<std::regex, 6> patterns{
         std::regex(R"(#{2,}|@{2,})"),
         std::regex(R"((^|[/._-])([#@])(?=[._-]|$))"),
@@ -155,7 +156,7 @@ std::string shellNumbers(const std::vector<std::string>& numbers) {
         const auto a = valueOf(numbers[i - 1]), b = valueOf(numbers[i]);
         even = a && b && *b == *a + 1 && numbers[i].size() >= numbers[i - 1].size();
     }
-    // Numbers without leading zeros may grow by a digit; those with them keep their width.
+    // Numbers without leading zeros may grow by a digit; padded ones keep their width.
     even = even && (numbers.front().size() == numbers.back().size() || numbers.front()[0] != '0');
     if (even) return fmt::format("{{{}..{}}}", numbers.front(), numbers.back());
     return fmt::format("{}", fmt::join(numbers, " "));

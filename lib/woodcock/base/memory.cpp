@@ -34,12 +34,12 @@ std::uint64_t numberOf(const fs::path& file, const std::string& name) {
 /// A control group that limits this process's memory.
 struct ControlGroup {
     std::uint64_t limit = 0;
-    std::uint64_t used = 0;  ///< without the file caches, which make room
+    std::uint64_t used = 0;  ///< without file caches, which the system frees when memory is needed
 };
 
 void addGroups(std::vector<ControlGroup>& groups, const fs::path& root, const std::string& path,
                const char* limit, const char* used) {
-    // In a container the group's own directory is the root. Limits above hold as well.
+    // In a container the group's directory is the root. The limits of parent groups hold as well.
     for (fs::path at = path;; at = at.parent_path()) {
         const fs::path directory = root / at.relative_path();
         if (const auto most = numberIn(directory / limit); most && *most > 0) {

@@ -10,8 +10,8 @@ namespace woodcock {
 /// shell (ulimit -v) sets a limit.
 std::uint64_t memoryLimit();
 
-/// Bytes that this process may still take, by what is free now: in the machine, within the shell's
-/// limit of addresses, and within its control groups.
+/// Bytes that this process may still take now: the least of what is free in the machine, within the
+/// shell's limit of addresses (ulimit -v), and within its control groups.
 std::uint64_t memoryLeft();
 
 /// For readers: "480 GiB", "23.4 GiB", "0.25 GiB".

@@ -40,7 +40,7 @@ size_t editDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearestName(std::string_view word, std::span<const std::string> known) {
-    constexpr size_t longestWord = 100;  // what is longer is no slip of the pen
+    constexpr size_t longestWord = 100;  // longer words are not typing mistakes
     if (word.size() > longestWord) return {};
     std::string nearest;
     size_t fewest = std::max<size_t>(1, word.size() / 3) + 1;

@@ -9,7 +9,7 @@
 
 namespace woodcock {
 
-// Words of a command line. Each throws Error{Usage} that says what was expected.
+// Parsers for words of a command line. Each throws Error{Usage} that says what was expected.
 
 inline constexpr int largestImageSide = 65536;
 
@@ -19,7 +19,7 @@ struct SampleRange {
 };
 SampleRange parseSampleRange(std::string_view text);
 
-/// "960x540", or a width alone, where the height follows from the scene's own shape.
+/// "960x540", or a width alone; then the height follows from the scene's own aspect ratio.
 struct ImageSize {
     int width = 0;
     std::optional<int> height;
@@ -43,7 +43,7 @@ std::uint64_t parseCount(std::string_view text, std::uint64_t lowest, std::uint6
 /// A number from `lowest` to `highest`; a plus before it is allowed.
 double parseNumber(std::string_view text, double lowest, double highest);
 
-/// "40,120": where a sun stands, elevation from -90 to 90 and azimuth, in degrees.
+/// "40,120": the position of a sun: elevation from -90 to 90, and azimuth, in degrees.
 std::pair<double, double> parseAngles(std::string_view text);
 
 /// "1%" or "0.01": positive, at most 1.

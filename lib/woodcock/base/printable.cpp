@@ -12,7 +12,7 @@ namespace {
 
 struct Letter {
     std::uint32_t code = 0;
-    std::size_t bytes = 0;  ///< 0: no UTF-8 begins here
+    std::size_t bytes = 0;  ///< 0: not valid UTF-8
 };
 
 /// The first letter of a text that is not empty (RFC 3629: neither overlong, nor a surrogate).

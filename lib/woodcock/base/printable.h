@@ -7,9 +7,9 @@
 
 namespace woodcock {
 
-/// The text for one line of a message: what could break the line, drive a terminal or change the
-/// order of letters is spelled out, as \x0a. These are control characters (C0, DEL, C1), the
-/// Unicode marks of direction and of line ends, and bytes that are no UTF-8.
+/// The text, safe within one line of a message. Bytes that could break the line, control a terminal
+/// or change the order of letters are written as \x0a. These are control characters (C0, DEL, C1),
+/// the Unicode marks of direction and of line ends, and bytes that are not UTF-8.
 std::string printable(std::string_view text);
 
 /// The same for a text of several lines: line ends and tabs stay.

@@ -21,8 +21,8 @@ constexpr std::uint64_t hashOf(std::uint64_t first, A... rest) {
     return h;
 }
 
-/// SplitMix64: one word of state, so that every path can own a stream that is named by its pixel
-/// and sample and by nothing else.
+/// SplitMix64. Its state is one word, so every path has a stream of its own, which depends on its
+/// pixel and sample only.
 class RandomStream {
 public:
     explicit RandomStream(std::uint64_t name = 0) : state_(name) {}

@@ -27,7 +27,7 @@ std::string_view kindOf(mode_t mode) {
 RegularFile::RegularFile(const std::filesystem::path& file, std::string_view what)
     : file_(file), what_(what) {
     struct stat status {};
-    // Looked at before it is opened: opening alone may start a device.
+    // Checked before it is opened: opening a device may already start it.
     if (::stat(file.c_str(), &status) != 0)
         throw unreadable(errno == ENOENT || errno == ENOTDIR
                              ? "there is no such file"
@@ -35,7 +35,7 @@ RegularFile::RegularFile(const std::filesystem::path& file, std::string_view wha
     if (!S_ISREG(status.st_mode)) throw unreadable(kindOf(status.st_mode));
     descriptor_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor_ < 0) throw unreadable(std::generic_category().message(errno));
-    // It may be another one by now.
+    // The name may lead to another file by now.
     if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
         ::close(descriptor_);
         throw unreadable("it was replaced while it was opened");

@@ -9,8 +9,8 @@
 
 namespace woodcock {
 
-/// A regular file that is open for reading. Pipes, devices and directories are refused at once: a
-/// pipe would be waited for, and a device may have no end.
+/// A regular file that is open for reading. Pipes, devices and directories are refused at once:
+/// reading a pipe could wait forever, and a device may have no end.
 class RegularFile {
 public:
     /// `what` names the kind of file in messages: "cannot read image 'a.png': it is a pipe".

@@ -13,7 +13,7 @@ constexpr std::uint32_t reverseBits(std::uint32_t v) {
     return ((v & 0x55555555u) << 1) | ((v & 0xaaaaaaaau) >> 1);
 }
 
-/// A bijection in which every bit depends on itself and on lower ones only (Laine and Karras 2011,
+/// A bijection in which every bit depends on itself and on lower bits only (Laine and Karras 2011,
 /// constants of Vegdahl 2021): on reversed bits, a nested uniform (Owen) scramble.
 constexpr std::uint32_t scrambleUpwards(std::uint32_t v, std::uint32_t seed) {
     v ^= v * 0x3d20adeau;

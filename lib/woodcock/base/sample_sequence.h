@@ -10,9 +10,9 @@ namespace woodcock {
 
 /// Numbers in [0, 1) for the first dimensions of the path of one sample of one pixel:
 /// Owen-scrambled Sobol points in sets of four dimensions, padded with shuffled indices (Burley
-/// 2020, "Practical Hash-based Owen Scrambling"). Every pixel has a sequence of its own, of which
-/// sample i is the i-th point: any range of samples can be rendered by itself, and no number of
-/// samples is favoured but powers of two. Depends on (seed, pixel, sample) only.
+/// 2020, "Practical Hash-based Owen Scrambling"). Every pixel has a sequence of its own, and its
+/// sample i is the i-th point. So any range of samples can be rendered by itself; only powers of
+/// two are favoured as numbers of samples. Depends on (seed, pixel, sample) only.
 class SampleSequence {
 public:
     SampleSequence(std::uint64_t seed, int x, int y, std::uint32_t sample);

@@ -7,8 +7,8 @@
 
 namespace woodcock {
 
-/// N colour channels, scene-linear. Rgb = Spectrum<3> in descriptions and films; the path loop runs
-/// on Spectrum<1> where the medium is grey, whatever the colour of its lights.
+/// N colour channels, scene-linear. Descriptions and films use Rgb = Spectrum<3>. The path loop
+/// uses Spectrum<1> where the medium is grey, whatever the colour of the lights.
 template <int N>
 struct Spectrum {
     std::array<float, N> c{};
@@ -58,7 +58,7 @@ struct Spectrum {
 
 using Rgb = Spectrum<3>;
 
-/// True when all three channels are equal, so that one channel tells all.
+/// True when all three channels are equal, so that one channel suffices.
 constexpr bool isGrey(Rgb v) { return v[0] == v[1] && v[1] == v[2]; }
 
 /// The first N channels of a colour: all three, or the one that stands for a grey.

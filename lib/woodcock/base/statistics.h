@@ -6,8 +6,8 @@
 
 namespace woodcock {
 
-/// Mean and standard error of a stream of numbers. Welford 1962: stable where sums of squares lose
-/// all their digits.
+/// Mean and standard error of a stream of numbers. Welford 1962: accurate where sums of squares
+/// would lose all digits.
 class Moments {
 public:
     void add(double x) {

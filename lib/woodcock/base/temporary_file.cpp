@@ -24,8 +24,9 @@ namespace {
 constexpr std::string_view ending = ".part";
 constexpr std::size_t randomDigits = 16;
 
-/// What the names of this machine's temporary files begin with since it was started: a lock on a
-/// shared disk may be invisible to other machines. Empty where that is not known.
+/// The prefix of temporary files that this machine has made since it was started. Files of other
+/// machines have another one: their locks on a shared disk may be invisible here. Empty where the
+/// prefix is not known.
 const std::string& ourBeginning() {
     static const std::string beginning = [] {
         std::string boot;
@@ -73,8 +74,8 @@ TemporaryFile::TemporaryFile(const fs::path& directory, mode_t mode) {
             ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
         if (descriptor_ < 0 && errno == EEXIST) continue;
         if (descriptor_ < 0) throw std::system_error(errno, std::generic_category());
-        // Somebody who clears up may have come before the lock. File systems without locks do
-        // without: nobody clears up there either.
+        // Another process may have removed the file before it was locked. File systems without
+        // locks need none: nothing is removed there.
         struct stat status {};
         const bool locked = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
         if (locked && ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;

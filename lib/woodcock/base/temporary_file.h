@@ -7,8 +7,8 @@
 
 namespace woodcock {
 
-/// A new file under a name that nobody can foresee, removed at the end unless it was renamed. While
-/// it lives it is locked, by which others know that somebody is at work.
+/// A new file with an unpredictable name. It is removed at the end unless it was renamed. While it
+/// exists it is locked, so that other processes see that it is in use.
 class TemporaryFile {
 public:
     /// `mode` as of open(2). Throws std::system_error with the system's reason.
@@ -19,8 +19,8 @@ public:
 
     const std::filesystem::path& path() const { return path_; }
     int descriptor() const { return descriptor_; }
-    /// Gives it its name for good, in place of what has that name. Returns errno, 0 where it went
-    /// well.
+    /// Gives the file its final name, and replaces what had that name. Returns errno, 0 where it
+    /// went well.
     int rename(const std::filesystem::path& target);
 
 private:
@@ -29,9 +29,9 @@ private:
     bool renamed_ = false;
 };
 
-/// Removes the temporary files that killed runs of this user left in a directory. What a living
-/// process holds stays, and so does what was left before the machine started or by another machine:
-/// whether that lives cannot be known.
+/// Removes the temporary files that killed runs of this user left in a directory. Files stay that a
+/// running process holds, that are older than the machine's start, or that another machine made:
+/// whether their process still runs cannot be known.
 void removeLeftovers(const std::filesystem::path& directory);
 
 }  // namespace woodcock

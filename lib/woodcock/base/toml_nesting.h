@@ -7,11 +7,12 @@
 
 namespace woodcock {
 
-/// Parts of a dotted key, "a.b.c": the TOML library makes a table within a table of each, by
-/// functions that call themselves.
+/// Parts of a dotted key, "a.b.c": the TOML library nests a table for each part, by recursive
+/// functions.
 inline constexpr std::size_t mostKeyParts = 32;
 
-/// Throws Error{Input} where a TOML text has a key of more parts. `name` stands for the file.
+/// Throws Error{Input} where a TOML text has a key of more parts. `name` is the file's name in
+/// messages.
 void refuseDeepKeys(std::string_view text, const std::string& name);
 
 }  // namespace woodcock

@@ -74,7 +74,7 @@ std::string readTomlFile(const std::filesystem::path& file, std::string_view wha
     if (std::filesystem::is_regular_file(status) &&
         std::filesystem::file_size(file, error) > largestFile)
         throw tooLarge();
-    // Pipes are read too, as of a script that makes the text; some would never end.
+    // Pipes are read too, for a script may write the text. Some pipes would never end.
     std::ifstream stream(file, std::ios::binary);
     std::string text(largestFile + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -227,7 +227,7 @@ TomlValue TomlTable::need(std::string_view key, std::string_view example) const 
 }
 
 void TomlTable::allowOnly(const std::vector<std::string>& known, std::string_view where) const {
-    // The table is sorted by name: the user wants the first in the file.
+    // The table is sorted by name; the user wants the first unknown key of the file.
     const toml::key* first = nullptr;
     const auto position = [](const toml::key& k) {
         return std::pair(k.source().begin.line, k.source().begin.column);

@@ -16,8 +16,8 @@
 
 namespace woodcock {
 
-// How scenes and recipes are read from TOML: every value knows its place in the file and the name
-// that messages call it by, and throws Error{Input} when it is not what was expected.
+// How scenes and recipes are read from TOML: every value knows its place in the file and its name
+// in messages, and throws Error{Input} when it is not what was expected.
 
 /// The source path of values that come from an override starts with this.
 inline constexpr std::string_view overrideMark = "--set ";
@@ -34,7 +34,7 @@ struct NumberRange {
     bool contains(double v) const {
         return strict ? v > lower && v < upper : v >= lower && v <= upper;
     }
-    /// What a number outside must do, such as "must not be negative".
+    /// The demand on a number outside of the range, such as "must not be negative".
     std::string demand(double v) const;
 };
 inline constexpr NumberRange notNegative{0};
@@ -42,7 +42,7 @@ inline constexpr NumberRange positive{.lower = 0, .strict = true};
 
 class TomlTable;
 
-/// Parses a text; `name` stands for the file in messages. Errors: Input, with the place.
+/// Parses a text; `name` is the file's name in messages. Errors: Input, with the place.
 toml::table parseToml(std::string_view text, const std::string& name);
 
 /// The text of a small file; `what` names its kind ("scene file") in messages. Errors: Input when
@@ -69,12 +69,14 @@ public:
     Rgb colour(NumberRange range) const;  ///< from a number or [r, g, b]
     Vec3d exactColour(NumberRange range) const;
     Affine3d affine() const;  ///< from four rows of four, regular
-    /// With ~ and variables expanded, relative to `base` (an override: to the working directory).
+    /// A path with ~ and variables expanded, relative to `base` (in an override: to the working
+    /// directory).
     std::filesystem::path path(const std::filesystem::path& base) const;
-    /// The index in `known` of this text; `what` names the kind of thing ("light type").
+    /// The index of this text in `known`; `what` names the kind of choice ("light type").
     size_t choice(std::string_view what, std::span<const std::string> known) const;
     TomlValue element(size_t i) const;
-    /// The elements of an array, `size` of them if given; `expected` says what is, where it is not.
+    /// The elements of an array, `size` of them if given. `expected` describes the array in
+    /// messages.
     std::vector<TomlValue> elements(std::string_view expected,
                                     std::optional<size_t> size = {}) const;
     TomlTable table() const;

@@ -59,8 +59,8 @@ template <class T>
 constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
-/// The largest integer not above `v`, which must fit an int: truncation is one instruction where
-/// floor is a call.
+/// The largest integer not above `v`, which must fit an int. Truncation is one instruction;
+/// std::floor may be a call.
 inline int floorToInt(double v) {
     const int i = static_cast<int>(v);
     return i - (v < i);

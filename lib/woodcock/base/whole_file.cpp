@@ -57,7 +57,7 @@ int descriptorNamed(const fs::path& file) {
 /// A descriptor of a pipe or device that takes bytes, or -1 and errno.
 int openStream(const fs::path& file) {
     constexpr std::chrono::milliseconds pause(20), patience(10000);
-    // A pipe without a reader would be waited for without end.
+    // Opening a pipe without a reader would wait forever.
     for (auto waited = std::chrono::milliseconds::zero();; waited += pause) {
         const int descriptor = ::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
         if (descriptor >= 0) {
@@ -103,8 +103,8 @@ int copyAll(int from, int to) {
     }
 }
 
-/// Gives a file the owner, group, permissions and access list of the one whose place it takes, as
-/// far as the system lets this user.
+/// Gives a file the owner, group, permissions and access list of the file that it replaces, as far
+/// as the system lets this user.
 void keepAttributes(int descriptor, const fs::path& former, const struct stat& status) {
     if (::fchown(descriptor, status.st_uid, status.st_gid) != 0 &&
         ::fchown(descriptor, static_cast<uid_t>(-1), status.st_gid) != 0)
@@ -144,7 +144,7 @@ FileInTheMaking::Target::Target(const fs::path& name) : file(name) {
 
 FileInTheMaking::FileInTheMaking(const fs::path& target)
     : named_(target), target_(std::make_unique<Target>(target)) {
-    // What is written into takes its bytes in order, but not every format is made in order.
+    // Streams take their bytes in order, but some formats are not written in order.
     try {
         const fs::path directory =
             target_->isReplaced() ? directoryOf(target_->file) : fs::temp_directory_path();
@@ -164,7 +164,8 @@ void FileInTheMaking::commit() {
             keepAttributes(temporary_->descriptor(), target_->file, target_->status);
         error = temporary_->rename(target_->file);
     }
-    // A file that is mounted by itself cannot be replaced, nor one of others in a sticky directory.
+    // A file that is a mount point cannot be replaced, nor a file of another user in a sticky
+    // directory.
     const bool inPlace = error == EBUSY || error == EPERM;
     if (!target_->isReplaced() || inPlace) {
         const int to = target_->kind == Target::Kind::Descriptor ? ::dup(target_->descriptor)
@@ -181,7 +182,7 @@ void FileInTheMaking::commit() {
 void writeWholeFile(const fs::path& file, std::span<const unsigned char> bytes) {
     FileInTheMaking making(file);
     const int descriptor = making.temporary_->descriptor();
-    // Some file systems tell of a full disk when a descriptor is closed.
+    // Some file systems report a full disk only when a descriptor is closed.
     if (const int error = closeAfter(::dup(descriptor), writeAll(descriptor, bytes)))
         throw failure("cannot write '{}': {}", file.string(), reasonOf(error));
     making.commit();
@@ -220,7 +221,7 @@ void checkWritable(const fs::path& file) {
     if (!fs::is_directory(directory, ignored))
         throw usageError("cannot write '{}': '{}' is not a directory", file.string(),
                          directory.string());
-    // Permissions alone do not tell: root has them all, even where the file system takes no files.
+    // Permissions are not enough: root has them all, even where the file system takes no files.
     try {
         const TemporaryFile probe(directory, 0600);
     } catch (const std::system_error& e) {
@@ -233,7 +234,7 @@ void checkWritable(const fs::path& file) {
 bool sameFile(const fs::path& a, const fs::path& b) {
     std::error_code missing;
     if (fs::equivalent(a, b, missing)) return true;
-    // A name for nothing yet may still lead to the same place as another.
+    // A name without a file may still lead to the same place as another name.
     return fs::weakly_canonical(a, missing) == fs::weakly_canonical(b, missing);
 }
 

@@ -18,8 +18,8 @@ struct Camera {
     Affine3d worldFromCamera;
     double fovY = 40;   ///< full vertical angle in degrees (perspective)
     double height = 1;  ///< world units from bottom to top (orthographic)
-    /// How far the film is moved to the right and upwards, in heights of the picture: it then shows
-    /// what lies there, without turning.
+    /// How far the film is moved to the right and upwards, in heights of the picture (a lens
+    /// shift): the camera sees what lies there without turning.
     double shiftX = 0, shiftY = 0;
 
     /// The ray through film position (x, y), in pixels of an image of width x height, y down.
@@ -29,7 +29,8 @@ struct Camera {
     static Camera orthographic(Vec3d eye, Vec3d lookAt, Vec3d up, double height);
 };
 
-/// The rigid motion that stands at `eye` and looks at `lookAt`; `up` is any vector not along it.
+/// worldFromCamera of a camera at `eye` that looks at `lookAt`. `up` is any vector that is not
+/// parallel to the view.
 Affine3d lookAtTransform(Vec3d eye, Vec3d lookAt, Vec3d up);
 
 }  // namespace woodcock

@@ -28,7 +28,8 @@ EnvironmentMap::EnvironmentMap(int width, int height, std::vector<float> pixels)
         const double area = top - bottom;  // x 2 pi / width
         double* row = &columnCdf_[static_cast<std::size_t>(y) * (w + 1)];
         for (int x = 0; x < width; ++x) {
-            // The pixel as bilinear interpolation spreads it: never zero where radiance is not.
+            // The pixel's brightness as bilinear interpolation spreads it: zero only where the
+            // radiance is.
             double brightness = 0;
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i)
@@ -66,7 +67,7 @@ EnvironmentMap::Sample EnvironmentMap::sample(double u0, double u1) const {
     if (!(rowCdf_[h] > 0)) return {{0, 1, 0}, 0};
     const auto [y, fy] = invert(rowCdf_.data(), h, u1);
     const auto [x, fx] = invert(&columnCdf_[y * (w + 1)], w, u0);
-    // Even in solid angle inside the pixel: linear in the cosine of the polar angle.
+    // Uniform in solid angle inside the pixel: linear in the cosine of the polar angle.
     const double top = std::cos(pi * static_cast<double>(y) / height_);
     const double bottom = std::cos(pi * static_cast<double>(y + 1) / height_);
     const double cosine = top + (bottom - top) * fy;

@@ -8,7 +8,7 @@
 
 namespace woodcock {
 
-/// A lat-long image of radiance, bilinear, with the distribution that samples it by brightness.
+/// A lat-long image of radiance, interpolated bilinearly, and sampled in proportion to brightness.
 /// In light space +y is up, the centre of the image looks along -z and +x lies to its right.
 class EnvironmentMap {
 public:

@@ -5,8 +5,8 @@ namespace woodcock {
 
 namespace {
 
-/// A direction inside the cone of 1 - cos(half angle) = `oneMinusCos` around `axis`, even in solid
-/// angle; 1 - cos is kept by itself so that half a degree, or a millionth of one, loses no digits.
+/// A direction inside the cone of 1 - cos(half angle) = `oneMinusCos` around `axis`, uniform in
+/// solid angle. 1 - cos is passed as such, so that tiny angles lose no digits.
 Vec3d sampleCone(Vec3d axis, double oneMinusCos, double u0, double u1) {
     const double below = u0 * oneMinusCos;
     const double sine = std::sqrt(below * (2 - below)), phi = 2 * pi * u1;
@@ -18,7 +18,7 @@ Vec3d sampleCone(Vec3d axis, double oneMinusCos, double u0, double u1) {
 /// 1 - cos of the angle between unit vectors, exact for small angles.
 double oneMinusCosine(Vec3d a, Vec3d b) { return dot(a - b, a - b) / 2; }
 
-/// 1 - cos of the half angle under which a sphere appears, from (radius / distance)^2.
+/// 1 - cos of the half angle that a sphere subtends, from (radius / distance)^2.
 double apparentOneMinusCos(double sin2) { return sin2 / (1 + std::sqrt(1 - sin2)); }
 
 }  // namespace

@@ -12,20 +12,22 @@
 
 namespace woodcock {
 
-/// Light that arrives at a point from one direction, as drawn by a light's own sampling.
+/// Light that arrives at a point from one direction, drawn by a light's own sampling.
 struct LightSample {
     Vec3d direction;  ///< from the point towards the light, unit length
     double distance = std::numeric_limits<double>::infinity();
-    Rgb weight;      ///< radiance / pdf, or the irradiance perpendicular to it of a delta light
-    double pdf = 0;  ///< per steradian; 0: a delta light, which no other sampling can hit
+    Rgb weight;      ///< radiance / pdf; of a delta light, the irradiance perpendicular to the
+                     ///< direction
+    double pdf = 0;  ///< per steradian; 0: a delta light, which no other sampling can find
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     std::uint32_t emitter = none;  ///< of a MeshLight: the triangle
 };
 
-/// Parallel rays, or a disc in the sky of even radiance.
+/// Parallel rays, or a disc of uniform radiance in the sky.
 class Sun {
 public:
-    /// `travel`: the way its light goes. `irradiance` is on a surface perpendicular to it.
+    /// `travel`: the direction in which its light goes (world). `irradiance`: on a surface
+    /// perpendicular to it.
     Sun(Vec3d travel, Rgb irradiance, double angularDiameterDegrees, bool visible);
 
     bool delta() const { return sinHalf_ == 0; }
@@ -73,7 +75,8 @@ struct PointLight {
     LightSample sample(Vec3d from) const;
 };
 
-/// A sphere that radiates evenly outwards and lets other light pass; it gives none inside itself.
+/// A sphere that emits uniform radiance outwards and lets other light pass. It emits nothing
+/// inwards.
 struct SphereLight {
     Vec3d position;
     double radius;
@@ -82,7 +85,7 @@ struct SphereLight {
 
     LightSample sample(Vec3d from, double u0, double u1) const;  ///< weight 0 from inside
     double pdf(Vec3d from, Vec3d direction) const;
-    /// Distance at which a ray from outside enters the sphere; infinity when it misses.
+    /// Distance at which a ray from outside enters the sphere; infinity when the ray misses it.
     double hit(Vec3d origin, Vec3d direction) const;
 };
 

@@ -33,8 +33,8 @@ double importance(const Light& light, const ScatterPoint& at) {
                        const Vec3d d = l.position - at.position;
                        const double distance = std::max(length(d), l.radius);
                        const double area = pi * l.radius * l.radius / (distance * distance);
-                       // Half by the phase towards the centre, half as if isotropic: a wide light
-                       // reaches directions that its centre does not.
+                       // Half by the phase function towards the centre, half as if isotropic: a
+                       // wide light also sends light from directions beside its centre.
                        const double p = distance > l.radius ? phase(d / distance) : 0;
                        return l.radiance.mean() * area * (0.5 * p + 0.5 / (4 * pi));
                    },
@@ -122,7 +122,8 @@ float LightSet::typicalRadiance(const Box3d& bounds) const {
     const double size = length(bounds.size()) / 4;
     double sum = 0;
     for (const Light& light : lights_) {
-        const auto far = [&](Vec3d p, double power) {  // irradiance no nearer than `size`
+        const auto far = [&](Vec3d p,
+                             double power) {  // irradiance, from a distance of at least `size`
             const double d = std::max(size, length(bounds.centre() - p));
             return d > 0 ? power / (d * d) / (4 * pi) : 0;
         };

@@ -60,7 +60,7 @@ public:
 
 private:
     static constexpr std::size_t bucketCount = 12;
-    /// From here on halves: with 32 bits of emitters no path is longer than 64.
+    /// Deeper nodes are halved: with 32 bits of emitters no path is longer than 64.
     static constexpr int freeDepth = 31;
 
     struct Split {
@@ -80,7 +80,7 @@ private:
             for (int axis = 0; axis < 3; ++axis)
                 if (size[axis] > 0) {
                     Split s = bestSplit(chosen, centres, axis);
-                    s.cost *= longest / size[axis];  // thin boxes are worse than they seem
+                    s.cost *= longest / size[axis];  // thin boxes cost more than their measure says
                     if (s.cost < best.cost) best = s;
                 }
         if (best.cost < std::numeric_limits<double>::infinity()) {
@@ -113,7 +113,7 @@ private:
             b.spread = std::max(b.spread, e.bounds.spread);
             b.power += e.bounds.power;
         }
-        // Around the sum of the axes, which is cheaper than cone by cone
+        // Around the sum of the axes, which is cheaper than merging cones one by one
         for (EmitterBounds& b : bucket)
             b.axis = length(b.axis) > 0 ? normalize(b.axis) : Vec3d{1, 0, 0};
         std::array<double, bucketCount> leastCosine;
@@ -136,7 +136,8 @@ private:
         best.axis = axis;
         sum = bucket[bucketCount - 1];
         for (std::size_t i = bucketCount - 1; i-- > 0;) {
-            // No side is empty: the least and the greatest centre are in the outermost buckets.
+            // Neither side is empty: the least and the greatest centre are in the outermost
+            // buckets.
             if (const double cost = costBelow[i] + sum.cost(); cost < best.cost)
                 best.cost = cost, best.bucket = i;
             sum = merged(sum, bucket[i]);
@@ -181,12 +182,12 @@ EmitterBounds merged(const EmitterBounds& a, const EmitterBounds& b) {
 }
 
 double LightTree::Node::importance(Vec3d from) const {
-    // Of cosines, and far above rounding: what is seen edge-on keeps a chance.
+    // Of cosines, far above rounding: an emitter that is seen edge-on keeps a chance.
     constexpr double slack = 1e-6;
     const Vec3d d = from - centre;
     const double distance = length(d);
-    // Among them the nearest counts most. Found by experiment: with radius^2 itself, the variance
-    // close to a mesh of many triangles is ten times as high.
+    // The nearest emitter of the node counts most. The tenth was found by experiment: with radius^2
+    // itself, the variance close to a mesh of many triangles is ten times as high.
     const double irradiance = power / std::max(distance * distance, radius * radius / 10);
     if (!(distance > radius)) return irradiance;
     const double sinApparent = radius / distance;

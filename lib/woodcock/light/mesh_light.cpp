@@ -12,34 +12,34 @@ namespace woodcock {
 
 namespace {
 
-// Smaller triangles are sampled evenly by area: directions into them would differ in their last
-// digits alone. Larger ones are all but a half-space, so near to their plane that they have no
-// shape beyond rounding; there all directions of the hemisphere are sampled, and a few miss.
+// Triangles of a smaller solid angle are sampled uniformly by area: directions into them would
+// differ in their last digits only. Triangles of a larger one fill the hemisphere but for rounding:
+// all of its directions are sampled, and a few miss.
 constexpr double smallest = 1e-8, largest = 2 * pi - 1e-6;
 
-/// Twice the area long, towards the side that emits.
+/// A normal of twice the area's length, on the side that emits.
 Vec3d wideNormal(const MeshLight::Triangle& t) {
     return cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
 }
 
-/// A point that lies in the plane of a triangle, as one on the triangle itself does. What rounding
-/// makes of its height would say which side it is on, and so whether half of all that can be seen
-/// from there shines.
+/// Whether a point lies in the plane of a triangle, as a point on it does. Otherwise rounding would
+/// decide on which side it is, and so whether the triangle lights it.
 bool inPlaneOf(const MeshLight::Triangle& t, Vec3d from) {
     const Vec3d normal = wideNormal(t);
-    double sum = 0;  // of what the height is the difference of
+    double sum = 0;  // of the terms whose difference is the height
     for (int axis = 0; axis < 3; ++axis)
         sum += std::abs(normal[axis]) * (std::abs(from[axis]) + std::abs(t.corner[0][axis]));
     constexpr double rounding = 0x1p-46;  // of a few transforms
     return !(std::abs(dot(normal, t.corner[0] - from)) > rounding * sum);
 }
 
-/// 0 from the side that is dark.
+/// Solid angle of the triangle; 0 from its dark side.
 double litSolidAngle(const MeshLight::Triangle& t, const SphericalTriangle& seen) {
     return t.bothSides || seen.front() ? seen.solidAngle() : 0;
 }
 
-/// Of sampleDirection(), per steradian. `distance` is that of the point on the triangle.
+/// The density of sampleDirection(), per steradian. `distance` is that of the point on the
+/// triangle.
 double density(const MeshLight::Triangle& t, Vec3d from, double solidAngle, double distance) {
     if (solidAngle > largest) return 1 / (2 * pi);
     if (solidAngle >= smallest) return 1 / solidAngle;
@@ -47,7 +47,8 @@ double density(const MeshLight::Triangle& t, Vec3d from, double solidAngle, doub
     return 2 * distance * distance * distance / height;  // distance^2 / (area cosine)
 }
 
-/// `distance` becomes that of the point on the triangle; not a positive number where there is none.
+/// Sets `distance` to that of the point on the triangle, or to a number that is not positive where
+/// the direction misses it.
 Vec3d sampleDirection(const MeshLight::Triangle& t, const SphericalTriangle& seen, Vec3d from,
                       double u0, double u1, double& distance) {
     if (seen.solidAngle() < smallest) {
@@ -119,7 +120,7 @@ double MeshLight::importance(std::uint32_t node, Vec3d from) const {
     return t.radiance.mean() * litSolidAngle(t, SphericalTriangle(t.corner, from));
 }
 
-/// Of a node's two children: the probability of the first. Not a number where neither is seen.
+/// The probability of a node's first child. NaN where neither child can be seen.
 double MeshLight::firstShare(std::uint32_t node, Vec3d from) const {
     const double first = importance(node + 1, from);
     const double second = importance(tree_.nodes[node].second, from);

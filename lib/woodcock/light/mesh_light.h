@@ -16,7 +16,7 @@ struct LightSample;
 
 /// All emissive triangles of a scene as one light: a triangle is chosen through a tree by power,
 /// distance and orientation (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
-/// Adaptive Tree Splitting"), then a direction into it, even in solid angle.
+/// Adaptive Tree Splitting"), then a direction into it, uniform in solid angle.
 class MeshLight {
 public:
     struct Triangle {
@@ -25,26 +25,27 @@ public:
         bool bothSides = false;
         bool operator==(const Triangle&) const = default;
     };
-    /// What a triangle sends out where it varies: at corner 0 + b1 (corner 1 - corner 0) +
-    /// b2 (corner 2 - corner 0), from the side that it faces or from the other.
+    /// Radiance of a triangle where a texture varies it: at corner 0 + b1 (corner 1 - corner 0) +
+    /// b2 (corner 2 - corner 0), from its front or its back.
     using RadianceAt = std::function<Rgb(std::uint32_t triangle, double b1, double b2, bool front)>;
 
-    /// Triangles without area or radiance, or with any that is not finite, are never sampled.
-    /// Without `radianceAt` each sends out its mean everywhere.
+    /// Triangles of zero area or radiance, or with numbers that are not finite, are never sampled.
+    /// Without `radianceAt` each emits its mean everywhere.
     explicit MeshLight(std::vector<Triangle> triangles, RadianceAt radianceAt = {});
 
     std::span<const Triangle> triangles() const { return triangles_; }
 
-    /// Weight 0 where nothing of it is seen. `triangle` becomes the chosen one, where there is one.
+    /// A sample at `from` (world). Its weight is 0 where no triangle can be seen; else `triangle`
+    /// is the chosen one.
     LightSample sample(Vec3d from, double u0, double u1, std::uint32_t& triangle) const;
-    /// Per steradian: that sample() at `from` finds `position` on this triangle; 0 where the
-    /// triangle sends nothing to `from`.
+    /// Density, per steradian, with which sample() at `from` finds `position` on this triangle; 0
+    /// where the triangle sends nothing to `from`.
     double pdf(Vec3d from, std::uint32_t triangle, Vec3d position) const;
 
-    /// Rough irradiance (mean over channels) at a point that faces it: steers the choice among
-    /// lights. 0 only where none of it is seen.
+    /// Importance: roughly the irradiance (mean over channels) at a point that faces the light. 0
+    /// only where no triangle can be seen.
     double importance(Vec3d from) const;
-    Vec3d centre() const { return centre_; }  ///< of its power
+    Vec3d centre() const { return centre_; }  ///< weighted by power
     double power() const { return power_; }   ///< of the largest channel
 
 private:

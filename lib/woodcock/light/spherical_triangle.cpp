@@ -11,8 +11,8 @@ SphericalTriangle::SphericalTriangle(const std::array<Vec3d, 3>& corner, Vec3d f
         if (!(distance[i] > 0)) return;
         corner_[i] = corner_[i] / distance[i];
     }
-    // det(a, b, c) = det(a, b - a, c - a): the edges come from the corners, so that small triangles
-    // far away lose nothing.
+    // det(a, b, c) = det(a, b - a, c - a). The edges are differences of corners, so that small
+    // triangles far away lose no digits.
     const Vec3d e1 = (corner[1] - corner[0]) / distance[1];
     const Vec3d e2 = (corner[2] - corner[0]) / distance[2];
     const double determinant = dot(corner_[0], cross(e1, e2));

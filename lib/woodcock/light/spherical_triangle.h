@@ -7,20 +7,20 @@
 
 namespace woodcock {
 
-/// A triangle as it is seen from a point.
+/// A triangle projected onto the unit sphere around a point.
 class SphericalTriangle {
 public:
     SphericalTriangle(const std::array<Vec3d, 3>& corner, Vec3d from);
 
-    /// From 0 to 2 pi; 0 in the triangle's own plane, and where a corner is the point itself. All
-    /// digits are right however small it is.
+    /// From 0 to 2 pi. 0 in the triangle's own plane, and where the point is a corner. All digits
+    /// are right, however small it is.
     double solidAngle() const { return solidAngle_; }
     /// The point is on the side from which the corners run counter-clockwise.
     bool front() const { return front_; }
 
     bool contains(Vec3d direction) const;
-    /// A direction into the triangle, even in solid angle. Not for solid angles so close to 2 pi
-    /// that the corners and the point lie in one plane but for rounding.
+    /// A direction into the triangle, uniform in solid angle, by u in [0, 1)^2. Not for solid
+    /// angles so close to 2 pi that the point lies in the triangle's plane but for rounding.
     Vec3d sample(double u0, double u1) const;
 
 private:
