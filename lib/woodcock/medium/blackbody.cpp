@@ -27,10 +27,10 @@ constexpr double observer[][3]{
 
 constexpr double coldest = 500;
 
-/// Of 1 / T, in 1 / K.
+/// The colour for `inverse` = 1 / T, in 1 / K.
 Vec3d exactColour(double inverse) {
     constexpr double c2 = 1.438776877e-2;  // h c / k, in m K
-    inverse = std::max(inverse, 1e-9);     // the limit of all heat
+    inverse = std::max(inverse, 1e-9);     // the limit of very high temperatures
     Vec3d xyz;
     double nm = 380;
     for (const auto& seen : observer) {

@@ -29,8 +29,8 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
                 field.background(c));
         }
     support_ = field.support(), extent_ = field.extent();
-    // As if the brightest voxel were one collision wide: cells that tell bright from dark, and not
-    // many more.
+    // As if the brightest voxel were one collision wide: cells that separate bright from dark, and
+    // few others.
     const double largest = std::max(std::abs(field.range().min), std::abs(field.range().max));
     majorants_ = MajorantGrid(field, {largest > 0 ? 1 / largest : 1, 1, 1});
 }
@@ -81,7 +81,7 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
                              ? -std::log1p(v * std::expm1(-extinction * length)) / extinction
                              : v * length;
     const double t = piece->t0 + std::min(along, length);
-    // Over the bound, which is a factor of the light as well.
+    // Divided by the bound, which is also a factor of the light.
     const double density = 0.5 / even + 0.5 * std::exp(-extinction * (t - first)) / dimmed;
     const double weight = 1 / (density * piece->bound);
     const Rgb q = piece->part->value(origin + direction * t);

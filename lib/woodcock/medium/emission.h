@@ -14,9 +14,9 @@
 
 namespace woodcock {
 
-/// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It is
-/// found whether or not there is anything that absorbs. It is zero outside of its field's support
-/// or, where that has a background, outside of the field's limits.
+/// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It
+/// does not depend on absorption. It is zero outside of its field's support or, where the field has
+/// a background, outside of the field's limits.
 class EmissionPart {
 public:
     struct Description {
@@ -26,7 +26,7 @@ public:
         Rgb scale{1.0f};                     ///< q where f is 1
     };
     /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
-    /// field has a background without limits: what glows everywhere is infinitely bright.
+    /// field has a background without limits: a medium that emits everywhere is infinitely bright.
     explicit EmissionPart(Description description);
 
     const Description& description() const { return d_; }
@@ -66,20 +66,20 @@ private:
     MajorantGrid majorants_;
 };
 
-/// A point of a ray, and what its emission brings: the mean of `light` times the transmittance to
-/// `t` is all that the ray's emission adds.
+/// A point of a ray, and its emission. The mean of `light` times the transmittance to `t` is the
+/// radiance that emission adds to the ray.
 struct EmissionPoint {
     double t;
     Rgb light;
 };
 
-/// Draws one point on a straight piece of a path by what may be emitted there, whatever becomes of
-/// the path: Villemin and Hery 2013, "Practical Illumination from Flames"; Simon et al. 2017, "Line
-/// Integration for Rendering Heterogeneous Emissive Volumes".
+/// Draws one point on a straight piece of a path in proportion to a bound of the emission there,
+/// whether or not the path goes on: Villemin and Hery 2013, "Practical Illumination from Flames";
+/// Simon et al. 2017, "Line Integration for Rendering Heterogeneous Emissive Volumes".
 ///
-/// The density is an even mixture of two: the bounds of q alone, which keeps every weight bounded,
-/// and the same with the transmittance of a homogeneous medium, which does not look for light
-/// where none comes through.
+/// The density is an equal mixture of two. One follows the bounds of q, which keeps every weight
+/// bounded. The other also follows the transmittance of a homogeneous medium, so that few points
+/// are drawn from where no light gets through.
 class EmissionSampler {
 public:
     /// `extinction`: of that homogeneous medium, per world unit. `u` in [0, 1).

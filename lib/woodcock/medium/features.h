@@ -8,14 +8,14 @@ namespace woodcock {
 
 struct Medium;
 
-// What a medium is at a point, as denoisers ask of surfaces.
+// Albedo and normal of a medium at a point, as denoisers use those of surfaces.
 
 /// sigma_s / sigma_t of the whole medium, in [0, 1]; 0 where there is none.
 Rgb scatteringAlbedo(const Medium& medium, Vec3d world);
 
-/// The way out, as a surface's normal is: unit vector down the gradient of sigma_t (mean of the
-/// channels), from the reconstruction a voxel to either side. 0 where density is even, as in
-/// homogeneous boxes, whose faces it does not know.
+/// A normal that points out of the medium: the unit vector against the gradient of sigma_t (mean of
+/// the channels), by differences over one voxel to either side (world). 0 where the density is
+/// uniform, as in homogeneous boxes; their faces are not considered.
 Vec3d densityNormal(const Medium& medium, Vec3d world);
 
 }  // namespace woodcock

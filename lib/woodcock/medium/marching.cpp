@@ -15,9 +15,9 @@ namespace woodcock {
 
 namespace {
 
-/// Look-ups that one ray may need of one part.
+/// The most lookups that one ray may need of one part.
 constexpr double mostLookUps = 1e6;
-/// Optical depth that nothing passes, but finite.
+/// An optical depth that lets nothing through, but is finite.
 constexpr double opaque = 1e4;
 
 /// A number for each channel, in the precision of optical depths.
@@ -44,7 +44,7 @@ double minusLogCosine(double x) {
     return cosine > 0 ? -std::log(cosine) : opaque;
 }
 
-/// A stretch of a ray within which the extinction is taken as even.
+/// A part of a ray along which the extinction is taken as constant.
 template <int N>
 struct Step {
     double t0 = 0, t1 = 0;  ///< t1 may be infinite
@@ -56,7 +56,7 @@ struct Step {
     double depth(int c, double t) const { return rate[c] > 0 ? rate[c] * (t - t0) : 0; }
 };
 
-/// The steps of one part along a ray, in order; those that hold nothing are left out.
+/// The steps of one part along a ray, in order. Empty steps are left out.
 template <int N>
 class March {
 public:
@@ -92,7 +92,7 @@ public:
     }
 
 private:
-    /// Where the field is constant, and beyond its support.
+    /// Takes the step exactly where the field is constant, and beyond its support.
     bool known(Step<N>& step) const {
         if (segment_.range.min == segment_.range.max)
             step.f = Spectrum<N>(segment_.range.min);
@@ -142,7 +142,7 @@ struct Event {
     Spectrum<N> f = {};  ///< there
 };
 
-/// Depths of one part from the ray's start to `t`, with the same steps as before.
+/// Optical depths of one part from the ray's start to `t`, by the same steps as before.
 template <int N>
 void addDepth(March<N> march, double t, Numbers<N>& depth, TrackingCounters& counters) {
     Step<N> step;
@@ -150,9 +150,9 @@ void addDepth(March<N> march, double t, Numbers<N>& depth, TrackingCounters& cou
         for (int c = 0; c < N; ++c) depth[c] += step.depth(c, std::min(t, step.t1));
 }
 
-/// A point of a step that is known to hold an event of channel c: one of four, stratified by what
-/// an even extinction would make of the step, chosen by the field there (resampling: Talbot et al.
-/// 2005). Without it scattering would be blurred by the width of a step.
+/// The point of an event of channel c within a step. One of four points is chosen in proportion to
+/// the field there (resampling: Talbot et al. 2005). The four are stratified as by a constant
+/// extinction. Without this, scattering would be blurred by the width of a step.
 template <int N>
 double placeWithin(const Step<N>& step, const March<N>& march, int c, RandomStream& random,
                    Spectrum<N>& f, TrackingCounters& counters) {
@@ -169,7 +169,7 @@ double placeWithin(const Step<N>& step, const March<N>& march, int c, RandomStre
         values[i] = fieldAt<N>(*march.part().field(), march.ray().at(t[i]));
         sum += values[i][c];
     }
-    if (!(sum > 0)) {  // then what the step was estimated from is all that is known
+    if (!(sum > 0)) {  // then only the step's own estimate is known
         f = Spectrum<N>::map([&](int k) {
             const float extinction = march.part().extinction()[k];
             return extinction > 0 ? static_cast<float>(step.rate[k] / extinction) : 0.0f;
@@ -186,8 +186,8 @@ double placeWithin(const Step<N>& step, const March<N>& march, int c, RandomStre
     return t[chosen];
 }
 
-/// Marches one part to the first event of channel c before `event`, which it replaces. `depth`:
-/// all channels' up to there, or to the ray's end. True: it did.
+/// Marches one part to the first event of channel c before `event`, and replaces that. `depth`:
+/// optical depths of all channels up to there, or to the ray's end. True: there was such an event.
 template <int N>
 bool findEvent(March<N> march, int part, int c, double u, RandomStream& random, Event<N>& event,
                Numbers<N>& depth, TrackingCounters& counters) {
@@ -210,7 +210,7 @@ bool findEvent(March<N> march, int part, int c, double u, RandomStream& random, 
     return false;
 }
 
-/// Channels' chances to draw the optical depth.
+/// The probability of each channel to draw the optical depth.
 template <int N>
 Numbers<N> channelChances(const Medium& medium, Spectrum<N> throughput) {
     Numbers<N> chances{};
@@ -225,8 +225,8 @@ Numbers<N> channelChances(const Medium& medium, Spectrum<N> throughput) {
     return chances;
 }
 
-/// What an event, or the lack of one, makes of the throughput: the density of what happened over
-/// its chance, channel by channel.
+/// Weights the throughput for an event, or for none: for each channel, the density of what happened
+/// over the probability with which it was sampled.
 template <int N>
 Spectrum<N> weightOf(const Medium& medium, const DistanceQuery<N>& q, const Event<N>& event,
                      const Numbers<N>& chances, const Numbers<N>& depth) {
@@ -250,7 +250,7 @@ Spectrum<N> weightOf(const Medium& medium, const DistanceQuery<N>& q, const Even
     }
 }
 
-/// The parts' marches are told by their random streams: a part can be marched again.
+/// Each part marches by a random stream of its own, so that it can be marched again.
 template <int N>
 void marchOne(const Medium& medium, const MarchSettings& settings, DistanceQuery<N>& q,
               std::vector<RandomStream>& streams, TrackingCounters& counters) {
@@ -279,8 +279,8 @@ void marchOne(const Medium& medium, const MarchSettings& settings, DistanceQuery
     q.t = event.t, q.part = event.part;
 }
 
-/// The optical depth at which each channel's weight falls below what roulette asks for, or below
-/// the smallest float.
+/// The optical depth at which each channel's weight falls below roulette's threshold, or below the
+/// smallest float.
 template <int N>
 Numbers<N> deepest(Spectrum<N> weight, const Roulette& roulette) {
     const double least = std::max(double{roulette.killBelow()}, 1e-46);

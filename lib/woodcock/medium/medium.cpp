@@ -43,7 +43,7 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
 const MajorantGrid& MediumPart::marchCells() const {
     std::call_once(marchCells_->made, [this] {
         if (!d_.field || !(d_.field->range().max > 0)) return;
-        // As if it were deep beyond all measure: no cells are worth merging that differ.
+        // As if the optical depth were huge: then no cells that differ are merged.
         const double deep = 1e9 / d_.field->range().max;
         marchCells_->cells = MajorantGrid(*d_.field, {deep, 1, blockLog2});
     });
@@ -59,7 +59,8 @@ void MediumPart::takeCoefficients() {
     largestExtinction_ = extinction().maximum();
     channelWeight_ = Rgb::map([&](int c) {
         const float sigmaT = extinction()[c];
-        const float albedo = sigmaT > 0 ? d_.scattering[c] / sigmaT : 1;  // vacuum loses nothing
+        const float albedo =
+            sigmaT > 0 ? d_.scattering[c] / sigmaT : 1;  // in vacuum nothing is absorbed
         return 0.05f + albedo * albedo;
     });
 }

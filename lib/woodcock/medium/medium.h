@@ -30,45 +30,48 @@ public:
         std::shared_ptr<const Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
         Affine3d albedoWorldFromIndex;
         double g = 0;
-        double majorantScale = 1;      ///< loosens the majorants; see MajorantGrid::Options
+        double majorantScale = 1;      ///< > 1 loosens the majorants; see MajorantGrid::Options
         int majorantSmallestLog2 = 1;  ///< coarsens them
     };
     explicit MediumPart(Description description);
 
-    /// What a part with the same field in the same place may have of its own.
+    /// The coefficients that a part may change while it keeps field and place.
     struct Coefficients {
         Rgb absorption{0.0f}, scattering{0.0f};
         double g = 0;
         /// sigma_a where the albedo is 0, over `scattering`; see similar_medium.h.
         float loss = 1;
     };
-    /// Shares the field and its bounds, whose cells are as fine as *this* part needed them.
+    /// A part with these coefficients. It shares the field and its bounds, whose cells are as fine
+    /// as *this* part needed.
     MediumPart with(const Coefficients& coefficients) const;
 
     const Description& description() const { return d_; }
     double g() const { return d_.g; }
     /// sigma_t where f is 1; an upper bound where extinctionVaries().
     const Rgb& extinction() const { return extinction_; }
-    /// Channels' weights in deciding for all of them at once; see collide() in tracking.cpp.
+    /// The weight of each channel in a decision for all channels at once; see collide() in
+    /// tracking.cpp.
     const Rgb& channelWeight() const { return channelWeight_; }
     const Rgb& absorption() const { return d_.absorption; }
     const Rgb& scattering() const { return d_.scattering; }
     float loss() const { return loss_; }
-    /// sigma_t changes with the albedo, not with f alone: never so for a part just described.
+    /// True where sigma_t depends on the albedo and not on f only. Never true for a part made from
+    /// a Description.
     bool extinctionVaries() const { return d_.albedo && loss_ != 1; }
     float largestExtinction() const { return largestExtinction_; }
     const Field* field() const { return d_.field.get(); }
     const Field* albedo() const { return d_.albedo.get(); }
     const MajorantGrid& majorants() const { return *majorants_; }
-    /// Cells for ray marching: as large as may be without mixing what is empty, or constant, with
-    /// what is not. Made by whichever thread asks first.
+    /// Cells for ray marching: as large as possible without mixing empty or constant parts with
+    /// others. The first thread that asks makes them.
     const MajorantGrid& marchCells() const;
 
     IndexRay indexRay(Vec3d origin, Vec3d direction) const {
         return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
     }
-    /// False only where the ray surely meets nothing of this part before tMax: a quick answer, with
-    /// room for rounding. `inverse`: one over each component of the direction.
+    /// False only where the ray surely does not meet this part before tMax: a quick test, with a
+    /// margin for rounding. `inverse`: one over each component of the direction.
     bool mayMeet(Vec3d origin, Vec3d inverse, double tMax) const {
         double enter = 0, leave = tMax;
         for (int i = 0; i < 3; ++i) {
@@ -83,9 +86,9 @@ public:
     /// Index-space box outside which f is the background.
     const Box3d& support() const { return support_; }
     Range background() const { return background_; }
-    /// Index-space box outside which f is 0, where that is not the background's doing; else null.
+    /// Index-space box outside which f is 0 although the field has a background; else null.
     const Box3d* limits() const { return limits_ ? &*limits_ : nullptr; }
-    /// What the part takes up, but for a background without limits.
+    /// Index-space box of the part, but for a background without limits.
     const Box3d& extent() const { return limits_ ? *limits_ : support_; }
     bool unbounded() const { return background_.max > 0 && !limits_; }
     Box3d worldBounds() const { return d_.worldFromIndex.box(extent()); }
@@ -96,7 +99,8 @@ public:
     Rgb sigmaT(Vec3d world) const;
     Rgb sigmaS(Vec3d world) const;
 
-    /// Rough mean of the largest channel's sigma_t over the support: steers cost only.
+    /// Roughly the mean of the largest channel's sigma_t over the support, per world unit. It
+    /// affects cost only.
     double meanExtinction() const { return meanExtinction_; }
 
     bool chromatic() const;
@@ -113,7 +117,7 @@ private:
     Affine3d indexFromWorld_, albedoIndexFromWorld_;
     Box3d support_;
     std::optional<Box3d> limits_;
-    Box3d reach_;  // of world space: a little more than all that is not 0
+    Box3d reach_;  // of world space: a little more than where f is not 0
     Range background_;
     float largestExtinction_ = 0;
     Rgb channelWeight_;
@@ -123,7 +127,7 @@ private:
         std::once_flag made;
         MajorantGrid cells;
     };
-    std::shared_ptr<Lazy> marchCells_ = std::make_shared<Lazy>();  // of the field alone
+    std::shared_ptr<Lazy> marchCells_ = std::make_shared<Lazy>();  // depend on the field only
 };
 
 /// The sum of its parts.
@@ -152,7 +156,7 @@ public:
                      ? CellWalk(cells, part.support(), ray, enter_, leave_)
                      : CellWalk()) {}
 
-    /// False for segments of the background before and after.
+    /// False for segments of the background before and after the support.
     bool insideSupport(const Segment& s) const { return s.t0 >= enter_ && s.t1 <= leave_; }
 
     bool next(Segment& segment) {

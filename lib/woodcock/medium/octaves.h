@@ -12,7 +12,7 @@ namespace woodcock {
 /// multiplied by a^i, the extinction towards the light by b^i, and the phase function's g by c^i.
 /// Wrenninge, Kulla and Lundqvist 2013, "Oz: The Great and Volumetric", with their a = b = c = 1/2;
 /// also Hillaire 2016, "Physically Based Sky, Atmosphere and Cloud Rendering in Frostbite". The
-/// paper asks for a <= b, lest light comes from nothing.
+/// paper requires a <= b, or energy would be created.
 namespace octave {
 
 inline double amount(int i) { return std::ldexp(1.0, -i); }      ///< a^i
@@ -28,8 +28,8 @@ inline int draw(int n, double u) {
 
 }  // namespace octave
 
-/// What light of octave i goes through after its scattering: it only absorbs, b^i sigma_t. Shares
-/// the fields and their bounds. What glows is left out.
+/// The medium that light of octave i passes after its scattering: it only absorbs, with b^i
+/// sigma_t. It shares the fields and their bounds. Emission is left out.
 Medium octaveMedium(const Medium& medium, int i);
 
 }  // namespace woodcock

@@ -10,9 +10,8 @@ struct Medium;
 
 /// Exact optical depth of every channel along [t0, t1] of a world ray (no randomness, up to
 /// rounding): trilinear density is a cubic along a ray inside a cell of the voxel lattice, where
-/// two-point Gauss-Legendre is exact; nearest look-ups are constant between planes halfway between
-/// voxels. Slow: the reference for the estimators above. Not for parts
-/// whose extinction varies with the albedo.
+/// two-point Gauss-Legendre is exact; nearest lookups are constant between planes halfway between
+/// voxels. Slow: the reference for the estimators. Not for parts whose extinctionVaries().
 Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1);
 
 }  // namespace woodcock

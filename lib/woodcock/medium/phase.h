@@ -8,9 +8,9 @@
 namespace woodcock {
 
 /// Henyey-Greenstein with mean cosine g in (-1, 1): value per steradian for the cosine between the
-/// way the light travelled before and after. Integrates to one over the sphere.
-/// Henyey and Greenstein 1941, eq. 2; the denominator 1 + g^2 - 2 g cos is written without the
-/// cancellation that costs all digits near g = +-1.
+/// way the light travelled before and after. Integrates to one over the sphere. Henyey and
+/// Greenstein 1941, eq. 2; the denominator 1 + g^2 - 2 g cos is written without the cancellation
+/// that would lose all digits near g = +-1.
 inline double henyeyGreenstein(double cosine, double g) {
     const double d = g >= 0 ? (1 - g) * (1 - g) + 2 * g * (1 - cosine)
                             : (1 + g) * (1 + g) - 2 * g * (1 + cosine);
@@ -24,7 +24,7 @@ struct PhaseSample {
 
 /// Samples a direction around unit vector `forward` in proportion to the phase function, by u in
 /// [0,1)^2. The inverted CDF is expanded in s = 2u-1 so that g may be zero or of any small size,
-/// and 1 - cos and 1 + cos are formed by themselves so that g may come close to +-1.
+/// and 1 - cos and 1 + cos are computed separately so that g may come close to +-1.
 inline PhaseSample sampleHenyeyGreenstein(Vec3d forward, double g, double u0, double u1) {
     const double s = 2 * u0 - 1;
     const double q = 1 + g * s;

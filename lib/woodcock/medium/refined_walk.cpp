@@ -10,9 +10,9 @@ namespace woodcock {
 
 namespace {
 
-/// Majorant optical depth below which a piece needs no better bounds, and a whole cell.
+/// Majorant optical depths below which a piece, or a whole cell, needs no better bounds.
 constexpr double shallow = 1, shallowCell = 16;
-/// Bounds whose ratio is at most this are tight: every second collision is real.
+/// Bounds whose ratio is at most this are tight: at least every second collision is real.
 constexpr float closeRatio = 2;
 /// The bounds below are exact but for rounding: of floats, and of index positions.
 constexpr double slack = 1e-6, positionSlack = 4e-16;
@@ -53,8 +53,8 @@ struct Lattice {
     }
 };
 
-/// Bounds of what a ray reads from a to b, both in the unit cube from voxel `v` on; of nearest
-/// look-ups, in the one around it.
+/// Bounds of the values along a ray from a to b, both in the unit cube that begins at voxel `v`;
+/// for nearest lookups, in the unit cube around `v`.
 Range between(const Field& field, Vec3i v, Vec3d a, Vec3d b, int channel) {
     if (field.lookup() == Lookup::Trilinear) return Lattice(field, v, channel).between(a, b);
     const float value = field.voxel(v, channel);
@@ -113,8 +113,8 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
         }
         range.max = range.min;
         for (int c = 0; c < field.channels(); ++c) {
-            // A channel of little extinction may have large values: what counts is the product,
-            // above the lower bound that all share.
+            // A channel of small extinction may have large values. What counts is their product,
+            // above the lower bound that all channels share.
             const Range& r = channel[static_cast<std::size_t>(c)];
             const double share = grey ? 1 : part.extinction()[c] / largest;
             range.max = std::max(range.max, above(range.min, (double{r.max} - range.min) * share));

@@ -5,28 +5,29 @@
 
 namespace woodcock {
 
-/// A walk whose cells can be cut, while walking, into pieces with bounds of the reconstruction on
-/// that very stretch of the ray. A cell's bounds are those of its voxels: where a single voxel
-/// width is millions of mean free paths deep, a path that enters through the foot of the ramp to
-/// such a voxel would meet the square root of that many null collisions.
+/// A walk whose cells can be cut, while walking, into pieces. A piece has bounds of the
+/// reconstruction along that part of the ray. A cell's bounds are those of its voxels. Where one
+/// voxel is millions of mean free paths deep, a path that enters where the interpolation begins to
+/// rise to it would meet the square root of that many null collisions.
 ///
-/// When to cut may depend on what was met so far: a Poisson process has no memory, so its rate may
-/// be chosen anew at any collision for what lies ahead.
+/// When to cut may depend on the collisions so far. A Poisson process has no memory, so its rate
+/// may be chosen anew at any collision for the rest of the ray.
 class RefinedWalk {
 public:
     RefinedWalk(const MediumPart& part, const IndexRay& ray, double tMax)
         : walk_(part, ray, tMax), extinction_(part.largestExtinction()) {}
 
-    /// Names the channels, by their bits, that still carry something: the others set no pace from
-    /// the next segment or cut on. (Else a channel of optical depth 1e12 would set that of all.)
+    /// Sets the channels, as bits, that still carry energy. From the next segment or cut on, only
+    /// these set the rate of collisions. Otherwise a channel of optical depth 1e12 would set the
+    /// rate of all.
     void setLive(const MediumPart& part, unsigned channels) {
         if (channels != live_) {
             live_ = channels, stale_ = true;
             extinction_ = liveExtinction(part);
         }
     }
-    /// The largest among live channels. Times range.max of a segment it bounds their sigma_t, and
-    /// times what range.max is above range.min it bounds what their sigma_t are above its control.
+    /// The largest among live channels. Times range.max of a segment it bounds their sigma_t. Times
+    /// (range.max - range.min) it bounds their sigma_t above the segment's control.
     float extinction() const { return extinction_; }
 
     bool next(const MediumPart& part, const IndexRay& ray, Segment& segment) {
@@ -40,16 +41,16 @@ public:
     }
 
     /// To be called after a collision at `t` in `segment` that the path survived: cuts the segment
-    /// there, once it has shown to be far from tight, or where its bounds were made for channels
-    /// that have died. True when it did: the segment then starts at `t`.
+    /// there if its bounds are far from tight, or were made for channels that have ended. True if
+    /// it did; the segment then starts at `t`.
     bool collided(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
         if (tight_ ? !stale_ : ++collisions_ < patience) return false;
         cut(part, ray, t, segment);
         return true;
     }
 
-    /// The bounds hold for the reconstruction, but not for the voxels that it is made of: one-tap
-    /// stochastic interpolation would break them.
+    /// True where the bounds hold for the reconstruction but not for its voxels: one-tap stochastic
+    /// interpolation would exceed them.
     bool tight() const { return tight_; }
 
 private:

@@ -8,9 +8,9 @@
 
 namespace woodcock {
 
-/// Russian roulette in one draw: a path survives while its weight stays above u x threshold, that
-/// is, with the probability lowest weight / threshold, by which a survivor is divided. The weight
-/// at the end will not do: where channels differ, weights also rise.
+/// Russian roulette in one draw: a path survives while its weight stays above u x threshold. The
+/// probability of that is its lowest weight / threshold, by which a survivor is divided. The final
+/// weight will not do: where channels differ, weights may rise again.
 class Roulette {
 public:
     Roulette(float threshold, RandomStream& random)

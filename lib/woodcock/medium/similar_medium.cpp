@@ -10,7 +10,7 @@ Medium similarMedium(const Medium& medium) {
         MediumPart::Coefficients c;
         c.absorption = part.absorption();
         c.scattering = part.scattering() * static_cast<float>(kept);
-        // What an albedo below 1 absorbs does not become less.
+        // The absorption by an albedo below 1 stays as it was.
         c.loss = part.loss() * static_cast<float>(1 / kept);
         similar.parts.push_back(part.with(c));
     }

@@ -5,14 +5,14 @@
 
 namespace woodcock {
 
-/// An isotropic medium in which light spreads like in `medium` once it has forgotten its direction:
-/// sigma_s' = (1 - g) sigma_s, sigma_a' = sigma_a, g' = 0 for each part. The similarity relation of
-/// order 1, (1 - g) sigma_s = (1 - g') sigma_s': Wyman, Patterson and Wilson 1989, "Similarity
-/// Relations for the Interaction Parameters in Radiation Transport", and Zhao, Ramamoorthi and Bala
-/// 2014, "High-Order Similarity Relations in Radiative Transfer". Where g < 0 it scatters more.
+/// An isotropic medium in which light spreads as in `medium` after many scatterings: sigma_s' = (1
+/// - g) sigma_s, sigma_a' = sigma_a, g' = 0 for each part. The similarity relation of order 1, (1 -
+/// g) sigma_s = (1 - g') sigma_s': Wyman, Patterson and Wilson 1989, "Similarity Relations for the
+/// Interaction Parameters in Radiation Transport", and Zhao, Ramamoorthi and Bala 2014, "High-Order
+/// Similarity Relations in Radiative Transfer". Where g < 0 it scatters more.
 ///
-/// Shares the fields and their bounds. Neither what is coloured nor what scatters changes, so the
-/// Needs of `medium` hold. What glows is left out.
+/// Shares the fields and their bounds. Colour and scattering stay, so the Needs of `medium` hold.
+/// Emission is left out.
 Medium similarMedium(const Medium& medium);
 
 }  // namespace woodcock

@@ -12,7 +12,7 @@ namespace woodcock {
 namespace {
 
 /// f (times albedo, for scattering) at one point, by one-tap stochastic interpolation: every weight
-/// below is linear in it, so its noise is noise and never bias.
+/// below is linear in it, so its noise does not cause bias.
 template <int N>
 struct Sampled {
     Spectrum<N> f, albedo;
@@ -25,7 +25,7 @@ Spectrum<N> tap(const Field& field, Vec3d index, std::uint64_t bits) {
     return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });
 }
 
-/// Inside tight bounds the full interpolation.
+/// f as above, but by full interpolation inside tight bounds.
 template <int N>
 Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64_t bits) {
     const Field& field = *part.field();
@@ -35,14 +35,15 @@ Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64
     return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
 }
 
-/// Of a part that has a grid of it.
+/// The albedo of a part that has a grid of it.
 template <int N>
 Spectrum<N> albedoTap(const MediumPart& part, Vec3d world, std::uint64_t bits) {
     const Field& field = *part.albedo();
     return tap<N>(field, field.nearSupport(part.albedoIndex(world)), bits);
 }
 
-/// What a tentative collision meets. Where the bounds meet, f is known without a lookup.
+/// The field's value at a tentative collision. Where the two bounds are equal, f is known without a
+/// lookup.
 template <int N>
 Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, Vec3d direction,
                     double t, Range range, bool tight, RandomStream& random) {
@@ -52,16 +53,16 @@ Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, V
     return s;
 }
 
-/// Decides what a tentative collision at rate `mu` is and weights the throughput; true: it
-/// scatters.
+/// Decides whether a tentative collision at rate `mu` scatters or is a null collision, and weights
+/// the throughput. True: it scatters.
 ///
 /// Absorption is a weight, so channel c by itself would scatter with q_c = sigma_s,c / (sigma_s,c +
-/// sigma_n,c). One decision serves all channels: q averaged with the throughput as weights. As the
-/// throughput is the ratio of a channel's path density to that average, this is the single-sample
-/// balance heuristic over channels of Miller et al. 2019 (eq. 13), kept up event by event (the
-/// history-aware probabilities of Kutz et al. 2017, sec. 5.1). A factor 0.05 + albedo^2 favours the
-/// channels that will scatter on, which halves the grey variance of a chromatic cloud against plain
-/// throughput; being positive, it leaves no channel unsampled.
+/// sigma_n,c). One decision serves all channels: by the average of q with the throughput as
+/// weights. The throughput is the ratio of a channel's path density to that average. So this is the
+/// single-sample balance heuristic over channels of Miller et al. 2019 (eq. 13), event by event
+/// (the history-aware probabilities of Kutz et al. 2017, sec. 5.1). A factor 0.05 + albedo^2
+/// favours the channels that will scatter again; it halves the grey variance of a chromatic cloud.
+/// It is positive, so every channel is sampled.
 template <int N>
 bool collide(const MediumPart& part, const Sampled<N>& s, float mu, bool absorptionToo,
              double random, Spectrum<N>& throughput) {
@@ -97,7 +98,7 @@ bool collide(const MediumPart& part, const Sampled<N>& s, float mu, bool absorpt
     }
 }
 
-/// The bits of channels that still carry something: see RefinedWalk::setLive().
+/// The bits of channels that still carry energy: see RefinedWalk::setLive().
 template <int N>
 unsigned liveChannels(Spectrum<N> weight) {
     if constexpr (N == 1) return 7;
@@ -106,8 +107,9 @@ unsigned liveChannels(Spectrum<N> weight) {
     return live;
 }
 
-/// The tentative collisions of one part along a ray: a Poisson process at the rate of the majorant.
-/// The optical depth that is left is carried from cell to cell, so each collision costs one draw.
+/// The tentative collisions of one part along a ray: a Poisson process with the majorant as its
+/// rate. The remaining optical depth is carried from cell to cell, so each collision costs one
+/// random number.
 class CollisionProcess {
 public:
     template <int N>
@@ -128,7 +130,7 @@ public:
     Range range() const { return segment_.range; }
     bool tight() const { return walk_.tight(); }
 
-    /// After a null collision that left these channels.
+    /// To be called after a null collision that left these channels.
     template <int N>
     void redraw(double u, Spectrum<N> throughput) {
         waiting_ = false;
@@ -138,9 +140,9 @@ public:
         mu_ = segment_.range.max * walk_.extinction();
     }
 
-    /// Goes on to the next collision before `limit`, unless it stands at one that was not met: true
-    /// when it stands at one, at t(). Otherwise the walk pauses at `limit` or has ended; it can be
-    /// called again with a larger limit.
+    /// Goes on to the next collision before `limit`, unless it is at one that was not yet handled.
+    /// True when it is at a collision, at t(). Otherwise the walk pauses at `limit` or has ended;
+    /// it can be called again with a larger limit.
     bool advance(double limit, TrackingCounters& counters) {
         while (!waiting_) {
             const double end = std::min(segment_.t1, limit);
@@ -176,7 +178,7 @@ private:
     bool waiting_ = false, ended_ = false;
 };
 
-/// Meets the collision that `process` stands at; true when the query is decided.
+/// Handles the collision at which `process` is; true when the query is decided.
 template <int N>
 bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) {
     const auto s = sampleAt<N>(process.part(), process.ray(), q.origin, q.direction, process.t(),
@@ -197,16 +199,17 @@ bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) 
 
 Vec3d inverseOf(Vec3d v) { return {1 / v.x, 1 / v.y, 1 / v.z}; }
 
-/// Media that add are independent Poisson processes that superpose (Kingman 1993, sec. 2.2): each
-/// part finds its own next collision among its own cells, and the nearest one is what happens. No
-/// part looks further than the nearest collision found so far.
+/// Overlapping media are independent Poisson processes that superpose (Kingman 1993, sec. 2.2).
+/// Each part finds its next collision among its own cells, and the nearest one happens. No part
+/// looks further than the nearest collision found so far.
 template <int N>
 void trackParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
                 std::vector<CollisionProcess>& processes, TrackingCounters& counters) {
     processes.clear();
     const Vec3d inverse = inverseOf(q.direction);
     for (std::size_t i = 0; i < medium.parts.size(); ++i) {
-        const double u = i == 0 ? q.u : q.random.uniformOpenLow();  // also of those that are missed
+        const double u =
+            i == 0 ? q.u : q.random.uniformOpenLow();  // also for parts that the ray misses
         if (medium.parts[i].mayMeet(q.origin, inverse, q.tMax))
             processes.emplace_back(medium.parts[i], static_cast<int>(i), q, u);
     }
@@ -220,11 +223,11 @@ void trackParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
     }
 }
 
-/// How many times the least possible rate of collisions a shadow ray of this weight is worth. More
-/// collisions, each of less weight, estimate the same transmittance with less variance; rays that
-/// are about to meet Russian roulette are not worth them. Any rate above the least is unbiased, as
-/// it depends on what is behind the ray only. Of 1, 2, 4 and 8 as the most, 4 measured best: on an
-/// optically thin cloud the cost (time x variance) falls to 0.58 of that at 1.
+/// By which factor to raise the rate of collisions above the least possible one, for a shadow ray
+/// of this weight. More collisions, each of less weight, estimate the same transmittance with less
+/// variance. Rays that will soon meet Russian roulette are not worth them. Any rate above the least
+/// is unbiased, as it depends only on the ray's past. Of 1, 2, 4 and 8 as the largest factor, 4
+/// measured best: on an optically thin cloud the cost (time x variance) falls to 0.58 of that at 1.
 double effort(float weight, float roulette) {
     return roulette > 0 ? std::clamp(0.5f * weight / roulette, 1.0f, 4.0f) : 1.0f;
 }
@@ -232,7 +235,7 @@ double effort(float weight, float roulette) {
 /// exp() of minus this is zero as a float.
 constexpr double vanished = 104;
 
-/// sigma_t over f x part.extinction() where the albedo is such.
+/// sigma_t over f x part.extinction(), for this albedo.
 template <int N>
 Spectrum<N> relativeExtinction(const MediumPart& part, const Spectrum<N>& albedo) {
     return Spectrum<N>::map([&](int c) {
@@ -242,9 +245,9 @@ Spectrum<N> relativeExtinction(const MediumPart& part, const Spectrum<N>& albedo
     });
 }
 
-/// Multiplies q.contribution by an estimate of one part's transmittance; false once it is killed.
-/// Varies: part.extinctionVaries(), and then f's lower bound bounds nothing. (Such parts have
-/// fields.)
+/// Multiplies q.contribution by an estimate of one part's transmittance; false once roulette ends
+/// it. Varies: part.extinctionVaries(); then f's lower bound is not one of sigma_t. (Such parts
+/// have fields.)
 template <int N, bool Varies>
 bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
                TrackingCounters& counters) {
@@ -342,7 +345,7 @@ void trackTransmittance(const Medium& medium, std::span<TransmittanceQuery<N>> q
         const Vec3d inverse = several ? inverseOf(q.direction) : Vec3d{};
         for (std::size_t i = 0; alive && i < medium.parts.size(); ++i) {
             if (several && !medium.parts[i].mayMeet(q.origin, inverse, q.tMax))
-                q.random.bits();  // as trackPart() would draw
+                q.random.bits();  // keeps the stream as trackPart() would leave it
             else
                 alive = medium.parts[i].extinctionVaries()
                             ? trackPart<N, true>(medium.parts[i], q, roulette, counters)

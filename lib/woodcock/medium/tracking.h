@@ -12,23 +12,23 @@ namespace woodcock {
 
 struct Medium;
 
-/// The two hot walks. Each takes an array of rays with a random stream each, and knows nothing of
-/// lights, materials or film.
+/// The two inner loops: distance and transmittance. Each takes an array of rays, each with a random
+/// stream of its own. They do not depend on lights, materials or film.
 
 /// Work done, for measuring.
 struct TrackingCounters {
     std::uint64_t segments = 0, collisions = 0;  ///< collisions include null ones
 };
 
-/// A path that goes on from `origin`: where does it scatter next?
+/// Where does a path that goes on from `origin` scatter next?
 template <int N>
 struct DistanceQuery {
     Vec3d origin, direction;  ///< world space, direction of unit length
-    double tMax;              ///< how far; infinity: until it leaves the medium
+    double tMax;              ///< length of the ray; infinity: until it leaves the medium
     double u;  ///< in (0, 1]: draws the first optical depth; the stream draws the rest
     RandomStream random;
     float roulette = 0;          ///< throughput below which Russian roulette is played; 0: never
-    bool absorptionToo = false;  ///< absorption is an event like scattering: finds interactions
+    bool absorptionToo = false;  ///< absorption is an event too, not a weight
     // In and out:
     Spectrum<N> throughput;  ///< multiplied by the weight of what happened; all zero: path ended
     // Out:
@@ -43,7 +43,7 @@ template <int N>
 void trackDistance(const Medium& medium, std::span<DistanceQuery<N>> queries,
                    TrackingCounters& counters);
 
-/// What of `contribution` arrives across [0, tMax] of the ray?
+/// How much of `contribution` passes [0, tMax] of the ray?
 template <int N>
 struct TransmittanceQuery {
     Vec3d origin, direction;
@@ -54,7 +54,7 @@ struct TransmittanceQuery {
     // In and out: multiplied by an unbiased estimate of the transmittance.
     Spectrum<N> contribution;
     bool opacityToo = false;
-    // Out, where asked for: 1 - transmittance, of which no digit is lost where it is small.
+    // Out, where it is asked for: 1 - transmittance, with all digits where it is small.
     Spectrum<N> opacity{};
 };
 

@@ -11,27 +11,28 @@
 
 namespace woodcock {
 
-/// The point as it is seen from `out`: all normals on that side.
+/// The point as seen from direction `out`: all normals are on that side.
 struct Bsdf::View {
     Vec3d out;
     Vec3d normal, shading;        ///< the surface's own, and the interpolated one
-    Vec3d facing;                 ///< what facets stand around: `shading`, or bent towards `out`
+    Vec3d facing;  ///< the mean normal of the facets: `shading`, or that bent towards `out`
     Vec3d s, t;                   ///< complete `facing` to a frame
     Vec3d local;                  ///< `out` in that frame, above its horizon
-    double cosine = 0;            ///< of `out` to `normal`; at most 0: nothing is seen
-    double iorHere = 1, eta = 1;  ///< the index on this side; the other side's over it
+    double cosine = 0;            ///< of `out` to `normal`; at most 0: the point cannot be seen
+    double iorHere = 1,
+           eta = 1;  ///< index of refraction on this side; that of the other side over it
     bool outside = true;          ///< this is the side of the surface's own normal
 
     Vec3d toFacets(Vec3d v) const { return {dot(v, s), dot(v, t), dot(v, facing)}; }
     Vec3d fromFacets(Vec3d v) const { return s * v.x + t * v.y + facing * v.z; }
-    /// On the side of `out`, or the other one, of the surface itself and of its shading normal;
-    /// where the two disagree, light would leak.
+    /// Whether `in` is on the side of `out` (or on the other one) by the surface's own normal and
+    /// by the facing normal. Where the two disagree light would leak.
     bool reflects(Vec3d in) const { return dot(in, normal) > 0 && dot(in, facing) > 0; }
     bool transmits(Vec3d in) const { return dot(in, normal) < 0 && dot(in, facing) < 0; }
 };
 
-/// f |cos| = pdf x ratio, where no ratio exceeds one (but for the squared index of refraction): so
-/// no lobe can create energy, and none divides by a small density.
+/// f |cos| = pdf x ratio. No ratio exceeds one, but for the squared index of refraction. So no lobe
+/// creates energy, and none divides by a small density.
 struct Bsdf::Density {
     double pdf = 0;
     Rgb ratio;
@@ -41,7 +42,7 @@ namespace {
 
 Vec3d mirrored(Vec3d v, Vec3d normal) { return normal * (2 * dot(v, normal)) - v; }
 
-/// The shading normal, bent as little as makes the mirrored `out` stay above the surface:
+/// The shading normal, bent by the least that keeps the mirrored `out` above the surface. Otherwise
 /// silhouettes of coarse meshes would be black. Keller et al. 2017, "The Iray Light Transport
 /// Simulation and Rendering System", appendix A.3. `cosine`: of `out` to the surface's own normal.
 Vec3d bent(Vec3d out, Vec3d normal, Vec3d shading, double cosine) {
@@ -58,7 +59,7 @@ Vec3d refracted(Vec3d out, Vec3d normal, double cosine, double cosineBeyond, dou
     return normalize(normal * (cosine / eta - cosineBeyond) - out / eta);
 }
 
-/// In proportion to the cosine to the normal.
+/// A direction in proportion to its cosine to the normal.
 Vec3d aroundNormal(Vec3d normal, double u0, double u1) {
     const double sine = std::sqrt(u0), phi = 2 * pi * u1;
     Vec3d s, t;
@@ -67,7 +68,7 @@ Vec3d aroundNormal(Vec3d normal, double u0, double u1) {
                      normal * std::sqrt(1 - u0));
 }
 
-/// Alpha is the square of what artists call roughness (Burley 2012).
+/// GGX's alpha is the square of the roughness (Burley 2012).
 double alphaOf(double roughness) {
     return roughness < Bsdf::leastRoughness ? 0 : roughness * roughness;
 }
@@ -101,7 +102,7 @@ void Bsdf::add(const Material& material, double weight) {
         lobe.alpha = alphaOf(metal->roughness);
         if (lobe.alpha > 0) {
             lobe.energy = &facetEnergy(lobe.alpha, 0);
-            // The light that meets further facets, each of which absorbs its share: Hill 2018, "A
+            // Light that meets further facets, each of which absorbs a part: Hill 2018, "A
             // Multi-Faceted Exploration", part 3, after Kulla and Conty.
             const Rgb f = meanFresnel(lobe, point_.iorOutside);
             const auto kept = static_cast<float>(1 - lobe.energy->outside.mean());
@@ -111,7 +112,7 @@ void Bsdf::add(const Material& material, double weight) {
     } else if (const auto* glass = std::get_if<DielectricMaterial>(&material)) {
         const double change = std::abs(point_.iorInside / point_.iorOutside - 1);
         if (change > 0) lobe.kind = Lobe::Kind::Dielectric;
-        // So little is bent that the density of what is transmitted would outgrow a float.
+        // With less bending than this the density of transmitted light would overflow a float.
         if (change > 1e-5) lobe.alpha = alphaOf(glass->roughness);
         if (lobe.alpha > 0)
             lobe.energy = &facetEnergy(lobe.alpha, point_.iorInside / point_.iorOutside);
@@ -166,8 +167,8 @@ Rgb Bsdf::fresnel(const Lobe& lobe, double cosine, double ior) {
     });
 }
 
-/// Mean over directions of light from all around: by Gauss-Legendre in the cosine, within 1e-5 for
-/// metals.
+/// Mean Fresnel reflectance of light from all around, by Gauss-Legendre quadrature in the cosine;
+/// within 1e-5 for metals.
 Rgb Bsdf::meanFresnel(const Lobe& lobe, double ior) {
     if (lobe.schlick) return lobe.colour + (Rgb(1.0f) - lobe.colour) * (1 / 21.0f);
     constexpr double nodes[] = {0.966234757102, 0.830604693233, 0.619309593042,
@@ -185,8 +186,8 @@ Bsdf::Density Bsdf::diffuse(const Lobe& lobe, const View& view, Vec3d in) {
     return {cosine / pi, lobe.colour};
 }
 
-/// What leaves after more than one facet: the share that the first one hides, spread by what is
-/// hidden in the other direction.
+/// Light that leaves after more than one facet: the share that the first one loses, spread in
+/// proportion to what is lost in the other direction.
 Bsdf::Density Bsdf::again(const Lobe& lobe, const View& view, Vec3d in) {
     const FacetEnergy& energy = *lobe.energy;
     const bool metal = lobe.kind == Lobe::Kind::Conductor;
@@ -290,7 +291,8 @@ const Bsdf::Lobe& Bsdf::choose(double& u) const {
     return *chosen;
 }
 
-/// Both a plane's answer and where a rough lobe's facet sends the ray: away, or to others.
+/// The reflection or refraction at a plane, or at a facet of a rough lobe. A facet may send the ray
+/// to other facets.
 BsdfSample Bsdf::sampleFacet(const Lobe& lobe, const View& view, std::array<double, 3> u) {
     const Vec3d o = view.local;
     const bool rough = lobe.alpha > 0;
@@ -321,7 +323,7 @@ BsdfSample Bsdf::sampleFacet(const Lobe& lobe, const View& view, std::array<doub
 }
 
 BsdfSample Bsdf::sampleAgain(const Lobe& lobe, const View& view, std::array<double, 3> u) {
-    // More numbers than were given, named by those.
+    // Further random numbers, made from those that were given.
     RandomStream random(hashOf(std::bit_cast<std::uint64_t>(u[0]),
                                std::bit_cast<std::uint64_t>(u[1]),
                                std::bit_cast<std::uint64_t>(u[2])));
@@ -346,7 +348,8 @@ BsdfSample Bsdf::sampleAgain(const Lobe& lobe, const View& view, std::array<doub
 BsdfSample Bsdf::sample(Vec3d out, std::array<double, 3> u) const {
     const View view = viewFrom(out);
     if (!(view.cosine > 0) || !(scattering_ > 0)) return {};
-    const Lobe& lobe = choose(u[0]);  // what is left of it: between reflection and transmission
+    const Lobe& lobe =
+        choose(u[0]);  // the rest of u[0] decides between reflection and transmission
     BsdfSample drawn;
     switch (lobe.kind) {
         case Lobe::Kind::Pass:

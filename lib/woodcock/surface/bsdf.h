@@ -11,13 +11,13 @@
 
 namespace woodcock {
 
-/// A surface's point, as its material sees it.
+/// A point of a surface, as its material needs it.
 struct BsdfPoint {
     Vec3d normal;         ///< the surface's own, unit, outwards
     Vec3d shadingNormal;  ///< unit, on the same side
     double u = 0, v = 0;
-    /// Indices of refraction on the side that the normal points to, and on the other. What is
-    /// inside need not be the material's own: priorities decide.
+    /// Indices of refraction on the side that the normal points to, and on the other. The inner one
+    /// need not be the material's own: priorities of nested surfaces decide.
     double iorOutside = 1, iorInside = 1;
 };
 
@@ -25,55 +25,57 @@ struct BsdfSample {
     Vec3d direction;     ///< unit, away from the point
     Rgb weight;          ///< f |cos| / pdf, of radiance; zero: absorbed
     double pdf = 0;      ///< per steradian; 0 with `delta`
-    bool delta = false;  ///< a direction that no other sampling can find
+    bool delta = false;  ///< no other sampling can find this direction
     bool transmitted = false;
 };
 
 struct BsdfValue {
     Rgb value;       ///< f |cos(in)|
-    double pdf = 0;  ///< with which sample() draws `in`, per steradian
+    double pdf = 0;  ///< of sample() drawing `in`, per steradian
 };
 
-/// The scattering of one point of a surface: for paths that come from the camera, so that crossing
-/// into another index of refraction scales radiance by (n_from / n_to)^2 (Veach 1997, eq. 5.16).
-/// On what is rough, light that its first facet sends to others is not lost: it leaves as Kulla and
-/// Conty have it (see FacetEnergy), so that white metal and glass absorb nothing. One scattering
-/// alone would lose, of light along the normal on roughness 0.3, 0.5, 0.7 and 1: of white metal 1,
-/// 9, 31 and 70 %, of glass of 1.5 that it enters 0.1, 0.8, 3 and 11 %, that it leaves 1, 7, 24 and
-/// 59 %. How that part is spread over directions is a model, no theory; and metals dye it by the
-/// mean of their Fresnel reflectance.
+/// The scattering at one point of a surface, for paths that come from the camera: crossing into
+/// another index of refraction scales radiance by (n_from / n_to)^2 (Veach 1997, eq. 5.16).
+/// On rough surfaces, light that meets more than one facet is not lost: it leaves by the model of
+/// Kulla and Conty (see FacetEnergy), so that white metal and glass absorb nothing. Single
+/// scattering alone would lose, of light along the normal at roughness 0.3, 0.5, 0.7 and 1: 1, 9,
+/// 31 and 70 % on white metal; 0.1, 0.8, 3 and 11 % entering glass of index 1.5; 1, 7, 24 and 59 %
+/// leaving it. How this light is spread over directions is a model. Metals tint it by their mean
+/// Fresnel reflectance.
 class Bsdf {
 public:
-    /// What `materials[index]` does at a point. A dielectric between equal indices, and an
-    /// interface, let light pass unchanged; a mix within a mix is black.
+    /// The scattering of `materials[index]` at a point. A dielectric between equal indices, and an
+    /// interface, let light pass unchanged. A mix within a mix is black.
     Bsdf(std::span<const Material> materials, std::uint32_t index, const BsdfPoint& point);
 
-    /// Nothing but light passing unchanged.
+    /// True where all light passes unchanged.
     bool passes() const;
-    /// Has a part that next-event estimation can light: anything that is not delta.
+    /// True where a part is not delta, so that next-event estimation can light it.
     bool smooth() const;
-    /// Some of it is a dielectric, or lets light pass: shadow rays may be let through by a biased
-    /// choice.
+    /// True where a part is a dielectric or lets light pass, so that transparent shadows (a biased
+    /// choice) may let shadow rays through.
     bool transmits() const;
 
-    /// `out`: towards where the path came from; u: three numbers in [0, 1).
+    /// Draws a direction. `out`: unit, towards where the path came from; u: three numbers in [0,
+    /// 1).
     BsdfSample sample(Vec3d out, std::array<double, 3> u) const;
-    /// Of all parts that are not delta.
+    /// f |cos(in)| and its density, of all parts that are not delta. `out`, `in`: unit, away from
+    /// the point.
     BsdfValue scatter(Vec3d out, Vec3d in) const;
     Rgb evaluate(Vec3d out, Vec3d in) const { return scatter(out, in).value; }
     double pdf(Vec3d out, Vec3d in) const { return scatter(out, in).pdf; }
 
-    /// Radiance that the point sends out by itself.
+    /// Radiance that the point emits towards `out`.
     Rgb emitted(Vec3d out) const;
-    /// Share of light that goes straight on through the dielectric for the biased choice of
-    /// transparent shadows: the smooth Fresnel transmittance, of a ray in this direction on the
-    /// side of the lower index. So a plate lets through what it does with the true, bent rays.
+    /// Share of light that goes straight on through the dielectric, for transparent shadows (a
+    /// biased choice): the smooth Fresnel transmittance of a ray in this direction on the side of
+    /// the lower index. So a plate transmits as much as with the true, refracted rays.
     Rgb straightTransmittance(Vec3d direction) const;
-    /// Reflectance for layers: the diffuse colour, a metal's colour at normal incidence, one for
-    /// what transmits.
+    /// Reflectance for the albedo layer: the diffuse colour, a metal's colour at normal incidence,
+    /// 1 for what transmits.
     Rgb albedo() const;
 
-    /// Facets below this roughness are taken for a plane.
+    /// Below this roughness a surface is taken as smooth.
     static constexpr double leastRoughness = 0.02;
 
 private:
@@ -103,10 +105,10 @@ private:
     View viewFrom(Vec3d out) const;
     static Rgb fresnel(const Lobe& lobe, double cosine, double ior);
     Density density(const View& view, Vec3d in) const;  ///< of all lobes that are not delta
-    /// By weight, among lobes that scatter; `u` becomes the rest, in [0, 1) again.
+    /// A lobe that scatters, drawn by weight. `u` is rescaled to [0, 1) for further use.
     const Lobe& choose(double& u) const;
     static BsdfSample sampleFacet(const Lobe& lobe, const View& view, std::array<double, 3> u);
-    /// What a facet sends to others.
+    /// Draws a direction of light that meets more than one facet.
     static BsdfSample sampleAgain(const Lobe& lobe, const View& view, std::array<double, 3> u);
     static Density again(const Lobe& lobe, const View& view, Vec3d in);
     static Rgb meanFresnel(const Lobe& lobe, double ior);

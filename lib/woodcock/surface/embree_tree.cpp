@@ -51,7 +51,7 @@ void requireNoError(RTCDevice device) {
     if (error != RTC_ERROR_NONE) throw failure("Embree fails with error {}", int{error});
 }
 
-/// Embree hands the context's address on to what it calls: the rest lies behind it.
+/// Embree passes the context's address to its callbacks: our own data lie behind it.
 template <class Visitor>
 struct Query {
     Context context;
@@ -81,7 +81,7 @@ void filterTriangle(const RTCFilterFunctionNArguments* a) {
     if (a->valid[0] == 0) return;
     const auto& query = *reinterpret_cast<Query<TriangleVisitor>*>(a->context);
     if (query.visitor->accept(RTCHitN_primID(a->hit, a->N, 0)))
-        // Where the ray ends from now on; Embree lets filters move it.
+        // The ray's new end; Embree lets filters move it.
         RTCRayN_tfar(a->ray, a->N, 0) += static_cast<float>(query.visitor->beyond);
     else
         a->valid[0] = 0;
@@ -201,7 +201,7 @@ void EmbreeTree::around(Vec3d point, double radius,
     rtcInitPointQueryContext(&context);
     const auto found = [](RTCPointQueryFunctionArguments* a) {
         (*static_cast<const std::function<void(std::uint32_t)>*>(a->userPtr))(a->primID);
-        return false;  // goes on looking as far as before
+        return false;  // the search goes on as far as before
     };
     rtcPointQuery(impl_->scene.get(), &query, &context, found,
                   const_cast<std::function<void(std::uint32_t)>*>(&visit));

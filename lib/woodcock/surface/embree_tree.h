@@ -12,8 +12,8 @@
 
 namespace woodcock {
 
-/// Embree, version 3 or 4, as far as surfaces need it: trees of triangles or of boxes, in frames of
-/// about unit size, in which a ray finds candidates in floats.
+/// Embree, version 3 or 4: trees of triangles or boxes in which a ray finds candidates in floats. A
+/// tree lies in a frame of about unit size.
 class EmbreeDevice {
 public:
     EmbreeDevice();  ///< Errors: Failure where Embree does not start
@@ -29,9 +29,9 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// What a ray may meet, the nearer ones first as a rule.
+/// Receives the triangles that a ray may meet, mostly the nearer ones first.
 struct TriangleVisitor {
-    /// Whether the ray meets it: then what lies farther than `beyond` behind it is not looked for.
+    /// Whether the ray meets the triangle. If so, the search ends at `beyond` behind it.
     virtual bool accept(std::uint32_t triangle) = 0;
     double beyond = 0;
 
@@ -39,7 +39,7 @@ protected:
     ~TriangleVisitor() = default;
 };
 struct BoxVisitor {
-    /// How far the ray goes still.
+    /// Returns how far the search goes on.
     virtual double visit(std::uint32_t box) = 0;
 
 protected:
@@ -54,13 +54,13 @@ struct TreeRay {
 
 class EmbreeTree {
 public:
-    /// By how much boxes are larger than what is in them, and rays longer at both ends: far more
-    /// than what floats lose, so that nothing is missed.
+    /// By how much boxes are larger than their contents, and rays longer at both ends. It is far
+    /// more than the rounding of floats, so that nothing is missed.
     static constexpr double margin = 0x1p-18;
 
-    EmbreeTree();  ///< of nothing
-    /// Of triangles, whose corners are given by `point`; `triangles` must outlive the tree. Errors
-    /// of both: Failure where there is too little memory. The device must outlive them.
+    EmbreeTree();  ///< an empty tree
+    /// A tree of triangles, whose corners are given by `point`. `triangles` and the device must
+    /// outlive the tree. Errors: Failure where there is not enough memory.
     EmbreeTree(const EmbreeDevice& device, std::size_t points,
                const std::function<Vec3d(std::size_t)>& point,
                std::span<const std::array<std::uint32_t, 3>> triangles);

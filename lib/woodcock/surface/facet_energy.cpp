@@ -15,12 +15,11 @@ namespace woodcock {
 
 namespace {
 
-/// Integral over t in [0, x], from t = a on, of (p + q t) 4 t^3: twice mu times what is lost, by
-/// mu = t^2.
+/// Antiderivative of (p + q t) 4 t^3 at t: of twice mu times a linear loss, by mu = t^2.
 double below(double p, double q, double t) { return t * t * t * t * (p + 0.8 * q * t); }
 
-/// Share of what is seen at this cosine that is hidden behind its first facet; eta 0: all facets
-/// are mirrors.
+/// Share of light at this cosine that its first facet sends to other facets. eta 0: all facets are
+/// mirrors.
 double lostAt(double alpha, double eta, double cosine) {
     constexpr int across = 128;
     const Ggx facets(alpha);
@@ -58,8 +57,8 @@ FacetEnergy energyOf(double alpha, double eta) {
     energy.outside = lossesOf(alpha, eta);
     if (eta == 0) return energy;
     energy.inside = lossesOf(alpha, 1 / eta);
-    // As much goes from one side to the other as comes back: of even light all around, eta^2 times
-    // as much is inside.
+    // In uniform light from all around, as much light passes from one side to the other as comes
+    // back; inside there is eta^2 times as much of it.
     const double outside = energy.outside.mean(), inside = energy.inside.mean() * eta * eta;
     if (!(outside + inside > 0)) return energy;
     energy.backOutside = outside / (outside + inside);
@@ -115,7 +114,7 @@ double FacetLosses::sampleCosine(double u) const {
 const FacetEnergy& facetEnergy(double alpha, double eta) {
     using Key = std::pair<double, double>;
     using Known = std::shared_ptr<const FacetEnergy>;
-    // A pure function's memory: nothing but time depends on what it holds.
+    // A cache of a pure function: only time depends on it.
     struct Recent {
         Key key{-1, -1};
         Known energy;

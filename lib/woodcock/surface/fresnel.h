@@ -14,8 +14,8 @@ struct Refraction {
     double cosine = 0;       ///< of the refracted ray to the normal's other side; 0 beyond it
 };
 
-/// `cosine` > 0: of the ray to the normal on its side; `eta`: the other side's index over this
-/// side's. Fresnel 1823; the refracted cosine by Snell's law.
+/// `cosine` > 0: of the ray to the normal on its side. `eta`: the other side's index of refraction
+/// over this side's. Fresnel 1823; the refracted cosine by Snell's law.
 inline Refraction refraction(double cosine, double eta) {
     const double sine = (1 - cosine) * (1 + cosine) / (eta * eta);  // squared, on the other side
     if (!(sine < 1)) return {};
@@ -25,8 +25,8 @@ inline Refraction refraction(double cosine, double eta) {
     return {(s * s + p * p) / 2, other};
 }
 
-/// The same of a metal, with index eta + i k over that of the light's side.
-/// (a + i b)^2 = (eta + i k)^2 - sin^2: Born and Wolf 1999, eq. 14.2 (6) and following.
+/// Reflectance of a metal with index eta + i k, relative to the index on the light's side. (a + i
+/// b)^2 = (eta + i k)^2 - sin^2: Born and Wolf 1999, eq. 14.2 (6) and following.
 inline double conductorReflectance(double cosine, double eta, double k) {
     const double c2 = cosine * cosine, s2 = std::max(0.0, (1 - cosine) * (1 + cosine));
     const double real = eta * eta - k * k - s2, size = std::hypot(real, 2 * eta * k);
@@ -40,7 +40,7 @@ inline double conductorReflectance(double cosine, double eta, double k) {
     return (s + p) / 2;
 }
 
-/// From the reflectance at normal incidence: Schlick 1994, eq. 15.
+/// Reflectance from that at normal incidence: Schlick 1994, eq. 15.
 inline Rgb schlickReflectance(double cosine, Rgb normal) {
     const double m = 1 - std::min(1.0, cosine), m2 = m * m;
     const auto f = static_cast<float>(m2 * m2 * m);

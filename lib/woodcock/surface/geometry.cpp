@@ -139,7 +139,7 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, const Surfa
     const PreparedShape& shape = shapeOf(i);
     const LocalRay ray = local(i, worldRay);
     const double tMax = nearest.t + nearest.slack;
-    Vec3d outwards;  // of a shape that the ray starts on
+    Vec3d outwards;  // normal of the shape that the ray starts on
     bool leaves = false;
     if (left && shape.kind != PreparedShape::Kind::Mesh) {
         if (left->instance == i) {
@@ -224,7 +224,7 @@ void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& wor
     hit.primitive = nearest.point.triangle;
     hit.object = instances[i].object;
     if (shapeOf(i).kind == PreparedShape::Kind::Mesh) {
-        // Who leaves from the very edge could pass between two triangles, as floats see them.
+        // A ray that leaves from the very edge could pass between two triangles in floats.
         const Triangle triangle = shapeOf(i).mesh->triangle(hit.primitive);
         hit.position =
             world(i, triangle.at(awayFromEdges(triangle, nearest.point.weights, floatError)));
@@ -244,7 +244,7 @@ void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& wor
     hit.coincident.reach = reach(i, hit.primitive, hit.normal, hit.position);
 }
 
-/// What is no mesh, at a point of its own frame.
+/// Completes a hit on a shape that is not a mesh, at a point of its own frame.
 void Geometry::Impl::completeShape(Vec3d p, SurfaceHit& hit) const {
     if (shapeOf(hit.instance).kind == PreparedShape::Kind::Sphere) {
         hit.normal = worldNormal(hit.instance, p);
@@ -253,7 +253,7 @@ void Geometry::Impl::completeShape(Vec3d p, SurfaceHit& hit) const {
         hit.v = 0.5 + std::asin(std::clamp(p.y, -1.0, 1.0)) / pi;
     } else {
         hit.normal = worldNormal(hit.instance, {0, 1, 0});
-        // An image fits the square around a disk.
+        // The texture covers the square around a disk.
         const bool disk = shapeOf(hit.instance).kind == PreparedShape::Kind::Disk;
         hit.u = disk ? (1 + p.x) / 2 : p.x;
         hit.v = disk ? (1 - p.z) / 2 : -p.z;
@@ -284,7 +284,7 @@ void Geometry::Impl::completeMesh(const MeshPoint& point, SurfaceHit& hit) const
         const Vec3d n = mesh.normals[primitive][k].as<double>();
         sum += n, interpolated += n * w[k];
     }
-    // Some files turn their normals against their triangles.
+    // In some files normals point against the triangles.
     if (dot(sum, triangle.normal) < 0) interpolated = -interpolated;
     Vec3d n = worldNormal(i, interpolated);
     constexpr double least = 1e-3;  // cosine: bent to just above the surface

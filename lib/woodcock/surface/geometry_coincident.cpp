@@ -5,18 +5,18 @@
 
 #include "woodcock/surface/geometry_impl.h"
 
-// Surfaces in one place. Two faces that are meant to be one plane differ by what floats lose in the
-// corners of meshes, and doubles in transforms: so much, and no more, is taken for nothing.
+// Surfaces that coincide. Two faces that are meant to be one plane differ by rounding: of floats in
+// the corners of meshes, and of doubles in transforms. Exactly that much is tolerated.
 
 namespace woodcock {
 
 namespace {
 
-/// Of doubles, over what they hold: a few roundings each in a transform, its inverse, the frame of
-/// a mesh and the point itself.
+/// Relative rounding of doubles: a few roundings each in a transform, its inverse, the frame of a
+/// mesh and the point itself.
 constexpr double doubleRounding = 0x1p-47;
-/// Of the sine between two faces that are one: far more than rounding tilts them, as they would not
-/// pass through the same place otherwise.
+/// The largest sine between two coincident faces. Rounding tilts them far less: otherwise they
+/// would not pass through the same point.
 constexpr double parallel = 1e-3;
 
 Vec3d absolute(Vec3d v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
@@ -60,7 +60,7 @@ std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit&
                                                                std::uint32_t primitive) const {
     const PreparedShape& shape = shapeOf(i);
     const Vec3d p = local(i, {hit.position, {}}).origin;
-    // In the shape's frame: its normal, and how high above it the point lies.
+    // In the shape's frame: the normal, and the point's height above the surface.
     Vec3d n{0, 1, 0};
     double height = p.y;
     std::optional<Triangle> triangle;
@@ -138,7 +138,8 @@ SurfaceHit Geometry::inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& o
         case PreparedShape::Kind::Plane:
             impl.completeShape({p.x, 0, p.z}, own);
     }
-    // Both lie in one plane: rounding must not put a direction on different sides of the two.
+    // Both lie in one plane, so they share a normal: rounding must not put a direction on different
+    // sides of the two.
     const bool turned = dot(own.normal, hit.normal) < 0;
     const Vec3d shading = own.shadingNormal;
     own.normal = turned ? -hit.normal : hit.normal;

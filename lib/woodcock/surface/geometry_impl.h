@@ -10,9 +10,9 @@
 #include "woodcock/surface/geometry_mesh.h"
 #include "woodcock/surface/geometry_solve.h"
 
-// Each instance is a box of one tree, so that a million of them need little memory. What a ray
-// meets of it is found in the frame of its shape: wherever it stands in the world, and however
-// small it is beside others, no digit is lost.
+// Each instance is a box of one tree, so that a million of them need little memory. Hits on an
+// instance are found in the frame of its shape, so no digits are lost, wherever it is in the world
+// and however small it is beside others.
 
 namespace woodcock {
 
@@ -33,8 +33,8 @@ inline Vec3d timesTransposed(const Columns& m, Vec3d v) {
 struct NearestSurface {
     bool found = false;
     double t = 0;           ///< of the nearest so far
-    double slack = 0;       ///< what rounding may make of t
-    bool coincident = false;  ///< something else was met within that
+    double slack = 0;       ///< the possible rounding error of t
+    bool coincident = false;  ///< another surface was met within that error
     std::uint32_t instance = 0;
     MeshPoint point;  ///< of meshes
 };
@@ -66,7 +66,7 @@ struct Geometry::Impl {
     Vec3d world(std::uint32_t i, Vec3d p) const {
         return instances[i].worldFromObject.vector(p * (1 / shapeOf(i).frame.scale)) + centre(i);
     }
-    /// Which side is outside does not depend on the determinant's sign, as normals are covectors.
+    /// Normals are covectors, so the outside does not depend on the sign of the determinant.
     Vec3d worldNormal(std::uint32_t i, Vec3d n) const {
         return normalize(timesTransposed(localOfWorld[i], n));
     }
@@ -84,15 +84,15 @@ struct Geometry::Impl {
     void completeMesh(const MeshPoint& point, SurfaceHit& hit) const;
     void completeShape(Vec3d p, SurfaceHit& hit) const;
 
-    // ---- what lies together: geometry_together.cpp
+    // ---- surfaces that coincide: geometry_coincident.cpp
 
-    /// How far rounding may put a point off the plane of an instance's surface at it: that of the
-    /// numbers from which either is worked out.
+    /// How far rounding may move a point off the plane of an instance's surface: the rounding of
+    /// the numbers from which the point and the plane are computed.
     double reach(std::uint32_t i, std::uint32_t primitive, Vec3d normal, Vec3d point) const;
-    /// What that makes of t, of a hit so far along a ray.
+    /// The error of t that follows from it, at a hit at `t` along a ray.
     double slackOf(std::uint32_t i, const LocalRay& worldRay, const LocalRay& ray, double t,
                    const MeshPoint& point) const;
-    /// Whether a surface passes through the place of a hit.
+    /// The surface, if it passes through the position of a hit.
     std::optional<CoincidentSurface> passesThrough(const SurfaceHit& hit, std::uint32_t i,
                                                    std::uint32_t primitive) const;
 };

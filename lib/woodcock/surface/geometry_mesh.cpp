@@ -39,7 +39,7 @@ Triangle FramedMesh::triangle(std::uint32_t index) const {
 
 namespace {
 
-/// What a ray starts on: its side tells which triangles it can meet.
+/// The triangle that a ray starts on. The ray's side of it tells which triangles it can meet.
 struct Start {
     std::uint32_t triangle;
     double side;  ///< direction . normal
@@ -47,7 +47,7 @@ struct Start {
 
 struct NearestTriangle final : TriangleVisitor {
     const FramedMesh& mesh;
-    LocalRay ray;  ///< from its point at `from` on
+    LocalRay ray;  ///< from from its point at `from`
     double from = 0;
     double speed;
     double error = floatError;  ///< of the search
@@ -75,14 +75,14 @@ struct NearestTriangle final : TriangleVisitor {
         if (!point) return false;
         const double t = from + point->t;
         if (!(t > 0) || !(t < nearest.t + slack)) return false;
-        // Beside the edge that the ray starts at, and where it passes one, only the side can tell a
-        // hit from what rounding makes of none: who starts inside can only leave, and the other way
-        // round.
+        // Near the edge where the ray starts, and where it passes an edge, only the side can tell a
+        // hit from a rounding error: a ray that starts inside can only leave, and one that starts
+        // outside can only enter.
         const double thisSide = dot(ray.direction, triangle.normal);
         const bool doubtful = point->edge < 0 || t * speed < 4 * point->tolerance;
         if (start && doubtful && thisSide * start->side > 0) return false;
         if (alsoLeft && alsoLeft(index)) return false;
-        // An error of the search makes `tolerance`; what rounding makes is in proportion.
+        // `tolerance` follows from the error of the search; the error of rounding is in proportion.
         const double thisSlack = 4 * mesh.largestRounding() * point->tolerance / (error * speed);
         const bool coincident = found && std::abs(t - nearest.t) <= std::max(slack, thisSlack);
         if (!(t < nearest.t)) {
@@ -98,7 +98,7 @@ struct NearestTriangle final : TriangleVisitor {
         return true;
     }
 
-    /// Nothing is met of a mesh that is closed, or it is met from the wrong side.
+    /// True where the search met no triangle of a closed mesh, or met it from the wrong side.
     bool missed() const { return start && (found ? side * start->side > 0 : start->side < 0); }
 };
 
@@ -149,7 +149,8 @@ std::optional<MeshPoint> FramedMesh::nearest(
                     (part.to - part.from) * visitor.speed};
     if (left) visitor.start = {*left, dot(ray.direction, triangle(*left).normal)};
     tree_.traverse(treeRay, visitor);
-    // Who leaves almost along the surface, beside an edge, may be on its other side for floats.
+    // A ray that leaves almost along the surface, beside an edge, may be on its other side in
+    // floats.
     if (visitor.missed()) {
         constexpr double aside = 4 * floatError;
         const Vec3d normal = normalize(triangle(*left).normal);
@@ -162,7 +163,7 @@ std::optional<MeshPoint> FramedMesh::nearest(
 
 bool FramedMesh::encloses(Vec3d point) const {
     if (!box_.contains(point)) return false;
-    constexpr int ways = 9;  // another one where one passes an edge too closely for floats
+    constexpr int ways = 9;  // another direction where one passes an edge too closely for floats
     int inside = 0;
     for (int k = 0; k < ways; ++k) {
         const double y = 1 - (2 * k + 1.0) / ways, azimuth = 0.7 + 2.399963229728653 * k;

@@ -27,12 +27,13 @@ struct MeshPoint {
     std::uint32_t triangle = 0;
     std::array<double, 3> weights{};
     double slope = 1;       ///< direction . unit normal, of the side that faces the ray
-    double slack = 0;       ///< what rounding of its corners may make of t, at the most
-    bool coincident = false;  ///< another triangle was met where rounding cannot tell them apart
+    double slack = 0;       ///< the largest error of t from rounding of its corners
+    bool coincident = false;  ///< another triangle was met, and rounding cannot tell them apart
 };
 
-/// A mesh in a frame of its own, in which floats are as precise as it is large, with its tree.
-/// Embree finds candidates; each is decided on in double, along the ray itself and with no offset.
+/// A mesh with its tree, in a frame of its own in which floats are precise at the mesh's size.
+/// Embree finds candidates; each is decided on in double, along the ray itself and without an
+/// offset.
 class FramedMesh {
 public:
     /// The mesh has triangles, and outlives this; so does the device.
@@ -43,19 +44,21 @@ public:
     const Box3d& box() const { return box_; }  ///< in its frame
     Triangle triangle(std::uint32_t index) const;
 
-    /// How far floats may have moved a triangle along its unit normal, in its frame: half of the
-    /// last digit of its corners' numbers, twice.
+    /// How far floats may have moved a triangle along its unit normal, in its frame: twice half of
+    /// the last digit of its corners' coordinates.
     double rounding(std::uint32_t index, Vec3d normal) const;
-    double largestRounding() const { return largestRounding_; }  ///< a bound of that of all
+    double largestRounding() const {
+        return largestRounding_;
+    }  ///< a bound of rounding() over all triangles
 
     /// The nearest triangle in (0, tMax). `left`: the triangle that the ray starts on; `alsoLeft`
-    /// says which others it starts on.
+    /// says which other triangles it starts on.
     std::optional<MeshPoint> nearest(const LocalRay& ray, double tMax,
                                      std::optional<std::uint32_t> left,
                                      const std::function<bool(std::uint32_t)>& alsoLeft = {}) const;
     /// Calls `visit` with all triangles that may lie within a radius of a point.
     void around(Vec3d point, double radius, const std::function<void(std::uint32_t)>& visit) const;
-    /// Whether more triangles are left through than entered on the way out from a point.
+    /// Whether a ray from a point leaves through more triangles than it enters through.
     bool encloses(Vec3d point) const;
 
 private:

@@ -41,8 +41,8 @@ RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterv
 }
 
 std::optional<double> meetSphere(const LocalRay& ray, double tMax) {
-    // From the point of the ray that is closest to the centre, which loses no digits to a far
-    // origin where the difference of squares would.
+    // Solved from the ray's point closest to the centre: a difference of squares would lose the
+    // digits of a far origin.
     const double a = dot(ray.direction, ray.direction);
     const double closest = -dot(ray.origin, ray.direction) / a;
     const Vec3d p = ray.at(closest);
@@ -56,7 +56,7 @@ std::optional<double> meetSphere(const LocalRay& ray, double tMax) {
 
 double crossSphere(const LocalRay& ray) {
     const double t = -2 * dot(ray.origin, ray.direction) / dot(ray.direction, ray.direction);
-    // A ray that grazes has no length inside; it still has to come out.
+    // A grazing ray has no length inside; it still has to leave.
     return std::max(t, std::numeric_limits<double>::min());
 }
 

@@ -8,7 +8,7 @@
 
 namespace woodcock {
 
-/// A ray in a shape's own frame; its parameter t is that of the ray in the world.
+/// A ray in a shape's own frame. Its parameter t is that of the ray in the world.
 struct LocalRay {
     Vec3d origin, direction;
     Vec3d at(double t) const { return origin + direction * t; }
@@ -21,14 +21,15 @@ struct RayInterval {
 };
 RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterval within);
 
-/// How far what Embree finds in floats may lie beside the ray, in a frame of about unit size.
+/// How far from the ray the candidates of Embree may lie, by the rounding of floats, in a frame of
+/// about unit size.
 inline constexpr double floatError = 0x1p-21;
 
 /// The unit sphere's nearest point in (0, tMax).
 std::optional<double> meetSphere(const LocalRay& ray, double tMax);
-/// The same for a ray that starts on the sphere, inwards: its other end.
+/// Where a ray that starts on the sphere, inwards, leaves it.
 double crossSphere(const LocalRay& ray);
-/// y = 0 in (0, tMax).
+/// Where the ray meets y = 0, in (0, tMax).
 std::optional<double> meetPlane(const LocalRay& ray, double tMax);
 
 struct Triangle {
@@ -46,20 +47,22 @@ struct TrianglePoint {
     double t = 0;
     std::array<double, 3> weights{};  ///< barycentric, none negative
     double edge = 0;       ///< distance of the ray from the nearest edge; negative: outside
-    double tolerance = 0;  ///< what an error beside the ray makes along the triangle
+    double tolerance =
+        0;  ///< the error along the triangle that follows from the error beside the ray
 };
-/// Where a ray meets a triangle that was found in floats. A ray that passes it by no more than what
-/// the search was in error by meets it at its edge, so that there are no cracks. Nothing where it
-/// surely passes, or is parallel.
+/// Where a ray meets a triangle that was found in floats. A ray that passes it by no more than the
+/// error of the search meets it at its edge, so that there are no cracks. Absent where it surely
+/// passes, or is parallel.
 std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
                                           double error);
 
 /// Barycentric weights of a point in a triangle's plane, or of its projection there.
 std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d point);
-/// Its distance from the nearest edge; negative: outside.
+/// A point's distance from the nearest edge; negative: outside.
 double edgeDistance(const Triangle& triangle, Vec3d point);
 
-/// Weights moved inwards so far that their point has `margin` from all edges, or is the middle.
+/// Weights moved inwards so that their point is `margin` away from all edges, or the middle of the
+/// triangle.
 std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
                                     double margin);
 

@@ -22,21 +22,21 @@ struct ConductorMaterial {
     double roughness = 0;
 };
 /// Glass, water: GGX facets between two indices of refraction, with the exact unpolarised Fresnel
-/// reflectance; what is inside is the medium of the surface that bears it.
+/// reflectance. Inside is the medium of the surface that has the material.
 struct DielectricMaterial {
     double ior = 1.5;
     double roughness = 0;
 };
-/// No surface: a mere boundary between media.
+/// Not a surface: only a boundary between media.
 struct InterfaceMaterial {};
-/// Light, and black otherwise.
+/// Emits light, and is black otherwise.
 struct EmissiveMaterial {
     Texture radiance;
-    bool bothSides = false;  ///< else from the outside alone
+    bool bothSides = false;  ///< else from the outside only
 };
-/// The second material with the weight's mean, the first with the rest.
+/// The second material with the mean of `weight` as its share, the first with the rest.
 struct MixMaterial {
-    std::uint32_t first = 0, second = 0;  ///< of the scene's materials; each no mix itself
+    std::uint32_t first = 0, second = 0;  ///< of the scene's materials; neither is a mix itself
     Texture weight{Rgb(0.5f)};
 };
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial,

@@ -11,22 +11,22 @@
 
 namespace woodcock {
 
-/// What a surface is, wherever its instances stand.
+/// What a surface is, whatever the transforms of its instances.
 struct SurfaceObject {
     std::string name;  ///< for messages
     std::uint32_t material = 0;
-    /// Closed, and light may get inside: a dielectric or an interface. Then what it holds replaces
-    /// what is around it; where several such objects overlap, the highest priority wins, and of
-    /// equal ones the later object.
+    /// Closed, and light may enter: a dielectric or an interface. The medium inside replaces that
+    /// around it. Where several such objects overlap, the highest priority counts; of equal ones,
+    /// the later object.
     bool holdsMedium = false;
-    double ior = 1;            ///< of what it holds
-    std::uint32_t medium = 0;  ///< of Scene::media: what it holds; 0 is the outside's
+    double ior = 1;            ///< index of refraction of the medium inside
+    std::uint32_t medium = 0;  ///< inside: 0 is Scene::medium, else interiorMedia[medium - 1]
     int priority = 0;
-    /// For compositing; each is about camera rays alone.
+    /// For compositing; each concerns camera rays only.
     bool holdout = false, shadowCatcher = false, matte = false;
     bool cameraVisible = true;
-    /// First of this object's triangles in the scene's MeshLight, of each instance in order; none
-    /// where it is dark.
+    /// For each instance, in order: the first of this object's triangles in the scene's MeshLight,
+    /// or `dark`.
     static constexpr std::uint32_t dark = std::numeric_limits<std::uint32_t>::max();
 };
 

@@ -10,7 +10,7 @@ namespace woodcock {
 
 namespace {
 
-/// Of `size` texels in a row, the two whose centres lie around a coordinate of the unit square.
+/// The two of `size` texels in a row whose centres lie around a coordinate of the unit square.
 struct Neighbours {
     int first = 0, second = 0;
     float weight = 0;  // of the second
