@@ -13,7 +13,7 @@ namespace woodcock {
 
 namespace {
 
-/// How much of a neighbour's block interpolation reads, where it lies on the + side along `side`.
+/// The part of a neighbouring block, on the + side along `side`, that interpolation reads.
 Vec3i layer(Vec3i side) { return {side.x ? 1 : 8, side.y ? 1 : 8, side.z ? 1 : 8}; }
 
 Vec3i sideOf(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }  // 1 to 7
@@ -25,7 +25,7 @@ constexpr int regionSize = 1 << (regionLog2 - blockLog2),
 class Seen {
 public:
     explicit Seen(int size) : size_(size) {}
-    /// True where the cube of this block is new.
+    /// True where the cube that holds this block is new.
     bool insert(Vec3i block) {
         const std::uint64_t key = keyOf(block);
         if (key == last_) return false;
@@ -44,7 +44,7 @@ private:
         return part(block.x) | part(block.y) << 21 | part(block.z) << 42;
     }
     int size_;
-    std::uint64_t last_ = ~std::uint64_t{0};  // neighbours come together
+    std::uint64_t last_ = ~std::uint64_t{0};  // neighbours come one after another
     std::unordered_set<std::uint64_t> cubes_;
 };
 
@@ -58,7 +58,8 @@ class RangeFinder {
 public:
     explicit RangeFinder(const Field& field) : field_(field) {
         Box3i bounds = field.blocks().bounds();
-        bounds.lower = bounds.lower - Vec3i{1, 1, 1};  // the ramp below the first voxels
+        bounds.lower =
+            bounds.lower - Vec3i{1, 1, 1};  // interpolation begins a voxel below the first ones
         const Range outside = field.storedRange(field.blocks().outside());
         ranges_ = BlockTable<Range>(bounds, outside, field.blocks().dense());
         if (!ranges_.dense()) placeRegions();
@@ -75,8 +76,8 @@ private:
                     ranges_.at({x, y, z}) = blockRange(field_, {x, y, z});
     }
 
-    /// Makes entries for the blocks of a sparse table: for all of a region where the field has
-    /// some, or where a constant region looks onto other values across its + faces.
+    /// Makes entries for the blocks of a sparse table: for a whole region where the field has
+    /// blocks, or where a constant region borders on other values across its + faces.
     void placeRegions() {
         constexpr std::size_t cost = 4096 * 12;  // bytes of a region's blocks in a majorant grid
         std::size_t budget =
@@ -105,9 +106,9 @@ private:
         ranges_.shrink();
     }
 
-    /// Decides which constant super-regions are looked at region by region: some 300 kB each, of
-    /// which a file may ask for with the 17 bytes of a tile. The others take the range of all that
-    /// they look onto.
+    /// Decides which constant super-regions are handled region by region. Each takes some 300 kB,
+    /// for which a file needs only the 17 bytes of a tile, so their number is limited. The others
+    /// take the range of everything that they border on.
     void placeSupers() {
         std::vector<Vec3i> supers;
         Seen seen(superSize);
@@ -145,9 +146,9 @@ private:
         }
     }
 
-    /// Regions that hold anything but the background, and those on the - side of one; by their
-    /// first block, in an order of their own. Of constant super-regions those at the + faces, where
-    /// placeSupers() says so.
+    /// Regions that hold other values than the background, and the regions on the - side of one, by
+    /// their first block. Of a constant super-region those at its + faces, where placeSupers()
+    /// decided so.
     std::vector<Vec3i> regionsThatMayDiffer() const {
         Seen seen(regionSize);
         std::vector<Vec3i> regions;
@@ -171,8 +172,8 @@ private:
         return regions;
     }
 
-    /// Of a constant cube of `size` blocks: region by region where a neighbour is constant too,
-    /// block by block along the face where not.
+    /// The range of a constant cube of `size` blocks and what lies across its + faces: region by
+    /// region where a neighbour is constant too, else block by block along the face.
     Range hullAcrossFaces(Vec3i cube, int size, Range range) const {
         for (int i = 1; i < 8; ++i) {
             const Vec3i side = sideOf(i);

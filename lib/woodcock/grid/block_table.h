@@ -11,11 +11,13 @@
 namespace woodcock {
 
 /// A block is 8x8x8 voxels. log2 of the voxels along an edge of: a block, a region of 16^3 blocks,
-/// a super-region of 32^3 regions. (The nodes of OpenVDB's default tree, so tiles land on them.)
+/// a super-region of 32^3 regions. (These are the nodes of OpenVDB's default tree, so its tiles
+/// coincide with them.)
 inline constexpr int blockLog2 = 3, regionLog2 = 7, superLog2 = 12;
 
-/// Maps blocks to values in O(1): a flat array over the bounds where that is small, else a hashed
-/// root over tables of regions over tables of blocks, where whole regions may share one value.
+/// Maps blocks to values in O(1). It is a flat array over the bounds where that is small. Otherwise
+/// it is a hashed root of tables of regions, and these are tables of blocks; a whole region may
+/// share one value.
 template <class T>
 class BlockTable {
 public:
@@ -26,7 +28,8 @@ public:
     };
 
     BlockTable() = default;
-    /// `bounds` in blocks, ends included; `outside` is the value of every block not set.
+    /// `bounds` in blocks, both ends included. `outside` is the value of every block that is not
+    /// set.
     BlockTable(Box3i bounds, T outside, bool dense)
         : bounds_(bounds), outside_(outside), dense_(dense) {
         if (!dense_) return;
@@ -34,7 +37,7 @@ public:
         blocks_.assign(volume(bounds), outside);
     }
 
-    /// What a sparse table takes for so many regions and super-regions that are not uniform.
+    /// Bytes of a sparse table with so many regions and super-regions that are not uniform.
     static std::size_t sparseBytes(std::size_t regions, std::size_t supers) {
         return regions * regionBlocks * sizeof(T) + supers * superRegions * sizeof(std::uint32_t);
     }
@@ -66,7 +69,7 @@ public:
         return {&blocks_[region + blockIndex(b)], blockLog2};
     }
 
-    /// The value of one block, made writable by itself: splits uniform regions where needed.
+    /// The value of one block, writable: splits uniform regions where needed.
     T& at(Vec3i b) {
         if (dense_) return blocks_[denseIndex(b - bounds_.lower)];
         auto [super, fresh] = supers_.try_emplace(superKey(b), 0u);
@@ -100,8 +103,8 @@ public:
                 for (int z = 0; z < n; ++z) at(origin + Vec3i{x, y, z}) = value;
     }
 
-    /// Calls f(firstBlock, log2Size, value) for every entry but those that were never set in a
-    /// sparse table; in the same order on every machine.
+    /// Calls f(firstBlock, log2Size, value) for every entry, in the same order on every machine.
+    /// Leaves out entries of a sparse table that were never set.
     template <class F>
     void forEach(F&& f) const {
         if (dense_) {
@@ -155,7 +158,7 @@ public:
         return boxes;
     }
 
-    /// A table of the same shape, each value mapped.
+    /// A table of the same shape, with each value mapped by f.
     template <class U, class F>
     BlockTable<U> map(F&& f) const {
         BlockTable<U> t;
@@ -172,7 +175,7 @@ public:
     void reserve(std::size_t regions, std::size_t supers) {
         blocks_.reserve(regions * regionBlocks), regions_.reserve(supers * superRegions);
     }
-    /// Gives back what building took beyond need.
+    /// Frees memory that only building needed.
     void shrink() { blocks_.shrink_to_fit(), uniform_.shrink_to_fit(), regions_.shrink_to_fit(); }
 
     std::size_t bytes() const {
@@ -210,12 +213,12 @@ private:
     static std::uint32_t blockIndex(Vec3i b) {
         return static_cast<std::uint32_t>((b.x & 15) | (b.y & 15) << 4 | (b.z & 15) << 8);
     }
-    /// Neighbours of one value share it.
+    /// Neighbours of equal value share one entry.
     std::uint32_t newUniform(const T& value) {
         if (uniform_.empty() || uniform_.back() != value) uniform_.push_back(value);
         return uniformBit | static_cast<std::uint32_t>(uniform_.size() - 1);
     }
-    /// The table that `slot` refers to, made from its uniform value if it has none yet.
+    /// The table of `slot`, made from its uniform value if there is none yet.
     template <class V, class F>
     static std::uint32_t split(std::uint32_t& slot, std::vector<V>& pool, std::size_t size,
                                F&& childOf) {

@@ -9,8 +9,8 @@
 
 namespace woodcock {
 
-/// A ray in a grid's index space; `t` is the world's ray parameter, so that several grids along one
-/// world ray share it.
+/// A ray in a grid's index space. Its parameter `t` is that of the ray in the world, so that
+/// several grids along one ray share it.
 struct IndexRay {
     Vec3d origin, direction;
     Vec3d at(double t) const { return origin + direction * t; }
@@ -38,8 +38,8 @@ inline bool clip(const IndexRay& ray, const Box3d& box, double& t0, double& t1) 
 }
 
 /// Steps from cell to cell of a majorant grid along [t0, t1], which must lie inside its field's
-/// support: the one traversal below every tracker. Segments are in order and without gaps; which
-/// cell comes next is decided in integers, so no step can stall.
+/// support. Every tracker uses this traversal. Segments are in order and without gaps. The next
+/// cell is chosen in integers, so no step can stall.
 class CellWalk {
 public:
     CellWalk() = default;  ///< walks nothing
@@ -49,7 +49,7 @@ public:
         for (int i = 0; i < 3; ++i) {
             const double d = ray.direction[i];
             const bool still = std::abs(d) < 1e-290;  // its inverse might not be finite
-            if (still) ray_.direction[i] = 0;         // stays off the face ahead: 0 x inf is NaN
+            if (still) ray_.direction[i] = 0;         // never meets the face ahead: 0 x inf is NaN
             forward_[i] = still || d > 0;
             inverse_[i] = still ? std::numeric_limits<double>::infinity() : 1 / d;
             low_[i] = static_cast<int>(support.lower[i]),
@@ -65,8 +65,8 @@ public:
         const MajorantGrid::Cell cell = majorants_->find(voxel_);
         const int size = 1 << cell.log2Size;
         const Vec3i corner{voxel_.x & -size, voxel_.y & -size, voxel_.z & -size};
-        // Ray parameters of the faces ahead; without branches, as which one is first is a coin
-        // toss.
+        // Ray parameters of the faces ahead. Without branches: which face is first cannot be
+        // predicted.
         const double tx = (corner.x + double(forward_.x) * size - ray_.origin.x) * inverse_.x;
         const double ty = (corner.y + double(forward_.y) * size - ray_.origin.y) * inverse_.y;
         const double tz = (corner.z + double(forward_.z) * size - ray_.origin.z) * inverse_.z;
@@ -80,7 +80,8 @@ public:
         }
         const bool alongX = tx == face, alongY = !alongX && ty == face, alongZ = !alongX && !alongY;
         const Vec3d p = ray_.at(exit);
-        // Across, a position that rounding put below the support must not look like having left.
+        // In the other axes, a position that rounding put below the support must not count as
+        // outside.
         const auto enter = [size](bool along, int forward, int from, int low, double at) {
             const int across = std::clamp(floorToInt(at), std::max(from, low), from + size - 1);
             return along ? from + (forward ? size : -1) : across;

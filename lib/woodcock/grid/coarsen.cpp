@@ -17,7 +17,7 @@ public:
         source_.channels = field.channels();
         for (int c = 0; c < field.channels(); ++c)
             source_.background[static_cast<std::size_t>(c)] = field.background(c);
-        if (const auto& limits = field.limits())  // one voxel around those within
+        if (const auto& limits = field.limits())  // a voxel around the voxels within
             source_.within = Box3i{floorToInt((limits->lower + Vec3d{1, 1, 1}) / 2),
                                    floorToInt((limits->upper - Vec3d{1, 1, 1}) / 2)};
         field.blocks().forEach([&](Vec3i b, int log2Size, std::uint32_t ref) {
@@ -37,7 +37,7 @@ private:
         const std::uint64_t high = part(block.x), low = part(block.y) << 32 | part(block.z);
         if (!seen_[high].insert(low).second) return;
         const std::uint32_t first = *field_.blocks().find(block * 2).value;
-        bool constant = true;  // no brick lies in two places
+        bool constant = true;  // each brick is used by one block only
         for (int i = 1; i < 8; ++i)
             constant &= *field_.blocks().find(block * 2 + sideOf(i)).value == first;
         if (constant)

@@ -22,7 +22,7 @@ Range rangeOf(std::span<const float> values) {
     return r;
 }
 
-/// The same for a whole brick, in more lanes than a compiler would unroll: vector code.
+/// The same for a whole brick, in so many lanes that the compiler makes vector code.
 Range rangeOfBrick(std::span<const float> values) {
     constexpr std::size_t lanes = 64;
     std::array<float, lanes> low, high;
@@ -189,7 +189,7 @@ private:
         field_.table_.shrink();
     }
 
-    /// Neighbours of one value share it.
+    /// Neighbours of equal value share one constant.
     std::uint32_t addConstant(const std::array<float, 3>& value) {
         std::vector<float>& constants = field_.constants_;
         const auto channels = static_cast<std::ptrdiff_t>(field_.channelCount());
@@ -220,8 +220,8 @@ private:
         for (const Range& r : field_.brickRanges_) field_.range_.add(r);
     }
 
-    /// Trims to the voxels that differ from the background: rays start and end where the medium
-    /// does.
+    /// Trims the support to the voxels that differ from the background, so that rays start and end
+    /// where the medium does.
     void findSupport() {
         Box3d blocks, box;
         for (const FieldTile& t : source_.tiles)
@@ -235,7 +235,7 @@ private:
                 atEdge |= o[axis] == blocks.lower[axis] || o[axis] + 7 == blocks.upper[axis];
             return atEdge;
         };
-        // The outermost leaves first: few others then have voxels outside the box.
+        // The outermost leaves first: then few others have voxels outside of the box.
         for (const bool outermost : {true, false})
             box = tbb::parallel_reduce(
                 tbb::blocked_range<std::size_t>(0, source_.leafOrigins.size(), 256), box,

@@ -14,7 +14,7 @@
 
 namespace woodcock {
 
-/// Smallest and largest value that something takes.
+/// The smallest and the largest of some values.
 struct Range {
     float min = 0, max = 0;
     void add(Range r) { min = std::min(min, r.min), max = std::max(max, r.max); }
@@ -36,13 +36,13 @@ struct FixedScale {
     static FixedScale of(float min, float max, unsigned last);
 
     float value(unsigned code) const { return low + step * static_cast<float>(code); }
-    /// Of the value nearest to `v`.
+    /// The code of the value nearest to `v`.
     unsigned code(float v, unsigned last) const;
 };
 
-/// A sparse grid made for reading: 8x8x8 bricks in flat memory, found in O(1). Values sit at
-/// integer index positions and are interpolated trilinearly, unless it was told to take the nearest
-/// one; outside everything lies the background. Knows nothing of sigma.
+/// A sparse grid that is fast to read: 8x8x8 bricks in flat memory, found in O(1). Values lie at
+/// integer index positions. They are interpolated trilinearly, or the nearest one is taken where
+/// setLookup() says so. Outside is the background. It does not depend on sigma.
 class Field {
 public:
     int channels() const { return channels_; }
@@ -59,7 +59,7 @@ public:
     /// says background there; absent: it is the background everywhere.
     const std::optional<Box3d>& limits() const { return limits_; }
 
-    /// What a medium made of the field takes up, but for a background without limits.
+    /// Index-space box of a medium made of the field, but for a background without limits.
     const Box3d& extent() const { return limits_ ? *limits_ : support_; }
 
     /// The point of the support next to `p`, or `p` inside it: the reconstruction there is the
@@ -69,7 +69,7 @@ public:
     }
 
     /// Nearest is biased: every voxel fills the unit cube around its position, and trilinear() and
-    /// stochastic() say what fills `p`. Ranges and support hold for both.
+    /// stochastic() return the voxel that fills `p`. Ranges and support hold for both.
     Lookup lookup() const { return nearest_ ? Lookup::Nearest : Lookup::Trilinear; }
     void setLookup(Lookup lookup) {
         nearest_ = lookup == Lookup::Nearest;
@@ -95,16 +95,16 @@ public:
             lerp(f.z, lerp(f.y, row(0, 0), row(1, 0)), lerp(f.y, row(0, 1), row(1, 1))));
     }
 
-    /// One of the eight corners around `p`, chosen with its trilinear weight: the expectation is
-    /// trilinear(p), at an eighth of the loads. Use only where the value enters linearly.
-    /// Pharr et al. 2024, "Filtering After Shading With Stochastic Texture Filtering".
+    /// One of the eight voxels around `p`, chosen with its trilinear weight. Its expectation is
+    /// trilinear(p), at an eighth of the loads. Use it only where the value enters linearly. Pharr
+    /// et al. 2024, "Filtering After Shading With Stochastic Texture Filtering".
     Vec3i stochasticVoxel(Vec3d p, std::uint64_t bits) const {
         const auto jitter = [&](std::uint64_t part) {  // in (0, 1)
             return static_cast<double>(part & 0x1fffff) * jitterUnit_ + firstJitter_;
         };
         return floorToInt(p + Vec3d{jitter(bits), jitter(bits >> 21), jitter(bits >> 42)});
     }
-    /// The voxel next to `p`; of two, the upper one.
+    /// The voxel nearest to `p`; of two, the upper one.
     static Vec3i nearestVoxel(Vec3d p) { return floorToInt(p + Vec3d{0.5, 0.5, 0.5}); }
     float stochastic(Vec3d p, std::uint64_t bits, int channel = 0) const {
         return voxel(stochasticVoxel(p, bits), channel);
@@ -115,7 +115,7 @@ public:
     public:
         BlockVoxels(const Field& field, Vec3i block)
             : field_(&field), ref_(*field.table_.find(block).value) {}
-        /// Of voxel `v` (any index; its last three bits count) of the block.
+        /// The value of voxel `v` of the block (any index; its last three bits count).
         float operator()(Vec3i v, int channel = 0) const {
             return field_->valueOf(ref_, v, channel);
         }
@@ -125,10 +125,11 @@ public:
         std::uint32_t ref_;
     };
 
-    /// What each block holds: the number of a brick or of a constant. Equal numbers, equal voxels.
+    /// The content of each block: the number of a brick or of a constant. Blocks of equal numbers
+    /// have equal voxels.
     const BlockTable<std::uint32_t>& blocks() const { return table_; }
-    /// Of the stored values of what `ref` names, over all channels: of all its voxels, or of the
-    /// first `n` along each axis.
+    /// The range of stored values, over all channels, of the brick or constant `ref`: of all its
+    /// voxels, or of the first `n` along each axis.
     Range storedRange(std::uint32_t ref) const;
     Range storedRange(std::uint32_t ref, Vec3i n) const;
 
@@ -166,7 +167,8 @@ private:
     BlockTable<std::uint32_t> table_;  // bricks, or constantBit | constant
     std::vector<float> constants_;
     std::vector<Range> brickRanges_;
-    // 512 x channels values a brick, in one of these. No vectors: those would fill them with zeros.
+    // 512 x channels values for each brick, in one of these. Vectors would first fill them with
+    // zeros.
     std::unique_ptr<float[]> floats_;
     std::unique_ptr<std::uint16_t[]> words_;  // halves, or codes
     std::unique_ptr<std::uint8_t[]> bytes_;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double largest = std::numeric_limits<float>::max();
 
-/// The smallest number of eight binary digits that is not below `v`: times a code of 16 bits it is
-/// a float without rounding.
+/// The smallest number of eight binary digits that is not below `v`. Its product with a code of 16
+/// bits is a float without rounding.
 double ceilToEightDigits(double v) {
     int exponent = 0;
     const double digits = std::frexp(v, &exponent);
@@ -34,7 +34,7 @@ FixedScale FixedScale::of(float min, float max, unsigned last) {
         return {static_cast<float>(-std::ceil(-min / step) * step), static_cast<float>(step)};
     }
     auto step = static_cast<float>(range / last);
-    // Whether or not the compiler fuses value()'s multiplication and addition.
+    // Holds whether or not the compiler fuses value()'s multiplication and addition.
     const float steps = static_cast<float>(last);
     while (min + step * steps > max || std::fma(step, steps, min) > max)
         step = std::nextafter(step, 0.0f);

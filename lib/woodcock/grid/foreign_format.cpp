@@ -44,7 +44,7 @@ constexpr std::string_view hdf5 =
     "use h5py: numpy.save('out.npy', h5py.File('in')['NAME'][...]); then `woodcock convert`";
 constexpr std::string_view convertIt = "make a volume of it by `woodcock convert IN out.vdb`";
 
-/// What stands first counts where several fit.
+/// Where several rows fit, the first one counts.
 const std::vector<Row>& rows() {
     static const std::vector<Row> all{
         {"a DICOM file",
@@ -116,7 +116,7 @@ const std::vector<Row>& rows() {
          "save them as .csv or .ply in the program that made them; then `woodcock convert`",
          {},
          {".prt"}},
-        // Others hold HDF5 too: their names come first.
+        // Other formats are made of HDF5 too; they come before it.
         {"an HDF5 file", hdf5, {{"\x89HDF\r\n\x1a\n"sv}}, {".h5", ".hdf5", ".hdf", ".he5"}},
         {"a Git LFS pointer",
          "fetch the file itself with `git lfs pull`",
@@ -170,7 +170,7 @@ ForeignFormat found(const Row& row, bool byContent) {
             isArchive(row)};
 }
 
-/// Archives and containers hold much: where the name says what, it knows better.
+/// Archives and containers may hold many formats: where the name tells one, it counts.
 bool isContainer(const Row& row) { return row.what == "an HDF5 file" || isArchive(row); }
 
 }  // namespace
@@ -202,7 +202,7 @@ std::optional<ForeignFormat> foreignFormat(const std::filesystem::path& path) {
         FileBytes file(path);
         file.enter(0, file.size(), "its beginning");
         return foreignFormat(file.bytes(std::min<std::uint64_t>(file.size(), foreignBytes)), path);
-    } catch (const Error&) {  // whoever reads it says why it cannot be read
+    } catch (const Error&) {  // its reader will say why it cannot be read
         return foreignFormat({}, path);
     }
 }

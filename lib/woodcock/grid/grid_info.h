@@ -12,7 +12,7 @@
 
 namespace woodcock {
 
-/// Everything worth knowing about a grid before it is rendered.
+/// What a user should know about a grid before rendering it.
 struct GridInfo {
     /// Optical depth, with the mean value along the diagonal of the bounds, at which the majorants
     /// are measured: they are finer in a denser medium.
@@ -23,12 +23,12 @@ struct GridInfo {
         std::size_t fieldBytes = 0;  ///< of the renderer's own field
         Storage fieldStorage = Storage::Float;
         std::optional<Box3d> worldBounds;             ///< of the positions of active voxels
-        std::optional<MajorantStatistics> majorants;  ///< absent where a majorant means nothing
+        std::optional<MajorantStatistics> majorants;  ///< absent where majorants have no meaning
     };
     GridListing listing;
     std::optional<Contents> contents;  ///< absent for types without values and unreadable voxels
     std::string error;                 ///< why the voxels cannot be read; empty when they can
-    std::vector<std::string> remarks;  ///< what may be wrong, in the order of weight
+    std::vector<std::string> remarks;  ///< what may be wrong, the most important first
 };
 
 /// Reads the voxels and inspects them; faulty grids are described, not refused.

@@ -42,7 +42,7 @@ std::span<const std::string_view> namesOf(GridRole role) {
     return {};
 }
 
-/// Scalars that are no density although they may stand alone in a file.
+/// Scalars that are not a density, although they may be the only grid of a file.
 bool meansSomethingElse(std::string_view name) {
     static constexpr std::string_view others[]{"shadow",     "collision", "collider", "pressure",
                                                "divergence", "surface",   "mask"};
@@ -95,7 +95,7 @@ std::string levelNote(const VdbFile& file, const GridListing& level, std::string
         file.path.string(), name, level.uniqueName);
 }
 
-/// Says so where the file holds others of the same name.
+/// The grid, with a note where the file holds others of the same name.
 FoundGrid found(const VdbFile& file, const GridListing& grid, std::string note = {}) {
     const auto same = std::count_if(file.grids.begin(), file.grids.end(),
                                     [&](const GridListing& g) { return g.name == grid.name; });
@@ -115,7 +115,7 @@ const GridListing* findByRoleName(const VdbFile& file, GridRole role) {
     return nullptr;
 }
 
-/// What the number of a "name[2]" counts, where `name` is a grid of the file.
+/// Explains the number of a "name[2]", where the file has grids of that name.
 std::string explainNumber(const VdbFile& file, std::string_view name) {
     const std::string_view base = name.substr(0, name.find('['));
     const bool known = base.size() < name.size() && name.ends_with(']') &&

@@ -8,14 +8,14 @@
 
 namespace woodcock {
 
-/// What a grid is for, as its name tells by the customs of Houdini, Blender and EmberGen.
+/// The use of a grid, by its name, as Houdini, Blender and EmberGen name grids.
 enum class GridRole { Density, Emission, Temperature, Colour, Velocity };
 
 const char* roleName(GridRole role);
 
 struct FoundGrid {
     GridListing grid;
-    std::string note;  ///< what was chosen where there was a choice; empty when the name was exact
+    std::string note;  ///< which grid was chosen among several; empty when the name was exact
 };
 
 /// The grid of this name: exact, `name[2]`, or in another case. Errors: Input, listing what the

@@ -31,7 +31,7 @@ inline std::uint16_t encodeHalf(float v) {
     // 13 digits go; the exponent's bias falls by 112.
     const std::uint32_t normal =
         (magnitude + 0xfffu + ((magnitude >> 13) & 1u) - (112u << 23)) >> 13;
-    // The last digit of floats around a half counts 2^-24, as that of denormal halves.
+    // Floats around one half have steps of 2^-24, as denormal halves do.
     const std::uint32_t denormal =
         std::bit_cast<std::uint32_t>(std::bit_cast<float>(magnitude) + 0.5f) -
         std::bit_cast<std::uint32_t>(0.5f);

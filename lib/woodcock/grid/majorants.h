@@ -12,14 +12,14 @@
 namespace woodcock {
 
 /// Bounds of a field in cells of 2 to 4096 voxels: the majorants and minorants of null-collision
-/// tracking. The cells form the octree that crosses a random ray at the least cost: a step into a
-/// cell costs `stepCost` collisions, and every unit of majorant optical depth one collision.
+/// tracking. The cells form the octree of least cost for a random ray: a step into a cell costs as
+/// much as `stepCost` collisions, and every unit of majorant optical depth costs one collision.
 class MajorantGrid {
 public:
     struct Options {
         /// Optical depth of one voxel's width where the field is 1 (largest channel).
         double depthPerVoxel = 1;
-        /// Loosens the upper bound (>= 1): costs time, changes no mean.
+        /// Loosens the upper bound (>= 1): this costs time and changes no mean.
         double scale = 1;
         /// No cell below 2^smallestLog2 voxels: 1 (finest) to 7.
         int smallestLog2 = 1;
@@ -49,7 +49,7 @@ public:
         return {{widen(p.min), widen(p.max)}, log2Size};
     }
 
-    /// How many blocks lie in cells whose bounds differ.
+    /// The number of blocks in cells whose two bounds differ.
     double varyingBlocks() const;
 
     std::size_t bytes() const { return table_.bytes() + parts_.capacity() * sizeof(Part); }
@@ -89,7 +89,8 @@ struct MajorantStatistics {
     std::size_t rays = 0;
 };
 
-/// Sends `rays` random chords (isotropic, uniform over the bounding sphere) through the support.
+/// Measured along `rays` random chords through the support (isotropic, uniform over the bounding
+/// sphere).
 MajorantStatistics majorantStatistics(const Field& field, const MajorantGrid& majorants, int rays);
 
 }  // namespace woodcock

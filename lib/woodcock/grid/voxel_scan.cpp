@@ -50,8 +50,8 @@ void scanVoxel(const float* v, bool active, Vec3i at, std::uint64_t n,
     }
 }
 
-/// A leaf without faults, a word of the mask at a time. As many lanes as voxels: shorter loops
-/// would be unrolled before the compiler sees that they are vector code.
+/// A leaf without faults, a word of the mask at a time. It has as many lanes as voxels: shorter
+/// loops would be unrolled instead of vectorised.
 template <int C>
 void scanSoundLeaf(const float* values, std::span<const std::uint64_t, 8> activeMask,
                    const std::array<float, 3>& background, VoxelScan& scan) {

@@ -19,12 +19,12 @@ struct VoxelCount {
     void add(const VoxelCount& more);
 };
 
-/// What a pass over all values of a grid finds. A tile counts with all of its voxels, a vector
-/// voxel once, whichever component is at fault.
+/// The result of a pass over all values of a grid. A tile counts with all of its voxels. A vector
+/// voxel counts once, whichever component is at fault.
 struct VoxelScan {
     std::uint64_t active = 0;
     std::uint64_t inactiveValues = 0;   ///< inactive voxels that differ from the background
-    std::uint64_t finite = 0;           ///< active voxels that `min`, `max` and `mean` speak of
+    std::uint64_t finite = 0;  ///< active voxels, over which `min`, `max` and `mean` are taken
     std::array<float, 3> min{}, max{};  ///< per channel; meaningful where finite > 0
     std::array<double, 3> sum{};
     VoxelCount nan, infinite, negative;  ///< active or not

@@ -14,7 +14,8 @@
 
 namespace woodcock {
 
-/// N: tracked channels. Surfaces: the scene has some; else no trace of them is compiled.
+/// N: tracked channels. Surfaces: whether the scene has surfaces; otherwise no code for them is
+/// compiled.
 template <int N, bool Surfaces>
 class BatchTracer final : public PathTracer {
 public:
@@ -95,8 +96,8 @@ private:
         }
     }
 
-    /// What is known of a flight before it is tracked: the surface at its end, what glows along it,
-    /// and the equiangular point on it.
+    /// Finds what a flight needs before it is tracked: the surface at its end, the emission along
+    /// it, and the equiangular point on it.
     void lookAhead(std::size_t i) {
         Path& p = paths_[i];
         if constexpr (Surfaces) {
@@ -137,7 +138,7 @@ private:
         counters_.distanceSegments += c.segments, counters_.distanceCollisions += c.collisions;
     }
 
-    /// Media that only absorb: the path escapes, with its transmittance.
+    /// In media that only absorb: the path escapes, weighted by the transmittance.
     void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk, Path& p,
                      TrackingCounters& c) const {
         TransmittanceQuery<N> q{walk.origin, walk.direction,  walk.tMax, walk.random,
@@ -148,10 +149,10 @@ private:
                 [&](int i) { return p.opacity[i] + (1 - p.opacity[i]) * q.opacity[i]; });
         walk.random = q.random, walk.throughput = q.contribution;
     }
-    /// Of what the camera's ray has come through so far.
+    /// Opacity of the media through which the camera's ray has come so far.
     float opacityOf(const Path& p) const {
         const float lost = 1 - p.throughput.mean(), opacity = p.opacity.mean();
-        constexpr float rounding = 1e-6f;  // where no more than that parts them, they are the same
+        constexpr float rounding = 1e-6f;  // differences up to this are rounding
         return opacity > 0 && std::abs(lost - opacity) < rounding ? opacity : lost;
     }
 
@@ -236,7 +237,7 @@ private:
         paths_.resize(left, paths_.front());
     }
 
-    // ---- the two hot walks: tracked, or marched where that was chosen
+    // ---- the two inner loops: by tracking, or by marching where that was chosen
 
     void findEvents(const Medium& medium, std::span<DistanceQuery<N>> queries,
                     TrackingCounters& c) const {
@@ -255,12 +256,12 @@ private:
 
     // ---- events in media: batch_tracer_media.h
 
-    /// Radiance from infinity; next-event estimation has a share in images and discs.
+    /// Adds radiance from infinity. Images and discs are shared with next-event estimation.
     void escape(Path& p);
     void scatter(std::size_t i, double t, double g);
     EventNumbers numbers(Path& p);
 
-    // ---- approximate media: batch_tracer_stand_ins.h
+    // ---- approximate media: batch_tracer_approximate_media.h
 
     /// The scene's media, and the sets of media that approximations use in their place.
     void gatherMedia();
@@ -270,17 +271,18 @@ private:
     /// without surfaces.
     template <class Items, class F>
     void forRuns(const Items& items, F&& f) const;
-    /// Which media a path that has scattered so often goes through, and which one surrounds it.
+    /// The set of media for a path that has scattered so often, and the index in media_ of the
+    /// medium that surrounds it.
     std::uint8_t mediumSetAfter(std::int64_t scatterings) const;
     std::uint32_t mediumIndex(std::uint8_t mediumSet, const MediumStack& inside) const;
-    /// What light that a path meets at its next scattering goes through, and how it scatters there:
-    /// `phase` multiplies g, `amount` the scattered light.
+    /// How a path goes on after its next scattering: through which set of media, with g times
+    /// `phase`, and with the scattered light times `amount`.
     struct Onward {
         std::uint8_t mediumSet;
         double amount = 1, phase = 1;
     };
     Onward onwardFrom(Path& p) const;
-    /// Goes on so, and returns Onward::phase.
+    /// Makes the path go on so, and returns Onward::phase.
     double enterMediumSet(Path& p) const;
     void clampRadiance(FilmSample& sample);
 
@@ -289,37 +291,37 @@ private:
     void bounce(std::size_t i, const SurfaceHit& hit, const Crossing& crossing);
     SurfaceState::LightSampled lightSampledAfter(SurfaceState::LightSampled before,
                                                  const Bsdf& bsdf, const BsdfSample& b) const;
-    /// A boundary that changes nothing but the medium.
+    /// Goes on behind a boundary that changes only the medium.
     void goOn(Path& p);
     void addEmission(Path& p, const SurfaceHit& hit, const Bsdf& bsdf);
     /// Next-event estimation at a surface.
     void lightSurface(std::size_t i, const EventNumbers& u, const SurfaceHit& hit,
                       const Crossing& crossing, Vec3d out, bool caught);
-    /// Shadow catchers: what light that next-event estimation leaves out would bring from the
-    /// direction that was drawn, if nothing stood there.
+    /// For shadow catchers: adds the unoccluded light, from the direction that was drawn, of lights
+    /// that next-event estimation leaves out.
     void addUnoccluded(Path& p);
     void playRoulette(Path& p);
-    /// Takes a shadow ray through boundaries that light passes, to its end or the first surface
-    /// that stops it.
+    /// Follows a shadow ray through boundaries that light passes, to its end or to the first
+    /// surface that stops it.
     void findShadowAcrossSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
                                   TrackingCounters& c);
     bool arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit, double left) const;
-    /// Camera rays' transmittance, and what they meet, by a walk of their own.
+    /// The transmittance of camera rays, and the first thing that they meet, by a separate walk.
     void findDepth(const Path& p);
     void addNextEvent(std::size_t i, const EventNumbers& u, const FlightShare& share);
-    /// Sphere lights that the new direction hits: the other side of next-event estimation's MIS.
-    /// Without an event (`share` null) it is the camera that sees them.
+    /// Adds sphere lights that the new direction hits, with the weight of multiple importance
+    /// sampling that next-event estimation leaves. Where `share` is null, the camera sees them.
     void addSphereHits(std::size_t i, const FlightShare* share);
     void addEquiangular(std::size_t i, double u, double pick);
-    /// What the media of the flight ahead emit along it, in the mean.
+    /// Adds the light that media emit along the flight ahead, by one random point of it.
     void addMediumEmission(std::size_t i, double u);
-    /// Adds a shadow ray that brings `light` times the path's throughput, unless that is nothing.
-    /// `mayPass`: transparent shadows concern it.
+    /// Adds a shadow ray that brings `light` times the path's throughput, unless that is zero.
+    /// `mayPass`: transparent shadows apply to it.
     bool addShadowRay(std::size_t i, Vec3d origin, Vec3d direction, double tMax, Rgb light,
                       bool mayPass);
 
-    /// Multiple importance sampling's weight of light that a path hits, of which next-event
-    /// estimation at the last event would have had the density pdf().
+    /// The weight, by multiple importance sampling, of light that a path hits. pdf(): the density
+    /// with which next-event estimation at the last event would have sampled it.
     template <class F>
     double hitWeight(const Path& p, F&& pdf) {
         if constexpr (Surfaces) {
@@ -340,7 +342,7 @@ private:
 
     // ---- the path's state ---------------------------------------------------------------------
 
-    /// Nothing has happened on the camera's ray so far.
+    /// True while the camera's ray has not scattered.
     static bool seen(const Path& p) {
         if constexpr (Surfaces)
             return p.surfaces.seen;
@@ -354,7 +356,7 @@ private:
         else
             return {p.origin, p.direction, infinity, &media_[p.mediumSet]};
     }
-    /// Outside of all surfaces, in a medium that fills all of space.
+    /// True outside of all surfaces, in a medium that fills all of space.
     bool inEndlessMedium(const Path& p) const {
         if (!flightOf(p).medium->unbounded) return false;
         if constexpr (Surfaces) return nestedMedia_->medium(p.surfaces.start.inside) == 0;
@@ -366,7 +368,8 @@ private:
         else
             return Rgb(1.0f);
     }
-    /// Surfaces' colour goes with the channels where three are tracked.
+    /// Weights the path by a surface's colour: in its throughput where three channels are tracked,
+    /// else in its tint.
     static void multiply(Path& p, Rgb weight) {
         if constexpr (N == 3)
             p.throughput *= weight;
@@ -392,7 +395,8 @@ private:
     const float typicalRadiance_;
     std::vector<MediumSummary> media_;  // set by set; in each the outside, then what surfaces hold
     bool replacesMedia_ = false;        // there are approximate media
-    bool octavesEnd_ = false;           // with next-event estimation: their flights meet no light
+    bool octavesEnd_ =
+        false;  // octaves end with next-event estimation: their flights meet no light
     LightChoice choice_;
     EmissionSampler emission_;
     RenderCounters counters_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How batch_tracer.h takes biased choices that concern its media: similarity and octaves.
+// Biased choices of batch_tracer.h that concern media: similarity and octaves.
 
 #include "woodcock/medium/octaves.h"
 #include "woodcock/render/batch_tracer.h"
@@ -59,9 +59,9 @@ std::uint32_t BatchTracer<N, Surfaces>::mediumIndex(std::uint8_t mediumSet,
     return mediumSet * setSize + nestedMedia_->medium(inside);
 }
 
-/// With octaves, one of them by chance, in proportion to its amount: light of octave i is a^i x
-/// sigma_s x phase(c^i g) x transmittance of b^i sigma_t, found by next-event estimation and by the
-/// flight that follows, which ends by leaving the medium.
+/// With octaves, draws one in proportion to its amount. Light of octave i is a^i x sigma_s x
+/// phase(c^i g) x transmittance of b^i sigma_t. It is found by next-event estimation and by the
+/// following flight, which ends where it leaves the medium.
 template <int N, bool Surfaces>
 auto BatchTracer<N, Surfaces>::onwardFrom(Path& p) const -> Onward {
     const int octaves = options_.approximations.octaves;

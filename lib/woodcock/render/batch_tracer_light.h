@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// How batch_tracer.h finds light.
+// How batch_tracer.h samples light.
 
 #include "woodcock/render/batch_tracer.h"
 
@@ -94,7 +94,8 @@ void BatchTracer<N, Surfaces>::addMediumEmission(std::size_t i, double u) {
     if (!point || !addShadowRay(i, p.origin, p.direction, point->t, point->light, false)) return;
     shadows_.back().withinFlight = true;
     if (seen(p)) p.result->film.glow = 1;
-    // Beyond a depth of 9 hardly anything is left of what was drawn deep within dense media.
+    // Points deep within dense media contribute little: beyond a depth of 9, roulette ends their
+    // rays.
     TransmittanceQuery<N>& query = shadowQueries_.back();
     query.roulette = std::max(query.roulette, 1e-4f * query.contribution.maximum());
 }

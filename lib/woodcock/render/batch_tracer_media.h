@@ -29,12 +29,12 @@ void BatchTracer<N, Surfaces>::scatter(std::size_t i, double t, double g) {
     const bool endless = inEndlessMedium(p);
     if (!Surfaces && endless && !needs_.emission && scene_.lights.local().empty()) {
         ++p.scatterings;
-        p.alive = false;  // nothing shines in there, and from infinity no light arrives
+        p.alive = false;  // there is no light inside, and none arrives from infinity
         return;
     }
     const Vec3d position = p.origin + p.direction * t;
     const EventNumbers u = numbers(p);
-    // What equiangular sampling of this flight leaves to this event; see addEquiangular.
+    // The share that equiangular sampling of this flight leaves to this event; see addEquiangular.
     const FlightShare share{!needs_.localLights, flightOf(p), t};
     if (replacesMedia_) g *= enterMediumSet(p);
     p.from = {position, p.direction, g};

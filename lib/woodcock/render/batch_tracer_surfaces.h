@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What batch_tracer.h does on surfaces, and its layers of what camera rays meet.
+// How batch_tracer.h scatters on surfaces, and how it finds the layers of depth, albedo and normal.
 
 #include "woodcock/render/batch_tracer.h"
 
@@ -83,7 +83,7 @@ SurfaceState::LightSampled BatchTracer<N, Surfaces>::lightSampledAfter(
     SurfaceState::LightSampled before, const Bsdf& bsdf, const BsdfSample& b) const {
     using enum SurfaceState::LightSampled;
     if (!b.delta) return AtLastEvent;
-    // Where a smooth part was lit, a delta part's direction still is its own alone.
+    // Next-event estimation lights the smooth part only: it cannot find a delta part's direction.
     const bool straight =
         options_.approximations.transparentShadows && b.transmitted && !bsdf.smooth();
     return straight && before != Never ? ThroughDielectrics : Never;

@@ -54,7 +54,7 @@ bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const Medium
     set_.geometry.coincidentSurfaces(hit, all);
     if (all.size() < 2 && hit.coincident.layer == NoLayer &&
         !(cameraRay && !object(hit).cameraVisible)) {
-        next = hit;  // only neighbours at an edge
+        next = hit;  // the others are neighbours at an edge
         next.coincident = {};
         return true;
     }
@@ -93,7 +93,7 @@ bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const Medium
                 return sheetCounts(0);
             case Solid:
                 return solid[0].surface != nullptr;
-            case BackSheet:  // without anything between, the sheet is one
+            case BackSheet:  // without an opaque surface between, both sides are one sheet
                 return solid[0].surface && sheetCounts(1);
             case Back:
                 return parted && interior[1];
@@ -186,7 +186,7 @@ NestedMedia::RayStart NestedMedia::rayStart(const CameraPosition& start, Vec3d d
     if (start.touched.empty()) return place;
     for (std::size_t i = 0; i < start.touched.size();) {
         const std::uint32_t instance = start.touched[i].instance;
-        bool inwards = true;  // of bodies that are convex there
+        bool inwards = true;  // right for bodies that are convex there
         for (; i < start.touched.size() && start.touched[i].instance == instance; ++i)
             inwards = inwards && dot(direction, start.touched[i].normal) < 0;
         const SurfaceObject& object = objectOf(instance);

@@ -28,7 +28,7 @@ public:
         return std::clamp(nearest_ + distance_ * std::tan(angle0_ + u * (angle1_ - angle0_)), t0_,
                           t1_);
     }
-    /// Per unit of distance along the ray.
+    /// The density, per unit of distance along the ray.
     double pdf(double t) const {
         if (!(angle1_ > angle0_) || t < t0_ || t > t1_) return 0;
         const double s = t - nearest_;

@@ -11,7 +11,7 @@
 
 namespace woodcock {
 
-/// What sampling along a ray may know of a medium beforehand.
+/// What sampling along a ray knows of a medium beforehand.
 struct MediumSummary {
     const Medium* medium;  ///< that rays go through
     std::span<const EmissionPart> emission;

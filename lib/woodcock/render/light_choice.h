@@ -16,7 +16,7 @@ inline double powerHeuristic(double own, double other) {
     return 1 / (1 + r * r);
 }
 
-/// Next-event estimation's choice of a light, and how likely it is. One for each thread.
+/// Next-event estimation's choice of a light, with its probability. One object for each thread.
 class LightChoice {
 public:
     explicit LightChoice(const LightSet& lights)
@@ -43,8 +43,8 @@ public:
         return 0;
     }
 
-    /// Density, per steradian, with which next-event estimation at `from` would pick this direction
-    /// towards this light.
+    /// The density, per steradian, with which next-event estimation at `from` would sample this
+    /// direction to this light.
     double pdf(int light, const ScatterPoint& from, Vec3d direction) {
         const double pdf = lights_.pdf(light, from.position, direction);
         return pdf > 0 ? pdf * probability(light, from) : 0;

@@ -8,14 +8,15 @@ namespace woodcock {
 
 struct Scene;
 
-/// What a scene requires of the path loop. Found once; only what is needed is run.
+/// What a scene needs of the path loop. It is found once, and only what is needed is run.
 struct Needs {
     bool chromatic = false;      ///< the medium's channels differ: three are tracked instead of one
     bool overlap = false;        ///< more than one medium component
     bool scattering = false;     ///< sigma_s > 0 somewhere: otherwise camera rays only
-    bool lightSampling = false;  ///< a light that phase sampling alone would miss or sample badly
+    bool lightSampling =
+        false;  ///< a light that sampling the phase function would miss or sample badly
     bool surfaces = false;       ///< rays look for surfaces, and media lie within them
-    bool emission = false;       ///< media that glow: a point of every flight is looked at
+    bool emission = false;       ///< media that emit: a point of every flight is sampled
     bool localLights = false;    ///< lights near or inside the medium: equiangular sampling
 
     /// One line: what the scene needs and what was left out.

@@ -21,7 +21,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr float pathRoulette = 0.1f;
 /// Shadow rays play it below this part of LightSet::typicalRadiance().
 inline constexpr float shadowRoulette = 0.05f;
-/// Scattering orders whose numbers come from the quasi-random sequence.
+/// The first scattering orders take their numbers from the quasi-random sequence.
 inline constexpr std::int64_t quasiRandomOrders = 4;
 /// From this order on, a path survives every doubling of the order with probability 1/sqrt(2). In a
 /// conservative medium the number of scatterings has a tail like n^(-1/2); with this roulette both
@@ -52,9 +52,9 @@ struct SurfaceState {
     SurfaceHit ahead;        ///< the nearest surface, at tMax
     bool hitsAhead = false;
     double tMax = infinity;
-    Rgb tint{1.0f};  ///< surfaces' part of the throughput where one channel is tracked
+    Rgb tint{1.0f};  ///< colour of surfaces, where the throughput has one channel
     int bounces = 0;
-    bool seen = true;  ///< by the camera: nothing but boundaries and clear air so far
+    bool seen = true;  ///< by the camera: the ray has met only boundaries so far
     /// Whether next-event estimation has sampled the light that the path hits.
     enum class LightSampled {
         Never,              ///< it could not choose this direction: the light counts in full
@@ -71,7 +71,8 @@ struct PathState {
     RandomStream random;
     Vec3d origin, direction;
     Spectrum<N> throughput{1.0f};
-    Spectrum<N> opacity{};  // of what only absorbs on the camera's ray: 1 - throughput, unrounded
+    Spectrum<N>
+        opacity{};  // of absorbing media on the camera's ray: 1 - throughput without rounding
     Rgb radiance;
     std::int64_t scatterings = 0;
     ScatterPoint from;    // the last scattering event, for MIS at what its direction hits
@@ -91,7 +92,7 @@ struct ShadowRay {
     Rgb colour;
     bool secondLeg = false;
     bool transparent = false;   // passes dielectrics
-    bool inFront = false;       // brings light of the camera's own flight, before any surface
+    bool inFront = false;       // brings light of the camera's first flight, before any surface
     bool withinFlight = false;  // no surface lies in its way
     std::uint8_t mediumSet = 0;  // which media it goes through
     std::uint8_t secondMediumSet = 0;

@@ -31,13 +31,13 @@ struct PathJob {
 struct PathResult {
     FilmSample film;
     DepthSample depth;      ///< only with depthLayers or featureLayers
-    CatcherSample catcher;  ///< where the camera sees a shadow catcher; its radiance is not film's
+    CatcherSample
+        catcher;  ///< where the camera sees a shadow catcher; its radiance is not in `film`
 };
 
 /// Traces camera paths through a scene in batches: spawn, look ahead, walk, shade, shadow walk,
-/// retire. One
-/// object serves one thread at a time. A job's result depends on the scene, the seed and the job
-/// alone, never on its neighbours in a batch.
+/// retire. Use one object for each thread. The result of a job depends on the scene, the seed and
+/// the job only, never on the other jobs of its batch.
 class PathTracer {
 public:
     struct Options {
@@ -52,8 +52,8 @@ public:
     };
 
     virtual ~PathTracer() = default;
-    /// Fills results[i] for jobs[i]. `stop` is asked now and then; once it says true the results
-    /// are void and false is returned.
+    /// Fills results[i] for jobs[i]. `stop` is called now and then; once it returns true, trace()
+    /// returns false and the results are void.
     virtual bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
                        const std::function<bool()>& stop) = 0;
     virtual const RenderCounters& counters() const = 0;

@@ -14,7 +14,7 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largestFloat = std::numeric_limits<float>::max();
 constexpr double smallestFloat = std::numeric_limits<float>::min();
-/// A length that positions are to resolve should be this many of their roundings.
+/// A length must be this many roundings of positions, to be resolved well.
 constexpr double resolved = 100;
 /// Optical depths that tests cover.
 constexpr double deepest = 1e18;

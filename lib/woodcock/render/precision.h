@@ -8,8 +8,8 @@ namespace woodcock {
 
 struct Scene;
 
-/// Where the numbers of a scene are beyond what double and float can tell apart, one sentence for
-/// each: what, where, by how much, and what to do. Nothing for scenes of ordinary size.
+/// Warnings where the numbers of a scene exceed the precision of double and float. Each is a
+/// sentence that says what, where, by how much, and what to do. Empty for scenes of ordinary size.
 std::vector<std::string> precisionWarnings(const Scene& scene);
 
 }  // namespace woodcock

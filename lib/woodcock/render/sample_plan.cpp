@@ -11,8 +11,8 @@ namespace woodcock {
 
 namespace {
 
-/// Bounds of a pixel's share, in means: the pilot may have missed what is rare, and one bright
-/// sample may not draw everything to its neighbours.
+/// Bounds of a pixel's share, in means: the pilot may have missed rare bright samples, and one
+/// bright sample must not give all samples to its neighbours.
 constexpr double leastShare = 0.125, mostShare = 16;
 /// Below this part of the mean brightness, errors count absolutely.
 constexpr double darkness = 0.1;
@@ -20,14 +20,14 @@ constexpr double darkness = 0.1;
 /// it.
 constexpr double brightest = 4;
 
-/// What a scattering costs, its shadow ray and the flight after it, in paths without any. Measured
-/// 3.5 in a baked cumulus, 4.5 in thin smoke, 6.5 to 9.6 in dense smoke in a picture that is mostly
-/// sky (tests/bench/adaptive_bench): rather too much, as then a picture takes less time than even
-/// samples would and not more.
+/// The cost of a scattering with its shadow ray and the flight after it, in units of a path without
+/// scattering. Measured 3.5 in a baked cumulus, 4.5 in thin smoke, 6.5 to 9.6 in dense smoke in a
+/// picture that is mostly sky (tests/bench/adaptive_bench). It is rather too high: then a picture
+/// takes less time than with uniform samples, and not more.
 constexpr double costOfAnEvent = 10;
 constexpr double costUnits = 8;  // of a path without events
 
-/// What the pilot found in a pixel, or the weighted sums of several.
+/// The pilot's findings in a pixel, or weighted sums of several pixels.
 struct Found {
     double variance = 0;    ///< of a sample, mean over channels
     double radiance = 0;    ///< mean over channels
@@ -50,7 +50,7 @@ struct Found {
     }
 };
 
-/// Of the pixels of one colour.
+/// Mean brightness of the pixels of one colour of the chessboard.
 struct Brightness {
     double foreground = 0;  ///< of what covers a pixel: the mean by coverage
     double picture = 0;
@@ -82,8 +82,8 @@ Brightness brightnessOf(const std::vector<Found>& pixels, int width, std::size_t
 struct Neighbourhood {
     double variance = 0, square = 0, events = 0, weight = 0;
 
-    /// `b` is of the neighbours' colour. Squares, not means, of what is seen: beside something
-    /// bright, the little of it that reaches here counts as much on both sides.
+    /// `b`: that of the neighbours' colour. It sums squares, not means: beside a bright object, its
+    /// faint rim then counts as much on both sides.
     void add(const Found& p, double w, const Brightness& b, double samples) {
         const double before = p.foreground + (1 - p.coverage) * b.foreground;
         const double seen = std::max(p.radiance, before);
@@ -91,7 +91,7 @@ struct Neighbourhood {
         square += w * (seen * seen - p.variance / samples);
         events += w * p.events, weight += w;
     }
-    /// Of a sample, in paths without events.
+    /// Cost of a sample, in paths without events.
     double cost() const { return weight > 0 ? 1 + costOfAnEvent * events / weight : 1; }
     double relativeVariance(double epsilon) const {
         const double all = std::max(0.0, square) + epsilon * epsilon * weight;
@@ -121,8 +121,8 @@ SamplePlan::SamplePlan(const Film& pilot, int samples)
     std::vector<PixelPlan> places(pixels_);
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
-            // Of the pixels of the other colour alone, by binomial weights: enough of them that
-            // rare bright samples do not rule.
+            // From the pixels of the other colour only, by binomial weights: enough pixels that
+            // rare bright samples do not dominate.
             constexpr int reach = 6;
             constexpr std::array<double, reach + 1> binomial{924, 792, 495, 220, 66, 12, 1};
             const Brightness& b = brightness[(x + y + 1) & 1];
@@ -166,8 +166,8 @@ std::vector<std::uint32_t> SamplePlan::counts(int even) const {
     return counts;
 }
 
-/// Webster's apportionment: a pixel gets its share x factor, rounded, and the pilot at least. The
-/// factor rises until the work is given away, so nobody ever has less of more.
+/// Webster's apportionment: a pixel gets its share x factor, rounded, and at least the pilot. The
+/// factor rises until all work is distributed, so with more work no pixel ever gets less.
 void SamplePlan::apportion(const std::vector<PixelPlan>& places, int even,
                            std::vector<std::uint32_t>& counts) const {
     if (places.empty()) return;
@@ -184,13 +184,14 @@ void SamplePlan::apportion(const std::vector<PixelPlan>& places, int even,
     all *= static_cast<std::uint64_t>(even);
     double low = 0, high = 1;
     while (work(high) <= all) low = high, high *= 2;
-    while (true) {  // the least factor that gives away too much, and the one before it
+    while (true) {  // the least factor that distributes too much, and the one before it
         const double middle = low + (high - low) / 2;
         if (!(low < middle && middle < high)) break;
         (work(middle) <= all ? low : high) = middle;
     }
     std::uint64_t left = all - work(low);
-    bool fits = true;  // in the pixels' order up to the first that does not: so more is never less
+    bool fits = true;  // in the pixels' order up to the first that does not fit, so that more work
+                       // never means less
     for (const PixelPlan& p : places) {
         counts[p.pixel] = count(p, low);
         if (count(p, high) == counts[p.pixel] || !fits) continue;

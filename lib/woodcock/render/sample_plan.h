@@ -8,35 +8,36 @@
 
 namespace woodcock {
 
-/// How many samples each pixel gets: in proportion to its standard error, relative to what is seen,
-/// over the root of what a sample of it costs, as the least relative square error for the work
-/// demands (Neyman 1934 with costs: Cochran 1977, "Sampling Techniques", 5.5), never fewer than a
-/// pilot of equally many. All samples together are the work of so many in every pixel: pixels
-/// before nothing cost little, so those that cost much get fewer than a plan by numbers would give
-/// them, and a picture takes no longer than with even samples.
+/// How many samples each pixel gets. The number is proportional to the pixel's relative standard
+/// error, divided by the square root of the cost of a sample there. That gives the least relative
+/// square error for the work (Neyman 1934 with costs: Cochran 1977, "Sampling Techniques", 5.5). No
+/// pixel gets fewer than the pilot, which takes equally many in all. All samples together take as
+/// much work as the same number in every pixel, so a picture takes no longer than with uniform
+/// samples. Empty pixels cost little; costly ones get fewer samples than a plan by numbers alone
+/// would give them.
 ///
-/// What is seen is the pixel's radiance, or what the scene there adds to a background as bright as
-/// the scene, where that is more, as in Film::noise(): so a background that is hidden, black or
-/// left to a compositor does not make faint edges matter more than what casts them.
+/// The error is relative to the pixel's radiance; or, where that is more, to its radiance before a
+/// background as bright as the scene, as in Film::noise(). So a background that is hidden, black or
+/// left to compositing does not make faint edges more important than the objects themselves.
 ///
 /// Unbiased. A pixel whose number of samples depends on the samples themselves tends to stop where
 /// they were dark, and its mean is too low (Kirk and Arvo 1991, "Unbiased Sampling Techniques for
-/// Image Synthesis"). Here the pixels form a chessboard: what the black ones get follows from the
-/// pilot of the white ones alone, and the other way round, budget included. Pixels are independent,
-/// so a pixel's number is independent of its samples, and their plain mean is unbiased. It is why
-/// there is one pilot and no second look: later samples of the white ones would depend on the
-/// pilot of the black.
+/// Image Synthesis"). Here the pixels form a chessboard. The numbers of the black pixels follow
+/// from the pilot of the white ones only, and the other way round, including the budget. Pixels are
+/// independent, so a pixel's number is independent of its samples, and their plain mean is
+/// unbiased. For the same reason there is one pilot and no later update: later samples of the white
+/// pixels would depend on the pilot of the black ones.
 class SamplePlan {
 public:
     /// `pilot` holds the first `samples` samples of every pixel of its crop.
     SamplePlan(const Film& pilot, int samples);
 
-    /// Each pixel's samples, row by row over the crop, for the work of `even` samples in every
-    /// pixel as the pilot foretells it: of each colour as many as fit into it, short of it by less
-    /// than one sample. Grows with `even` in every pixel.
+    /// Each pixel's number of samples, row by row over the crop, for the work of `even` samples in
+    /// every pixel as the pilot predicts it. Each colour stays below its half of the work by less
+    /// than one sample. No number falls as `even` grows.
     std::vector<std::uint32_t> counts(int even) const;
 
-    /// Of a render with so many samples for each pixel: long enough to know, short enough to use.
+    /// The pilot's number of samples, for a render of `samples` in each pixel.
     static int pilotOf(int samples);
 
 private:

@@ -12,7 +12,7 @@
 
 namespace woodcock {
 
-/// Everything that light meets: what scene/ builds and the render session draws. Immutable while
+/// A scene as light meets it: scene/ builds it, and a render session renders it. Immutable while
 /// rendering and shared by all threads.
 struct Scene {
     Medium medium;  ///< outside of all surfaces
@@ -20,9 +20,9 @@ struct Scene {
     Camera camera = {};
     std::shared_ptr<const SurfaceSet> surfaces = {};  ///< null: none
     std::vector<Medium> interiorMedia =
-        {};  ///< what surfaces hold: SurfaceObject::medium - 1 is the index
-    /// What is run whether or not it is needed: to measure what that costs. See forceNeed() in
-    /// trade/needs_cost.h.
+        {};  ///< inside of surfaces: SurfaceObject::medium - 1 is the index
+    /// Needs that are run although the scene does not have them, to measure their cost. See
+    /// forceNeed() in trade/needs_cost.h.
     Needs forcedNeeds = {};
 
     /// World box of all finite media and surfaces.

@@ -26,7 +26,7 @@ constexpr int tileSize = 16;
 constexpr int longestPass =
     32;  // samples per pixel: bounds a tile's buffer and the wait for a stop
 constexpr std::chrono::milliseconds progressInterval{100};
-/// Time limits that the first sample of all pixels may take, so that there is a whole picture.
+/// The first sample of all pixels may take so many time limits, so that the picture is whole.
 constexpr double firstPassPatience = 2;
 
 using Clock = std::chrono::steady_clock;
@@ -73,8 +73,8 @@ struct Pass {
     std::vector<std::uint32_t> firstOf = {}, endOf = {};
 };
 
-/// Renders passes over all tiles into a film. Tiles own their pixels, and a pixel's samples are
-/// added in their order, so neither threads nor the length of passes shows in the sums.
+/// Renders passes over all tiles into a film. Each tile owns its pixels, and a pixel's samples are
+/// added in their order. So the sums depend neither on threads nor on the length of passes.
 class Session {
 public:
     Session(const Scene& scene, const RenderSettings& settings, Film::Window crop)
@@ -144,13 +144,13 @@ private:
         if (settings_.timeLimit > 0)
             p.fraction = std::max(p.fraction, std::min(1.0, p.seconds / settings_.timeLimit));
         if (settings_.noise > 0 && std::isfinite(p.noise)) {
-            // The error falls with the root of the samples.
+            // The error falls with the square root of the samples.
             const double ratio = p.noise / settings_.noise;
             const double needed =
                 std::max<double>(fewestSamplesForNoise, p.samples * ratio * ratio);
             p.fraction = std::max(p.fraction, std::min(1.0, done / needed));
         }
-        // A look at the noise that finds more of it than thought takes nothing back.
+        // The fraction never falls, even where a new estimate of the noise is higher.
         p.fraction = fractionTold_ = std::max(fractionTold_, p.fraction);
         if (p.fraction > 0) p.secondsLeft = p.seconds * (1 - p.fraction) / p.fraction;
         return p;
@@ -183,7 +183,7 @@ private:
             }
             length = std::min(2 * length, longestPass);
             if (settings_.timeLimit > 0) {
-                // Of the last pass, as adaptive ones cost more than the pilot.
+                // From the last pass, as adaptive passes cost more than the pilot.
                 const double perSample = secondsSince(passStart) / (end - pass.first);
                 const double left = settings_.timeLimit - secondsSince(start_);
                 length = std::min(length, static_cast<int>(left / perSample));
@@ -195,7 +195,8 @@ private:
         }
     }
 
-    /// Of a pass that took so long. Where the noise is only to be shown, looks are to cost little.
+    /// Estimates the noise after a pass that took so long. Where it is only displayed, that must
+    /// cost little.
     void lookAtNoise(double passSeconds, bool last) {
         sinceLook_ += passSeconds;
         if (settings_.noise == 0 && !last && sinceLook_ < 50 * lookSeconds_) return;
@@ -242,7 +243,7 @@ private:
         return true;
     }
 
-    /// How many each tile traces.
+    /// How many paths each tile traces.
     std::vector<std::size_t> pathsOf(const Pass& pass) const {
         std::vector<std::size_t> paths;
         paths.reserve(tiles_.size());
@@ -307,7 +308,7 @@ private:
     }
 
     static constexpr int fewestSamplesForNoise =
-        8;  // below, the estimate of the error is itself noise
+        8;  // with fewer samples the estimate of the error is too noisy
 
     const Scene& scene_;
     const RenderSettings settings_;
@@ -316,7 +317,7 @@ private:
     const ApproximateMedia approximateMedia_;
     Film film_;
     std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
-    std::vector<std::uint32_t> counts_;  // and what the pixels have by it
+    std::vector<std::uint32_t> counts_;  // and the pixels' numbers of samples by it
     const std::vector<Film::Window> tiles_;
     const Clock::time_point start_ = Clock::now();
     double lookSeconds_ = 0, sinceLook_ = 0;

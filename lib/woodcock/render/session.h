@@ -22,8 +22,8 @@ struct RenderSettings {
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
     Approximations approximations;
-    /// Samples go where the error is largest, for the work of [firstSample, endSample) in every
-    /// pixel: see SamplePlan.
+    /// Distributes samples by error, for the work of [firstSample, endSample) in every pixel: see
+    /// SamplePlan.
     bool adaptive = false;
     int threads = 0;  ///< 0: all cores
     /// Seconds; 0: none. The first sample of all pixels may take twice as long.
@@ -55,14 +55,14 @@ struct RenderResult {
     RenderCounters counters;
 };
 
-/// Renders `scene`: the same scene, seed and sample range give the same film, bit for bit, whatever
-/// the number of threads. Passes over the whole crop, so that a stop leaves an even picture. With
-/// `adaptive` a pass gives each pixel its share of it, and the crop is part of what decides.
-/// `onProgress` is called a few times a second from one thread; returning false stops at once, as
-/// does the time limit: tiles of the pass at work that are finished stay, so that some pixels may
-/// hold more samples than endSample - firstSample (Film::Pixel::samples tells), or, where the first
-/// pass is stopped, none. No path of an unfinished tile counts: those that end early would be more
-/// often kept than others.
+/// Renders `scene`. The same scene, seed and sample range give the same film, bit for bit, whatever
+/// the number of threads. It renders in passes over the whole crop, so that a stop leaves an even
+/// picture. With `adaptive`, each pixel gets its share of a pass; the shares depend on the crop.
+/// `onProgress` is called a few times a second from one thread. If it returns false, rendering
+/// stops at once, as it does at the time limit. Finished tiles of the current pass are kept. So
+/// some pixels may hold more samples than endSample - firstSample (see Film::Pixel::samples), or
+/// none where the first pass is stopped. Unfinished tiles do not count: their short paths would be
+/// kept more often than their long ones.
 /// Throws Error{Usage} on an empty crop, image or sample range, and on an adaptive render of a
 /// range that does not begin at 0.
 RenderResult render(const Scene& scene, const RenderSettings& settings,

@@ -8,8 +8,8 @@ namespace woodcock {
 
 namespace {
 
-/// A rank-1 lattice with the powers of the inverse plastic number, of which the plane's points
-/// between any two bounds are spread evenly: Roberts 2018, "The Unreasonable Effectiveness of
+/// A rank-1 lattice by the powers of the inverse plastic number. Points whose keys lie between any
+/// two bounds are spread evenly over the plane: Roberts 2018, "The Unreasonable Effectiveness of
 /// Quasirandom Sequences", R2.
 double keyOf(int column, int row) {
     constexpr double a = 0.7548776662466927, b = 0.5698402909980532;

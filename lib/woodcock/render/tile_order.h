@@ -7,8 +7,9 @@
 
 namespace woodcock {
 
-/// A crop's square tiles, whose corners are at multiples of `size`, in an order in which every run
-/// of some length is spread over the whole crop: what the first tiles cost is what all cost.
+/// The square tiles of a crop, with corners at multiples of `size` pixels. Their order spreads
+/// every run of some length over the whole crop, so the cost of the first tiles predicts that of
+/// all.
 std::vector<Film::Window> scatteredTiles(Film::Window crop, int size);
 
 }  // namespace woodcock

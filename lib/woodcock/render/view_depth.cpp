@@ -13,7 +13,7 @@ namespace woodcock {
 namespace {
 
 constexpr double closedDepth = 10;
-constexpr double closedShare = 0.1;  // of the medium's size: the mean free path
+constexpr double closedShare = 0.1;  // mean free path in units of the medium's size
 constexpr std::size_t raysPerSide = 5;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

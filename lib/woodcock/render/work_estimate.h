@@ -6,22 +6,22 @@
 
 namespace woodcock {
 
-/// How much of a render is done, by what its tiles have cost so far. All samples of a pass over the
-/// picture are taken to cost alike, as SamplePlan makes them; within a pass, tiles count as much as
-/// they cost before. Not for several threads at once.
+/// Estimates how much of a render is done from the cost of its tiles so far. All samples of a pass
+/// are assumed to cost the same, as SamplePlan plans them. Within a pass, each tile counts as much
+/// as it cost before. Not thread-safe.
 class WorkEstimate {
 public:
-    /// Of a render of `samples` for each pixel. Throws nothing.
+    /// For a render of `samples` in each pixel. Does not throw.
     WorkEstimate(std::size_t tiles, double samples) : tiles_(tiles), samples_(samples) {}
 
-    /// A pass of so many samples for each pixel begins, in which each tile traces so many paths.
+    /// A pass begins, of `samples` in each pixel; each tile traces so many `paths`.
     void begin(double samples, const std::vector<std::size_t>& paths);
-    /// A tile of it is ready, after so many seconds of one thread.
+    /// A tile of the pass is finished, after so many seconds of one thread.
     void finish(std::size_t tile, double seconds);
-    /// All of its tiles are.
+    /// All tiles of the pass are finished.
     void end();
 
-    /// Samples for each pixel that the work so far stands for.
+    /// The work so far, as a number of samples in each pixel.
     double samplesDone() const;
     double fraction() const { return samplesDone() / samples_; }  ///< of all, 0 to 1
 

@@ -7,8 +7,9 @@
 
 namespace woodcock {
 
-/// Memory for a NanoVDB grid, aligned as its nodes must be. It begins as zeros, where NanoVDB's own
-/// buffer leaves in a file's gaps what memory held before. NanoVDB's templates take it as a buffer.
+/// Memory for a NanoVDB grid, aligned as its nodes must be. It is filled with zeros, where
+/// NanoVDB's own buffer would write old memory into a file's gaps. NanoVDB's templates take it as a
+/// buffer.
 class NanoBuffer {
 public:
     static constexpr std::size_t alignment = 32;

@@ -19,7 +19,7 @@ bool hasNanoVdb();
 /// Whether the file begins as NanoVDB files do, in either byte order.
 bool isNanoVdb(FileBytes& file);
 
-/// What the head of a grid says.
+/// The head of a grid.
 struct NanoVdbHead {
     std::string name;
     std::string valueType;  ///< as OpenVDB calls it, where it has one; "Fp8" and so on else
@@ -27,7 +27,7 @@ struct NanoVdbHead {
     GridClass gridClass = GridClass::Unknown;
     Affine3d worldFromIndex;
     std::uint64_t fileBytes = 0;
-    std::string fault;  ///< why no more is known; empty: the head is sound
+    std::string fault;  ///< why the head could not be read; empty: it is sound
 };
 
 struct NanoVdbHeads {
@@ -35,15 +35,14 @@ struct NanoVdbHeads {
     std::vector<NanoVdbHead> grids;  ///< in the order of the file
 };
 
-/// The heads of all grids; no voxels are read. Errors: Input where the file is none or damaged,
-/// Failure where this build has no NanoVDB.
+/// The heads of all grids; no voxels are read. Errors: Input where the file is not a NanoVDB file
+/// or is damaged; Failure where this build has no NanoVDB.
 NanoVdbHeads readNanoVdbHeads(FileBytes& file);
 
-/// One grid of the file, by its place in it, with its name, transform and class; a file keeps no
-/// other metadata. Quantised floats (Fp4, Fp8, Fp16 and FpN) become floats; the other numbers stay
-/// what they are. The file is not trusted: all sizes and places in it are checked. Errors: Input,
-/// naming file, grid and what is wrong; Failure where it does not fit into memory or this build has
-/// no NanoVDB.
+/// The grid of this index in the file, with its name, transform and class; a file has no other
+/// metadata. Quantised floats (Fp4, Fp8, Fp16 and FpN) become floats; other types stay. The file is
+/// not trusted: all of its sizes and offsets are checked. Errors: Input, naming file, grid and what
+/// is wrong; Failure where it does not fit into memory or this build has no NanoVDB.
 VdbGrids readNanoVdbGrid(const std::filesystem::path& file, std::size_t index);
 
 }  // namespace woodcock

@@ -49,7 +49,7 @@ namespace {
 constexpr unsigned lastKnownMinorVersion = 4;
 constexpr std::uint32_t noChecksum = 0xffffffff;
 
-/// What a grid begins with. Its root follows.
+/// The beginning of a grid. Its root follows.
 constexpr std::uint64_t headBytes = sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>);
 
 struct GridName {
@@ -149,7 +149,8 @@ private:
         return *reinterpret_cast<const T*>(bytes_.data() + place);
     }
 
-    /// Of as many nodes as the tree says it has: in the file, and as OpenVDB has them.
+    /// Checks that memory holds as many nodes as the tree claims: those of the file, and those of
+    /// OpenVDB.
     void requireRoom() const {
         const std::uint32_t(&count)[3] = treeHead_.mNodeCount;
         if (count[0] * sizeof(NanoLeaf) + count[1] * sizeof(NanoLower) +
@@ -166,7 +167,8 @@ private:
                           formatGiB(static_cast<double>(limit)));
     }
 
-    /// One node that many refer to would become as many: there are no more than the tree says.
+    /// A node that many refer to would be copied as often: so the nodes are counted, and there must
+    /// not be more than the tree claims.
     template <class T>
     const T& node(std::size_t level, std::uint64_t place) {
         const T& found = at<T>(place, "a node");
@@ -189,7 +191,8 @@ private:
             [this](std::uint64_t p, const openvdb::Coord& o) { return readLeaf(p, o); });
     }
 
-    /// Where a node lies follows from its parent: those without active voxels say nothing right.
+    /// A node's position follows from its parent: nodes without active voxels do not store a right
+    /// one.
     template <class Node, class Source, class ReadChild>
     std::unique_ptr<Node> readInternal(const Source& source, std::uint64_t place,
                                        const openvdb::Coord& origin, const ReadChild& readChild) {
@@ -227,7 +230,7 @@ private:
 
     bool hasKnownHashes() const { return head_.mVersion.getMinor() <= lastKnownMinorVersion; }
 
-    /// The lower half of the checksum: of all that comes before the nodes.
+    /// Checks the lower half of the checksum: of everything before the nodes.
     void requireHeadHash(std::uint64_t end) const {
         constexpr std::size_t begin = 16;  // after the magic number and the checksum itself
         const auto expected = static_cast<std::uint32_t>(head_.mChecksum);
@@ -236,7 +239,7 @@ private:
             throw name_.damaged("the checksum of its head is wrong");
     }
 
-    /// The upper half: of the hashes of all nodes, from the top.
+    /// Checks the upper half of the checksum: of the hashes of all nodes, from the top.
     void requireNodeHash(bool isEmpty) {
         const auto expected = static_cast<std::uint32_t>(head_.mChecksum >> 32);
         if (!hasKnownHashes() || expected == noChecksum || isEmpty) return;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t longestText = 4096;
 
-/// Has OpenVDB read from at most `most` of the next bytes, and stops where it stopped.
+/// Lets OpenVDB read from at most `most` of the next bytes, and stops where it stopped.
 template <class Read>
 void readThrough(FileBytes& file, std::uint64_t most, Read&& read) {
     const std::uint64_t begin = file.position();
@@ -49,7 +49,7 @@ void readMetadata(FileBytes& file, VdbGridHead& head) {
     for (auto n = file.value<std::uint32_t>(); n > 0; --n) {
         const std::string key = file.text();
         const std::string type = file.text();
-        if (key == openvdb::GridBase::META_FILE_DELAYED_LOAD) {  // a cache, no news
+        if (key == openvdb::GridBase::META_FILE_DELAYED_LOAD) {  // a cache of sizes; not needed
             file.skip(file.value<std::uint32_t>());
             continue;
         }
@@ -58,7 +58,8 @@ void readMetadata(FileBytes& file, VdbGridHead& head) {
         if (key == openvdb::GridBase::META_GRID_NAME) head.name = printable(text);
         if (key == openvdb::GridBase::META_GRID_CLASS) head.gridClass = text;
         if (key == openvdb::GridBase::META_SAVE_HALF_FLOAT)
-            // A damaged flag's byte is neither 0 nor 1, and then no bool of C++: its text is read.
+            // The byte of a damaged flag may be neither 0 nor 1, which is not a bool in C++: so its
+            // text is read.
             head.savedAsHalf = datum && (type == "bool" ? text == "true" : datum->asBool());
         if (text.size() <= longestText) texts[key] = std::move(text);
     }

@@ -12,7 +12,7 @@
 
 namespace woodcock {
 
-/// What stands before the tree of a grid.
+/// The head of a grid: everything before its tree.
 struct VdbGridHead {
     std::uint32_t compression = 0;  ///< OpenVDB's flags
     /// Sorted by key, as text; large ones and OpenVDB's cache of sizes left out.
@@ -23,7 +23,7 @@ struct VdbGridHead {
     std::optional<Affine3d> worldFromIndex;
 };
 
-/// Reads it from the current position and stops where the tree begins. Errors: Input.
+/// Reads the head at the current position and stops where the tree begins. Errors: Input.
 VdbGridHead readGridHead(FileBytes& file);
 
 }  // namespace woodcock

@@ -61,7 +61,7 @@ VdbHeader::Entry readEntry(FileBytes& file) {
     return entry;
 }
 
-/// The offsets lead from each entry to the next, and never back.
+/// Goes to the next entry by its offset, which must not lead back.
 void followOffsets(FileBytes& file, const VdbHeader::Entry& entry) {
     if (entry.begin < file.position() || entry.end < entry.begin)
         throw file.damaged(
@@ -73,7 +73,7 @@ void followOffsets(FileBytes& file, const VdbHeader::Entry& entry) {
     file.seek(entry.end);
 }
 
-/// In a stream the way to the next entry leads through the grid.
+/// In a stream, the next entry can only be found by walking through the grid.
 void walkThrough(FileBytes& file, VdbHeader::Entry& entry) {
     entry.begin = file.position();
     const VdbGridHead head = readGridHead(file);

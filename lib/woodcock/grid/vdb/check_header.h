@@ -23,8 +23,8 @@ struct VdbHeader {
     std::vector<Entry> entries;  ///< in the order of the file
 };
 
-/// Of a format newer than any that is known it reads what it can; file.doubt() says so then.
-/// Errors: Input when it is no VDB file, of a version that is too old, cut short, or written as a
+/// If the format is newer than the newest known one, it reads what it can, and file.doubt() says
+/// so. Errors: Input for a file that is not a VDB, is too old, is cut short, or was written as a
 /// stream with a grid that cannot be skipped.
 VdbHeader readVdbHeader(FileBytes& file);
 

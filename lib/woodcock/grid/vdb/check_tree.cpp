@@ -11,8 +11,8 @@ namespace woodcock {
 
 namespace {
 
-// Flags of a grid, and the byte that says how a node keeps its inactive values: as OpenVDB has them
-// in io/Compression.h.
+// Flags of a grid, and the byte that says how a node stores its inactive values: from OpenVDB's
+// io/Compression.h.
 constexpr std::uint32_t zip = 1, activeMask = 2, blosc = 4;
 enum NodeValues : std::uint8_t {
     OneInactive = 2,
@@ -41,7 +41,7 @@ public:
         VdbLayout layout;
         layout.topology = file_.position();
         readRoot();
-        // Each leaf takes its mask here and again with its voxels.
+        // Each leaf stores its mask here and again with its voxels.
         if (leaves_ > file_.left() / maskBytes(leafLog2))
             throw file_.damaged(fmt::format("{} leaves", leaves_));
         layout.leaves.reserve(leaves_);
@@ -76,8 +76,8 @@ private:
             throw file_.damaged("two nodes of one place");
     }
 
-    /// Of a root's tile or child. None stands at the very end of what an int counts, so that the
-    /// voxels next to it have numbers as well.
+    /// The origin of a root's tile or child. It must not be at the very end of the range of int, so
+    /// that the voxels next to it have numbers as well.
     Origin readOrigin() {
         constexpr std::int32_t size = 1 << (upperLog2 + lowerLog2 + leafLog2),
                                lowest = std::numeric_limits<std::int32_t>::min(),
@@ -138,7 +138,7 @@ private:
         const std::uint64_t bytes = count * storedBytes_;
         if (!(compression_ & (zip | blosc))) return readPlainValues(bytes);
         const auto stored = file_.value<std::int64_t>();
-        if (stored <= 0) {  // not compressed, as that would have gained nothing
+        if (stored <= 0) {  // not compressed, as that would not have saved bytes
             if (std::uint64_t(0) - static_cast<std::uint64_t>(stored) != bytes)
                 throw file_.damaged(fmt::format("{} bytes where {} are needed", stored, bytes));
             return readPlainValues(bytes);
@@ -149,7 +149,7 @@ private:
             file_.skip(static_cast<std::uint64_t>(stored));
     }
 
-    /// Blosc believes the sizes in its own header.
+    /// Blosc trusts the sizes in its own header, so they are checked here.
     void skipBlosc(std::uint64_t stored, std::uint64_t bytes) {
         struct Header {
             std::uint8_t version, codecVersion, flags, typeSize;

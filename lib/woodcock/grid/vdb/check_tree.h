@@ -21,7 +21,7 @@ struct VdbValueType {
 };
 VdbValueType valueTypeOf(const std::string& treeType);
 
-/// Where a file keeps the parts of a tree.
+/// The positions of the parts of a tree in a file.
 struct VdbLayout {
     std::uint64_t topology = 0;         ///< the tree without the voxels of its leaves
     std::vector<std::uint64_t> leaves;  ///< the voxels of each leaf, in the order of the tree
@@ -29,7 +29,7 @@ struct VdbLayout {
 };
 
 /// Walks the tree that begins at the current position, without decompressing anything. OpenVDB
-/// trusts what a file says about sizes and counts; what has passed here it can read in bounds, in
+/// trusts the sizes and counts in a file. After this check it can read the tree within bounds, in
 /// memory that is bounded by the file's size, and in parallel. Errors: Input, with the place.
 /// `compression`: the grid's flags. `type` has channels.
 VdbLayout findLayout(FileBytes& file, const VdbValueType& type, std::uint32_t compression,

@@ -30,7 +30,7 @@ GridClass classFromName(const std::string& name) {
     }
 }
 
-/// The first reason stands.
+/// The first reason is kept.
 void markUnusable(GridListing& listing, std::string reason) {
     if (listing.usable()) listing.unusable = std::move(reason);
 }
@@ -116,7 +116,7 @@ GridListing describe(const NanoVdbHead& head) {
     return listing;
 }
 
-/// Tells grids of one name apart as OpenVDB's files do, and those without a name.
+/// Numbers the grids of one name, and those without a name, as OpenVDB's files do.
 void numberNames(std::vector<GridListing>& grids) {
     std::map<std::string, int> total, seen;
     for (const GridListing& grid : grids) ++total[grid.name];

@@ -16,12 +16,12 @@
 
 namespace woodcock {
 
-/// Reads a file piece by piece, from any place of it, and never beyond its end. The bytes are
-/// copied: a file that shrinks meanwhile is an error, where a mapped one would end the program.
+/// Reads a file piece by piece, from any position, and never beyond its end. The bytes are copied:
+/// if the file shrinks meanwhile, that is an error, where a mapped file would end the program.
 class FileBytes {
 public:
-    /// Errors: Input when the file is missing, no regular file, or cannot be opened; they say what
-    /// was `expected`.
+    /// Errors: Input when the file is missing, not a regular file, or cannot be opened; the message
+    /// says what was `expected`.
     explicit FileBytes(const std::filesystem::path& file,
                        std::string_view expected = "a .vdb file");
     ~FileBytes();
@@ -32,12 +32,12 @@ public:
     std::uint64_t position() const { return position_; }
     std::uint64_t left() const { return end_ - position_; }
 
-    /// Limits reading to bytes [begin, end) of the file, and goes to their begin. Errors: Input.
+    /// Limits reading to bytes [begin, end) of the file, and goes to `begin`. Errors: Input.
     void enter(std::uint64_t begin, std::uint64_t end, std::string place);
-    /// Reads all that is left within the limits into memory at once.
+    /// Reads the rest of the bytes within the limits into memory at once.
     void loadAll();
 
-    /// The next `n` bytes, valid until the next call of anything here.
+    /// The next `n` bytes, valid until the next call of a function of this class.
     std::span<const char> bytes(std::uint64_t n) {
         require(n);
         if (position_ < windowBegin_ || position_ + n > windowBegin_ + windowBytes_) refill(n);
@@ -62,13 +62,13 @@ public:
     /// All bytes of [begin, end), which must be in memory after loadAll().
     std::span<const char> loaded(std::uint64_t begin, std::uint64_t end) const;
 
-    /// Why the file may be sound and still not be understood; empty: it is of a known kind.
+    /// Why a sound file may still not be understood; empty where its kind is known.
     void setDoubt(std::string doubt) { doubt_ = std::move(doubt); }
     const std::string& doubt() const { return doubt_; }
-    /// What an error says of that: "; <doubt>: save it ...", or nothing.
+    /// The end of an error message about that: "; <doubt>: save it ...", or empty.
     std::string wayOut() const;
 
-    /// "<file> is cut short or damaged: <place>: <what> at byte <position>", and the way out
+    /// "<file> is cut short or damaged: <place>: <what> at byte <position>", and wayOut()
     Error damaged(const std::string& what) const;
     const std::filesystem::path& path() const { return path_; }
 

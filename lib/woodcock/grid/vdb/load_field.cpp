@@ -45,11 +45,11 @@ std::string emptyNote(const VdbFile& file, const GridListing& grid, const VoxelS
         place(file, grid), voxels.inactiveValues);
 }
 
-/// Ends the source where its active voxels do. Returns the note about what that leaves out, if it
-/// is anything.
+/// Limits the source to the box of its active voxels. Returns a note about what that leaves out, or
+/// an empty text.
 std::string limitReach(const VdbFile& file, const GridListing& grid, const Box3i& active,
                        FieldSource& source) {
-    if (active.empty()) {  // inactive values too are left out then
+    if (active.empty()) {  // then inactive values are left out too
         const int channels = source.channels;
         source = {};
         source.channels = channels;
@@ -66,7 +66,7 @@ std::string limitReach(const VdbFile& file, const GridListing& grid, const Box3i
         place(file, grid), text(background));
 }
 
-/// Returns the note about what was repaired, if anything was.
+/// Returns a note about what was repaired, or an empty text.
 std::string requireSoundValues(const VdbFile& file, const GridListing& grid,
                                const GridStatistics& statistics, const LoadOptions& options) {
     const std::string faults = describeFaults(statistics, options.nonNegative);

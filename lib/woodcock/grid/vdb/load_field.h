@@ -13,13 +13,14 @@
 
 namespace woodcock {
 
-/// What a grid is loaded as. A colour may come from a scalar grid, as grey: its field has one
-/// channel then.
+/// What a grid is loaded as. A scalar grid can be loaded as a colour: it is grey, and its field has
+/// one channel.
 enum class GridUse { Scalar, Colour };
 
-/// What a grid means outside of its active voxels' box (and of the one voxel around it that
-/// interpolation reaches), where its background is not 0: that background, or nothing, as for
-/// media in pbrt-v4 and Cycles. A grid without active voxels is nothing then.
+/// The extent of a grid whose background is not 0. Outside of the box of its active voxels, and of
+/// the one voxel around it that interpolation reaches, it has that background (Everywhere), or it
+/// is 0 (ActiveVoxels), as media in pbrt-v4 and Cycles are. Then a grid without active voxels is
+/// empty.
 enum class GridReach { Everywhere, ActiveVoxels };
 
 struct LoadOptions {
@@ -27,9 +28,9 @@ struct LoadOptions {
     GridReach reach = GridReach::Everywhere;
     Storage storage = Storage::Auto;
     bool nonNegative =
-        true;             ///< a coefficient: values below zero are faults, as NaN and infinity are
-    bool repair = false;  ///< faults become zero, and a note, instead of an error
-    /// Makes other voxels of those that were found sound; null: they stay.
+        true;             ///< for a coefficient: negative values are faults, like NaN and infinity
+    bool repair = false;  ///< faults are set to zero, with a note, instead of an error
+    /// Converts the voxels, once they were found sound; null: they stay.
     std::function<FieldSource(FieldSource)> convert = {};
 };
 
@@ -37,7 +38,7 @@ struct LoadedGrid {
     Field field;
     Affine3d worldFromIndex;
     GridStatistics statistics;       ///< of the values as they stand in the file
-    std::vector<std::string> notes;  ///< what a user should know: repairs, unusual classes
+    std::vector<std::string> notes;  ///< for the user: repairs, unusual classes
     bool empty = false;              ///< it has no active voxels, which is noted
 };
 

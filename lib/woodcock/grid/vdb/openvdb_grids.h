@@ -5,8 +5,8 @@
 
 namespace woodcock {
 
-/// OpenVDB's grids in memory, on their way from one source file of grid/ or bake/ to another.
-/// Headers only name it (`struct VdbGrids;`), as OpenVDB's own take seconds to compile.
+/// OpenVDB's grids in memory. Headers only declare it (`struct VdbGrids;`), as OpenVDB's own
+/// headers take seconds to compile.
 struct VdbGrids {
     openvdb::GridPtrVec grids;
 };

@@ -13,12 +13,12 @@
 
 namespace woodcock {
 
-/// The trees of OpenVDB 13's grids of half values, which older versions can hold as well, although
-/// they know no such grids.
+/// The tree of OpenVDB 13's grids of half values. Older versions can hold such a tree, although
+/// they do not know such grids.
 using HalfTree = openvdb::tree::Tree4<openvdb::math::half, 5, 4, 3>::Type;
 
-/// The bytes of a tree in memory, and what is needed to read them. They have been walked: OpenVDB
-/// can read them in bounds.
+/// The bytes of a tree in memory, and what is needed to read them. They have been checked: OpenVDB
+/// can read them within bounds.
 struct StoredTree {
     std::string treeType;
     openvdb::VersionId libraryVersion;
@@ -28,15 +28,15 @@ struct StoredTree {
     std::span<const char> bytes;  ///< from layout.topology to layout.end
 };
 
-/// Brings the tree of a grid into the memory of `file` and makes sure that OpenVDB can read it
-/// there. `grid` as it was listed. Errors: Input.
+/// Loads the tree of a grid, as it was listed, into the memory of `file`, and checks that OpenVDB
+/// can read it there. Errors: Input.
 StoredTree loadStoredTree(FileBytes& file, const GridListing& grid);
 
-/// The metadata and transform of a grid, as OpenVDB has them, on a grid of the right type with an
-/// empty tree; of floats where the file has halves, and then to be saved as half. Errors: Input.
+/// A grid of the right type with the metadata and transform of the file, and an empty tree. Where
+/// the file has halves, its values are floats, and it is marked to be saved as half. Errors: Input.
 openvdb::GridBase::Ptr readGridWithoutTree(FileBytes& file, const std::string& uniqueName);
 
-/// Set up as OpenVDB's own archives set theirs up; reading beyond its end throws.
+/// A stream set up as OpenVDB's archives set up theirs. Reading beyond its end throws.
 class TreeStream : public std::istream {
 public:
     explicit TreeStream(const StoredTree& tree);

@@ -8,9 +8,9 @@
 
 namespace woodcock {
 
-/// The map as OpenVDB has it, in its simplest form: a scale and a translation where that is all,
-/// which every reader understands. Errors: Input for voxels too small for OpenVDB's maps, whose
-/// determinant must not be below 1e-15.
+/// The map as an OpenVDB transform, in its simplest form: a scale and a translation where these
+/// suffice, which every reader understands. Errors: Input for voxels too small for OpenVDB's maps,
+/// whose determinant must not be below 1e-15.
 inline openvdb::math::Transform::Ptr openVdbTransform(const Affine3d& worldFromIndex) {
     using openvdb::math::Transform;
     const auto& m = worldFromIndex.column;
@@ -24,8 +24,8 @@ inline openvdb::math::Transform::Ptr openVdbTransform(const Affine3d& worldFromI
             const auto transform =
                 uniform ? std::make_shared<Transform>(std::make_shared<UniformScaleMap>(scale[0]))
                         : std::make_shared<Transform>(std::make_shared<ScaleMap>(scale));
-            // Apart: a transform takes the map that it is made from to pieces, as differences of
-            // points, which loses digits where it translates.
+            // Separately: a transform takes its map apart by differences of points, which lose
+            // digits where it translates.
             transform->postTranslate(openvdb::Vec3d(t.x, t.y, t.z));
             return transform;
         }
@@ -44,8 +44,9 @@ inline openvdb::math::Transform::Ptr openVdbTransform(const Affine3d& worldFromI
     }
 }
 
-/// A linear map. Not through its matrix, which refuses to exist for voxels below 1e-5, nor, where
-/// it has a scale, through its Jacobian, which some OpenVDBs find as a difference of two points.
+/// The affine map of a linear OpenVDB map. It is not taken from the matrix, which throws for voxels
+/// below 1e-5. Where the map has a scale, it is not taken from the Jacobian either, which some
+/// versions of OpenVDB find as a difference of two points.
 inline Affine3d affineOf(const openvdb::math::MapBase& map) {
     using openvdb::math::ScaleMap, openvdb::math::ScaleTranslateMap;
     const auto vec = [](const openvdb::Vec3d& v) { return Vec3d{v[0], v[1], v[2]}; };

@@ -15,9 +15,8 @@ struct VdbGrids;
 bool isReadable(const GridListing& grid);
 
 /// The grids of these unique names, in this order, as OpenVDB has them: values, active states,
-/// transform and metadata as they stand in the file; halves become floats. As safe with damaged
-/// files as loadGrid(); the values may be anything that a number can be. Errors: Input, naming file
-/// and grid.
+/// transform and metadata as in the file; halves become floats. As safe with damaged files as
+/// loadGrid(). The values may be any numbers, also NaN. Errors: Input, naming file and grid.
 VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqueNames);
 
 }  // namespace woodcock

@@ -26,7 +26,7 @@ namespace {
 template <class V>
 constexpr int channelsOf = openvdb::VecTraits<V>::IsVec ? 3 : 1;
 
-/// What lies beyond the range of float becomes infinite, and is then refused or repaired as such.
+/// Values beyond the range of float become infinite, and are then refused or repaired as such.
 float toFloat(double v) {
     if (std::abs(v) <= static_cast<double>(std::numeric_limits<float>::max()) || std::isnan(v))
         return static_cast<float>(v);
@@ -148,7 +148,7 @@ private:
                         scan);
     }
 
-    /// Leaves that say no more than a tile become one; those equal to the background vanish.
+    /// Constant leaves become tiles; leaves equal to the background are dropped.
     void keepVarying(std::vector<Leaf*>& leaves, const std::vector<LeafKind>& kinds) {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -172,7 +172,7 @@ private:
         addTilesOf<Lower>();
     }
 
-    /// Most tiles of most nodes are background: those that are not are found in parallel.
+    /// Most tiles of most nodes are background; the others are found in parallel.
     template <class Node>
     void addTilesOf() {
         std::vector<const Node*> nodes;

@@ -13,7 +13,7 @@
 
 namespace woodcock {
 
-/// What a grid holds, once its voxels have been read.
+/// Statistics of a grid's voxels.
 struct GridStatistics {
     VoxelScan voxels;
     std::size_t activeTiles = 0, leaves = 0;
@@ -22,7 +22,7 @@ struct GridStatistics {
     std::size_t openVdbBytes = 0;  ///< memory of the tree in OpenVDB
 };
 
-/// Values that are set to zero on the way: NaN and infinite ones, and negative ones too.
+/// Values that are set to zero while reading: NaN and infinite ones (`faulty`), and negative ones.
 struct Repair {
     bool faulty = false;
     bool negative = false;
@@ -30,7 +30,7 @@ struct Repair {
 
 /// The grid as a source for buildField(); holds OpenVDB's tree as long as it lives.
 struct GridSource {
-    FieldSource field;  ///< leaves that are constant come as tiles, or not at all where background
+    FieldSource field;          ///< constant leaves are tiles; those of the background are left out
     GridStatistics statistics;  ///< of the values before any repair
 };
 

@@ -22,8 +22,7 @@ namespace {
 constexpr std::streamoff identifierPlace = 8 + 4 + 4 + 4 + 1;
 constexpr std::size_t identifierSize = 36;
 
-/// OpenVDB's own File goes on without a word when the disk is full: this one writes to a stream
-/// that throws.
+/// OpenVDB's own File ignores a full disk; this one writes to a stream that throws.
 class Writer : public openvdb::io::Archive {
 public:
     using Archive::write;
@@ -41,7 +40,7 @@ std::uint32_t compressionFlags(VdbCompression compression) {
     return openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
 }
 
-/// Replaces the random identifier by one that follows from the bytes after it.
+/// Replaces the random identifier by a hash of the bytes after it.
 void nameByContents(const std::filesystem::path& path) {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
     file.seekg(identifierPlace + static_cast<std::streamoff>(identifierSize));
@@ -78,7 +77,7 @@ void writeVdb(const std::filesystem::path& file, const VdbGrids& grids,
     openvdb::GridCPtrVec views;
     for (const openvdb::GridBase::Ptr& grid : grids.grids) {
         const openvdb::GridBase::Ptr view = grid->copyGrid();  // the tree is shared
-        view->setTransform(grid->transformPtr());              // its copy has lost digits
+        view->setTransform(grid->transformPtr());  // the copy's transform has lost digits
         view->setSaveFloatAsHalf(options.half);
         views.push_back(view);
     }
