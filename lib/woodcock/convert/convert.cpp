@@ -18,7 +18,7 @@ void say(const std::function<void(const std::string&)>& log, const std::string& 
 
 namespace {
 
-/// "vdb, nvdb and npy": those of the formats that `holds` is true of.
+/// "vdb, nvdb and npy": the names of the formats for which `holds` is true.
 template <class Holds>
 std::string namesWhere(Holds holds) {
     std::vector<std::string> names;
@@ -30,7 +30,7 @@ std::string namesWhere(Holds holds) {
     return text;
 }
 
-/// What each output can keep of --compression and --precision.
+/// Refuses --compression and --precision where the output cannot have them.
 void checkOutputOptions(const Format& to, const ConvertOptions& options) {
     if (to.writeGrids) return;
     if (options.compression && !to.dense.packs)

@@ -14,7 +14,7 @@
 
 namespace woodcock {
 
-/// Where voxels go that a file does not place, or places wrongly.
+/// The placement of voxels that a file does not place, or places wrongly.
 struct Placement {
     std::optional<double> voxel;  ///< the shortest side of a voxel, world units
     std::optional<double> size;   ///< the longest side of the volume, outer faces of its cells
@@ -27,11 +27,11 @@ struct Placement {
 };
 
 struct ConvertOptions {
-    std::optional<std::string> from;  ///< format of the input, instead of what its name says
-    std::optional<std::string> grid;  ///< of a VDB, or medium of a pbrt scene
+    std::optional<std::string> from;  ///< format of the input; absent: by its name
+    std::optional<std::string> grid;  ///< the grid of a VDB or .npz, or the medium of a pbrt scene
     std::optional<std::string> name;  ///< of the grid that is made
 
-    // Of files that are nothing but numbers.
+    // Of files of numbers without a header.
     std::optional<Dims> dims;
     std::optional<SampleType> type;
     std::optional<int> channels;
@@ -44,7 +44,7 @@ struct ConvertOptions {
     std::optional<std::string> columns;  ///< of a table of points: "x,y,z,radius"
     bool shell = false;                  ///< fog around a mesh's surface instead of inside it
 
-    std::optional<int> channel;  ///< the one that is taken
+    std::optional<int> channel;  ///< the channel that is taken; absent: all
     AxisOrder axes;
     Placement placement;
     ValueOptions values;
@@ -55,17 +55,18 @@ struct ConvertOptions {
     std::optional<Box3i> bounds;                ///< voxels that are written to dense formats
 
     std::function<void(const std::string&)> info, warn;
-    /// The stage in a word, and its share that is done; what it throws ends the work.
+    /// Called with the stage in a word, and the fraction of it that is done. If it throws, the work
+    /// ends.
     std::function<void(std::string_view stage, double fraction)> progress;
 };
 
-/// Reads any format that is known and writes VDB, or a dense format. Nothing is written where
-/// anything is wrong. Errors: Usage for unknown formats and options that do not fit them, Input for
-/// what is wrong with the file, Failure where it cannot be written.
+/// Reads any known format and writes VDB, NanoVDB or a dense format. Nothing is written in case of
+/// an error. Errors: Usage for unknown formats and options that do not fit them, Input for faults
+/// of the file, Failure where the output cannot be written.
 void convert(const std::filesystem::path& in, const std::filesystem::path& out,
              const ConvertOptions& options);
 
-/// The same of several pictures, which are slices of one volume: their names differ in a number.
+/// The same for several pictures that are slices of one volume; their names differ in a number.
 void convert(const std::vector<std::filesystem::path>& in, const std::filesystem::path& out,
              const ConvertOptions& options);
 

@@ -37,7 +37,7 @@ void setSize(DenseVolume& volume, const Placement& placement) {
     double factor = 1;
     if (placement.voxel) factor = *placement.voxel / shortest;
     if (placement.size) factor = *placement.size / longest;
-    // About the first voxel, so that the volume stays where the file has it.
+    // Scaled about the first voxel, so that the volume stays where the file places it.
     if (factor != 1)
         for (Vec3d& column : columns) column = column * factor;
 }
@@ -65,8 +65,8 @@ std::string describePlace(const DenseVolume& volume, const Placement& placement)
                : text;
 }
 
-/// Computed tomography counts from air, -1000, over water, 0. Scanners write from -1024 or fill
-/// what they do not see with less, down to -3024.
+/// Hounsfield units of computed tomography: air is -1000, water 0. Scanners write values from
+/// -1024, or down to -3024 outside of their view.
 void hintAtHounsfield(const DenseVolume& volume, const ValueSummary& found,
                       const ConvertOptions& options) {
     if (volume.channels != 1 || !options.values.remap.identity()) return;

@@ -47,8 +47,8 @@ bool holdsPoints(const VdbFile& file, const GridListing& grid) {
     return !file.nanoVdb && isPointGrid(grid);
 }
 
-/// The grids that are asked for, or all that hold numbers or points; a warning names each of the
-/// others.
+/// The grid that --grid names, or all grids that hold numbers or points. A warning names each of
+/// the others.
 std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& options) {
     if (options.grid) {
         FoundGrid found = findGrid(file, *options.grid);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int usualResolution = 256;
 
-/// The size of voxels that is asked for, else a part of the longest side.
+/// The size of voxels: that of --voxel, else a fraction of the longest side.
 double voxelFor(const Box3d& bounds, const ConvertOptions& options) {
     if (options.placement.size || options.placement.sizeSides || options.placement.origin)
         throw usageError(
@@ -39,7 +39,8 @@ double voxelFor(const Box3d& bounds, const ConvertOptions& options) {
     return voxel;
 }
 
-/// Where coordinates are floats so far out that they lie further apart than voxels can do with.
+/// Warns where coordinates are floats so far from the origin that their steps are coarse beside
+/// voxels.
 template <class PlaceOf>
 void noteFloats(std::size_t count, PlaceOf placeOf, double voxel, const ConvertOptions& options) {
     double furthest = 0;
@@ -61,7 +62,7 @@ void noteFloats(std::size_t count, PlaceOf placeOf, double voxel, const ConvertO
                         furthest, apart, voxel));
 }
 
-/// What a shape is wrong about is said with its file.
+/// Runs `make`, and adds the file's name to its input errors.
 template <class Make>
 VdbGrids made(const fs::path& in, Make make) {
     try {
@@ -72,7 +73,7 @@ VdbGrids made(const fs::path& in, Make make) {
     }
 }
 
-/// Turned, remapped and named as the options say.
+/// Turns and remaps grids as the options say.
 Source finish(VdbGrids grids, const fs::path& in, const std::vector<std::string>& notes,
               const ConvertOptions& options) {
     for (const std::string& note : notes) say(options.warn, note);
@@ -142,8 +143,8 @@ bool isLevelSet(const openvdb::GridBase::Ptr& grid) {
     return grid->getGridClass() == openvdb::GRID_LEVEL_SET;
 }
 
-/// The name of a level set's fog. A file's only one is its density, where it has none yet; others
-/// keep their names, and never take that of another grid.
+/// The name of a level set's fog. The only level set of a file becomes "density", where no grid has
+/// that name. Others keep their names, and never take that of another grid.
 std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptions& options) {
     const auto& all = grids.grids;
     if (options.name && all.size() == 1) return *options.name;
@@ -196,7 +197,7 @@ bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& point
 }
 
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {
-    // All names first, as each looks at the others; and a fog is no level set any more.
+    // All names first: each depends on the others, and a converted grid is no longer a level set.
     std::vector<std::string> before, names;
     for (std::size_t i = 0; i < grids.grids.size(); ++i) {
         openvdb::GridBase& grid = *grids.grids[i];

@@ -11,11 +11,11 @@ namespace woodcock {
 
 struct VdbGrids;
 
-/// A fog volume of the volume's name, with a voxel (i, j, k) for its own. Background zero; voxels
-/// that are zero after remapping, within the tolerance, are inactive and take no memory. Floats
-/// where they hold the samples' type exactly, else doubles; vectors for three channels. Leaves are
-/// made in parallel. Errors: Input for a number of channels other than 1 or 3, and for values that
-/// are not finite (see requireSound(), which the caller does for the sake of its note).
+/// A fog volume of the volume's name, with the same voxel indices. The background is zero. Voxels
+/// that are zero after remapping, within the tolerance, are inactive and take no memory. Values are
+/// floats where these hold the samples' type exactly, else doubles; vectors for three channels.
+/// Leaves are made in parallel. Errors: Input for a number of channels other than 1 or 3, and for
+/// values that are not finite (see requireSound(), which the caller does for the sake of its note).
 VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options, ValueSummary& summary,
                     const WorkProgress& progress = {});
 
@@ -24,18 +24,18 @@ VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options, Valu
 /// where the box takes more than the machine's memory.
 DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional<Box3i>& box = {});
 
-/// The same remapping for the active values of grids as they are; inactive ones and the background
-/// stay. Active voxels that become zero are switched off where the background is zero.
+/// Remaps the active values of grids; inactive values and the background stay. Active voxels that
+/// become zero become inactive where the background is zero.
 void remapGrids(VdbGrids& grids, const ValueOptions& options, ValueSummary& summary);
 
-/// Makes every grid one of floats, doubles, or vectors of these, the first that hold all values:
-/// whole numbers become doubles, booleans and masks floats. Returns by how much a value changes at
-/// most: more than nothing only where whole numbers lie beyond 2^53.
+/// Converts every grid to floats, doubles, or vectors of these, the first type that holds all
+/// values: integers become doubles, booleans and masks floats. Returns the largest change of a
+/// value: more than zero only for integers beyond 2^53.
 double useFloatingPoint(VdbGrids& grids);
 
 enum class Precision { Source, Half, Float, Double };
 
-/// The largest differences that a lower precision makes, among active values.
+/// The largest changes of active values by a lower precision.
 struct PrecisionLoss {
     double absolute = 0, relative = 0;
 };

@@ -65,7 +65,7 @@ void renameIndexAxes(DenseVolume& volume, const AxisOrder& order) {
         volume.worldFromIndex.translation += column * static_cast<double>(last);
         column = -column;
     }
-    // -0 would be seen as such in files.
+    // Avoids -0, which files would show.
     for (Vec3d& column : volume.worldFromIndex.column)
         for (int i = 0; i < 3; ++i) column[i] += 0.0;
 }
@@ -171,7 +171,7 @@ void applyAxisOrder(DenseVolume& volume, const AxisOrder& axes) {
     if (axes.identity()) return;
     volume.worldFromIndex = axes.map() * volume.worldFromIndex;
     straighten(volume);
-    // Without a place of its own the volume begins at the world's origin, however it is turned.
+    // A volume that the file does not place begins at the world's origin, however it is turned.
     if (!volume.placed) volume.worldFromIndex.translation = {};
 }
 

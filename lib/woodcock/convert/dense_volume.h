@@ -17,13 +17,12 @@ namespace woodcock {
 
 using Dims = std::array<std::int64_t, 3>;
 
-/// Numbers on a regular lattice, as they lie in a file: bytes in memory, and where the one of voxel
-/// (i, j, k) and channel c is among them. So the order of axes, the byte order and the type cost no
-/// copy; a number is converted when it is asked for.
+/// Numbers on a regular lattice, as in a file: bytes in memory, and the position among them of
+/// voxel (i, j, k), channel c. So no copy is needed for another order of axes, byte order or type;
+/// a number is converted when it is read.
 ///
-/// A value belongs to a point, not to a cell: that of voxel (i, j, k) to worldFromIndex.point(i, j,
-/// k), which is where a VDB has it too. Formats that speak of cells in a box mean the cells'
-/// centres.
+/// A value belongs to a point, not to a cell: voxel (i, j, k) lies at worldFromIndex.point(i, j,
+/// k), as in a VDB. In formats of cells in a box, the points are the cells' centres.
 struct DenseVolume {
     std::string name = "density";
     Dims dims{};
@@ -39,10 +38,10 @@ struct DenseVolume {
     Affine3d worldFromIndex;
     bool placed = false;    ///< the file says where the voxels lie
     bool unitCube = false;  ///< not placed, and meant to fill the unit cube
-    /// The channels are volumes of their own, one after the other ("times"), and no colour; empty:
-    /// they belong together.
+    /// What the channels are, where each is a volume of its own ("times"). Empty: together they are
+    /// a colour or vector.
     std::string list;
-    std::vector<std::string> notes;  ///< what a user should know about the reading
+    std::vector<std::string> notes;  ///< for the user: what was assumed while reading
 
     std::uint64_t voxels() const {
         return static_cast<std::uint64_t>(dims[0]) * static_cast<std::uint64_t>(dims[1]) *
@@ -60,8 +59,7 @@ struct DenseVolume {
 /// The most voxels along an axis: index positions are 32-bit numbers in VDB.
 inline constexpr std::int64_t mostVoxelsOfSide = 1 << 30;
 
-/// Bytes of dims x channels samples; nothing where they are not positive, too many along an axis,
-/// or beyond 64 bits.
+/// Bytes of dims x channels samples. Absent where a number is not positive or too large.
 std::optional<std::uint64_t> denseBytes(const Dims& dims, int channels, SampleType type);
 
 /// The values of voxels [begin, begin + size), x slowest, z fastest, channels innermost: as in a
@@ -69,10 +67,11 @@ std::optional<std::uint64_t> denseBytes(const Dims& dims, int channels, SampleTy
 void readBlock(const DenseVolume& volume, const Dims& begin, const Dims& size, float* values);
 void readBlock(const DenseVolume& volume, const Dims& begin, const Dims& size, double* values);
 
-/// Gives the sides of voxels these lengths; directions and the first voxel's place stay.
+/// Gives the sides of voxels these lengths (world units). Directions and the first voxel's position
+/// stay.
 void setVoxelSides(DenseVolume& volume, Vec3d sides);
 
-/// Cells that fill the cube from 0 to 1.
+/// Places the volume so that its cells fill the cube from 0 to 1.
 void fillUnitCube(DenseVolume& volume);
 
 /// The same volume with one channel. Errors: Usage where there is no such channel.
@@ -91,11 +90,11 @@ struct AxisOrder {
 /// "xzy", "x,-z,y" or "x-zy". Errors: Usage.
 AxisOrder parseAxisOrder(std::string_view text);
 
-/// Turns the volume in the world as a rigid body: for files whose up is another axis.
+/// Rotates or mirrors the volume in the world: for files with another axis up.
 void applyAxisOrder(DenseVolume& volume, const AxisOrder& axes);
 
-/// Renames and reverses the axes of the index where that makes the transform a positive scale and a
-/// translation, which all programs understand; nothing moves in the world.
+/// Permutes and reverses the index axes where that makes the transform a positive scale and a
+/// translation, which all programs understand. Nothing moves in the world.
 void straighten(DenseVolume& volume);
 
 }  // namespace woodcock

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What the readers of convert/formats return becomes a source.
+// Adapters of the readers of convert/formats.
 
 ReadSource volume(DenseVolume (*read)(const fs::path&)) {
     return [read](const fs::path& in, const ConvertOptions& options) {
@@ -147,7 +147,7 @@ const Format* formatOfName(const fs::path& file) {
     return nullptr;
 }
 
-/// Formats that are not read are told by their bytes, whatever the name says.
+/// Refuses a file of a format that is not read, which its bytes tell, whatever its name is.
 void refuseForeign(const fs::path& in, const Format* named) {
     const auto foreign = foreignFormat(in);
     if (!foreign || foreign->readByConvert) return;

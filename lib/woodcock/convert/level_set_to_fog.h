@@ -9,14 +9,14 @@ namespace woodcock {
 struct VdbGrids;
 
 struct LevelSetToFogOptions {
-    double band = 0;  ///< the depth at which density reaches one, world units; 0: all that is known
+    double band = 0;  ///< the depth at which density reaches one, world units; 0: the narrow band's
     std::string name = "density";  ///< of the fog
 };
 
 /// Fog inside each level set of `levelSets`: zero at the surface, one from `band` below it on.
-/// `notes` says where a grid knows distances up to less than the band, which then ends there.
-/// Errors: Input, naming the grid, where it is no level set of float or double, holds a NaN or has
-/// no inside.
+/// Where a grid's narrow band is smaller, it replaces `band`, and `notes` says so. Errors: Input,
+/// naming the grid, where it is not a level set of float or double, holds a NaN, or encloses
+/// nothing.
 VdbGrids levelSetToFog(const VdbGrids& levelSets, const LevelSetToFogOptions& options,
                        std::vector<std::string>& notes);
 

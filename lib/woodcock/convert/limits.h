@@ -15,7 +15,7 @@ inline void requireVoxel(double voxel) {
         throw usageError("a voxel size of {}; it must be positive", voxel);
 }
 
-/// Errors: Input where the indices of a box are more than OpenVDB counts.
+/// Errors: Input where the indices of a box exceed those of OpenVDB.
 inline void requireIndices(Vec3d lower, Vec3d upper, double voxel) {
     constexpr double most = 1 << 30;
     const Vec3d furthest = max(-lower, upper);

@@ -16,12 +16,12 @@ namespace woodcock {
 
 namespace {
 
-/// Surfaces nearer to each other than this are one, in voxels.
+/// Surfaces closer to each other than this, in voxels, count as one.
 constexpr double together = 1e-4;
 
 }  // namespace
 
-/// The parts around a place, each with its winding number.
+/// The parts around a point, each with its winding number.
 class MeshInside::Around {
 public:
     struct Part {
@@ -64,7 +64,7 @@ void MeshInside::makeSlabs() {
         const auto [low, high] = std::minmax({points_[a].x, points_[b].x, points_[c].x});
         reaches.push_back({floorToInt(low), floorToInt(high)});
     }
-    // Only those that are reached: parts may lie far apart.
+    // Only rows that are reached: parts may lie far apart.
     std::vector<Reach> ordered = reaches;
     std::sort(ordered.begin(), ordered.end(),
               [](const Reach& a, const Reach& b) { return a.lower < b.lower; });
@@ -96,8 +96,8 @@ const MeshInside::Slab* MeshInside::slabAt(int x) const {
     return at != slabs_.end() && at->x == x ? &*at : nullptr;
 }
 
-// Each edge decides by itself on which side the line is, the same for both of its triangles. So
-// what goes into a closed part comes out of it again, whatever is rounded.
+// Each edge decides on which side the line is, in the same way for both of its triangles. So a line
+// that enters a closed part leaves it again, whatever the rounding.
 int MeshInside::windsAround(std::uint32_t triangle, double x, double y, double& z) const {
     const auto& corners = mesh_.mesh.triangles[triangle];
     int winding = 0;
@@ -142,7 +142,7 @@ std::vector<MeshInside::Crossing> MeshInside::crossingsOf(const Slab& slab) cons
     return crossings;
 }
 
-/// Calls `visit(before, after, crossings)` for what crosses a line at one place, from below.
+/// Calls `visit(before, after, crossings)` for the crossings at each point of a line, from below.
 template <class Visit>
 void MeshInside::sweep(const Slab& slab, Visit visit) const {
     const std::vector<Crossing> crossings = crossingsOf(slab);
@@ -213,7 +213,7 @@ void MeshInside::nest() {
         else
             ++nestedSolids_;
     }
-    // Surfaces along z cross no line along z: what may lie within is looked at.
+    // Surfaces along z cross no line along z, so parts that may lie inside are checked separately.
     innerSurfaces_ =
         nestedSolids_ > 0 || partsMeet([&](std::uint32_t inner, std::uint32_t outer) {
             return std::binary_search(containers[inner]->begin(), containers[inner]->end(), outer);
@@ -351,7 +351,7 @@ int MeshInside::cut(const Corners& p, std::vector<Corners>& kept) const {
     const Vec3d half = (p[i] + p[(i + 1) % 3]) * 0.5;
     const Corners a{p[i], half, p[(i + 2) % 3]}, b{half, p[(i + 1) % 3], p[(i + 2) % 3]};
     if (longest <= 0.125) return isBorder(p);
-    if (longest <= 1) {  // of one kind, it seems
+    if (longest <= 1) {  // parts of one kind only
         const bool border = isBorder(p);
         const Vec3d middle = (p[0] + p[1] + p[2]) / 3.0;
         bool same = true;

@@ -12,10 +12,10 @@ namespace woodcock {
 
 /// Which voxels lie inside a mesh, whose points are given in index space.
 ///
-/// A part that lies in no other is solid, whichever way it faces. One within others is a cavity
-/// where what is around it is solid and it faces the other way than the outermost, else it is solid
-/// too. Parts that overlap are a union. So a place is inside where, over the parts around it of one
-/// outermost part, solids are more than cavities.
+/// A part that lies in no other is solid, whichever way it faces. A part within others is a cavity
+/// if its surroundings are solid and it faces the other way than the outermost part; otherwise it
+/// is solid too. Overlapping parts are a union. So a point is inside where it is in more solids
+/// than cavities, counted within one outermost part.
 class MeshInside {
 public:
     using Corners = std::array<Vec3d, 3>;
@@ -25,19 +25,19 @@ public:
 
     bool contains(Vec3i voxel) const;
 
-    /// The triangles that are the border of what is inside. Where surfaces lie within, as those of
-    /// parts that overlap, they are cut to pieces of an eighth of a voxel at their ends.
+    /// The triangles that bound the inside. Where surfaces lie within it, as those of overlapping
+    /// parts, triangles are cut into pieces, of an eighth of a voxel at their ends.
     std::vector<Corners> border() const;
 
     std::size_t voxels() const { return voxels_; }              ///< that are inside
     std::size_t cavities() const { return cavities_; }          ///< parts that are cavities
-    std::size_t nestedSolids() const { return nestedSolids_; }  ///< parts within what is solid
+    std::size_t nestedSolids() const { return nestedSolids_; }  ///< parts within solid parts
     std::size_t parts() const { return adds_.size(); }
     /// Whether parts overlap, or one crosses itself.
     bool hasInnerSurfaces() const { return innerSurfaces_; }
-    /// Of what lines along z have inside, the share of pieces that hold no voxel's centre.
+    /// The share of inside pieces of lines along z that hold no voxel's centre.
     double missedShare() const;
-    /// In voxels, where there are no inner surfaces.
+    /// The enclosed volume in voxels, where there are no inner surfaces.
     double volume() const { return volume_; }
 
 private:

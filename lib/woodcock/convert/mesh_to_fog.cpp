@@ -63,8 +63,8 @@ private:
     const std::vector<Corners>& triangles_;
 };
 
-/// Voxels within `reach` voxels of a triangle: of its face, and around its edges where those are
-/// long. Neighbours are counted apart, so that it is rather too many.
+/// An estimate of the voxels within `reach` voxels of a triangle: of its face, and around its edges
+/// where those are long. Neighbouring triangles are counted separately, so it is rather too high.
 double estimateVoxels(const Corners& triangle, double reach) {
     const auto& [p, q, r] = triangle;
     const double area = length(cross(q - p, r - p)) / 2;
@@ -72,7 +72,7 @@ double estimateVoxels(const Corners& triangle, double reach) {
     return 2 * reach * area + (edge > 2 * reach ? edge * pi * reach * reach / 2 : 0);
 }
 
-/// The limits of what is asked for, before anything is made.
+/// Checks the limits before anything is made.
 void requireRoom(const TriangleMesh& mesh, const MeshLattice& lattice, double reach,
                  std::uint64_t mostVoxels) {
     if (mesh.triangles.empty()) throw inputError("the mesh has no triangles");
@@ -99,8 +99,8 @@ double distanceTo(const Corners& t, const openvdb::Coord& voxel) {
         .length();
 }
 
-/// Each voxel tries the triangles that are the nearest to its neighbours: OpenVDB's bands without a
-/// sign miss the nearest one here and there, at the corners of leaves.
+/// Each voxel tries the triangles nearest to its neighbours: at the corners of leaves, OpenVDB's
+/// unsigned distances sometimes miss the nearest triangle.
 void tryNeighbours(openvdb::FloatGrid& grid, const openvdb::Int32Grid& nearest,
                    const std::vector<Corners>& triangles, double voxel) {
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
@@ -141,7 +141,7 @@ openvdb::FloatGrid::Ptr distances(const std::vector<Corners>& triangles, const M
     return grid;
 }
 
-/// The same with OpenVDB's own sign, for meshes that have neither cavities nor surfaces within.
+/// The same with OpenVDB's own sign, for meshes without cavities and inner surfaces.
 openvdb::FloatGrid::Ptr signedDistances(const MeshInside& inside, const MeshLattice& lattice,
                                         double outside, double within) {
     const auto uniform = openvdb::math::Transform::createLinearTransform(lattice.voxel);
@@ -158,7 +158,7 @@ bool isSimple(const MeshInside& inside) {
            inside.parts() == 1;
 }
 
-/// Distances get the sign of the side: below zero within. What lies beyond the band follows.
+/// Gives distances their sign: negative inside. Values beyond the band follow.
 void sign(openvdb::FloatGrid& grid, const MeshInside& inside) {
     openvdb::tools::foreach (grid.beginValueOn(),
                              [&](const openvdb::FloatGrid::ValueOnIter& value) {
@@ -171,7 +171,7 @@ void sign(openvdb::FloatGrid& grid, const MeshInside& inside) {
 
 std::string share(double part) { return fmt::format("{:.2g} %", 100 * part); }
 
-/// What of a mesh its voxels do not show.
+/// Notes what the voxels do not show of a mesh.
 void noteInside(const MeshInside& inside, double voxel, std::vector<std::string>& notes) {
     if (inside.nestedSolids() > 0)
         notes.push_back(fmt::format(
@@ -257,7 +257,7 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
                 band, options.voxel);
         return named(grid, openvdb::GRID_FOG_VOLUME, options.name);
     }
-    // Nothing is deeper than half of the shortest side.
+    // No point is deeper than half of the shortest side.
     const Vec3d size = boundsOf(mesh).size();
     const double deepest = std::min({size.x, size.y, size.z}) / 2;
     const double reach = std::min(band, deepest) / options.voxel + 1;
@@ -269,7 +269,7 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
         throw inputError(
             "nothing is inside: the mesh is thinner than its voxels; take voxels smaller than {}",
             options.voxel);
-    // The sign is found outside: one voxel there would do, three are OpenVDB's usual width.
+    // The sign needs one voxel outside of the surface; three are OpenVDB's usual width.
     const auto grid = isSimple(inside) ? signedDistances(inside, lattice, 3, reach)
                                        : distances(inside.border(), lattice, reach);
     if (!isSimple(inside)) sign(*grid, inside);

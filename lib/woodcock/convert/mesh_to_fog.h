@@ -15,23 +15,23 @@ struct MeshToFogOptions {
     double voxel = 0;  ///< world units, as all lengths here
     double band = 0;   ///< the depth at which density reaches one; 0: three voxels
     /// Density around the surface instead of inside it: one at the surface, zero at `band` from it.
-    /// The way on for meshes that enclose nothing.
+    /// Use it for meshes that enclose nothing.
     bool shell = false;
     std::string name = "density";
     std::uint64_t mostVoxels = 500'000'000;
 };
 
-/// Fog inside a mesh: zero at the surface, one from `band` below it on; where nothing is as deep,
-/// no voxel is one. What is inside is said by MeshInside: cavities stay empty, parts that overlap
-/// are a union. `notes` says what was mended, what is thinner than voxels, and the largest density
-/// where that is below one. Errors: Input, where nothing is inside, as of an open mesh
+/// Fog inside a mesh: zero at the surface, one from a depth of `band` on. Where no point is as
+/// deep, no voxel is one. MeshInside decides what is inside: cavities stay empty, overlapping parts
+/// are a union. `notes` tells what was repaired, what is thinner than voxels, and the largest
+/// density where that is below one. Errors: Input, where the mesh has no inside, as an open one
 /// (closedMesh()).
 VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
                    std::vector<std::string>& notes);
 
 struct MeshToLevelSetOptions {
     double voxel = 0;
-    double band = 0;  ///< distances are right up to this far from the surface, on both sides
+    double band = 0;  ///< world units: distances are right up to this, on both sides
     std::string name = "surface";
     std::uint64_t mostVoxels = 500'000'000;
 };

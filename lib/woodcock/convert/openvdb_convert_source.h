@@ -11,17 +11,17 @@
 
 namespace woodcock {
 
-/// What a source holds, on its way to the file that is written.
+/// The grids of a source, between reading and writing.
 struct Source {
     VdbGrids grids;
     std::optional<Box3i> box;  ///< of the voxels, where the source was dense
-    /// Of the grids, where they come from a file that tells its grids apart by name and number.
+    /// The grids' unique names, where they come from a file that numbers grids of one name.
     std::vector<std::string> uniqueNames = {};
 };
 
 void say(const std::function<void(const std::string&)>& log, const std::string& text);
 
-/// What tells the share of a stage that is done.
+/// Reports the fraction of a stage that is done.
 WorkProgress stageOf(const ConvertOptions& options, std::string_view name);
 
 /// Numbers on a regular lattice: their values are remapped, and they are placed as the options
@@ -32,16 +32,16 @@ Source sourceOf(std::vector<DenseVolume> volumes, const std::filesystem::path& i
 /// The grids of a file of OpenVDB or NanoVDB.
 Source readGridsSource(const std::filesystem::path& in, const ConvertOptions& options);
 
-// Shapes become density.
+// Shapes become a density.
 Source readMeshSource(const std::filesystem::path& in, const ConvertOptions& options);
 Source readPointsSource(const std::filesystem::path& in, const ConvertOptions& options);
 /// A PLY file is a mesh where it has faces, else points.
 Source readPlySource(const std::filesystem::path& in, const ConvertOptions& options);
-/// Those of the grids that are level sets become fog.
+/// Turns the level sets among the grids into fog.
 void fillLevelSets(VdbGrids& grids, const ConvertOptions& options);
 
-/// The density of a grid of points becomes one of the grids; false, with a warning, where it holds
-/// none.
+/// Adds the density of a grid of points to the grids. False, with a warning, where it holds no
+/// points.
 bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
                   const ConvertOptions& options);
 

@@ -9,8 +9,8 @@
 
 namespace woodcock {
 
-/// Signed distances (world units) to fog: zero at the surface, one from `band` below it on, also
-/// where nothing is as deep: then no voxel is one. (OpenVDB's own function would end the band at
+/// Turns signed distances (world units) into fog: zero at the surface, one from a depth of `band`
+/// on. Where no point is as deep, no voxel is one. (OpenVDB's own function would end the band at
 /// the deepest voxel.) Distances beyond the grid's narrow band must not be less than `band`.
 template <class GridT>
 void distancesToFog(GridT& grid, double band) {

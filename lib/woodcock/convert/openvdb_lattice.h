@@ -8,14 +8,14 @@
 
 namespace woodcock {
 
-/// Where voxels lie: their lattice goes through the world's origin, and is counted from a voxel
-/// near to what is made, so that indices are small wherever that stands. The transform carries the
-/// place, in double.
+/// The lattice of voxels. It goes through the world's origin, and indices count from a voxel near
+/// to the object, so that they are small wherever it is. The transform holds the position, in
+/// double.
 struct Lattice {
     double voxel;
     Vec3d first;  ///< the centre of voxel (0, 0, 0)
 
-    /// `near`: zero, or a place near to what is made (originFor()).
+    /// `near`: zero, or a point near to the object (originFor()).
     Lattice(Vec3d near, double size) : voxel(size) {
         const Vec3d steps = near / voxel;
         first = Vec3d{std::round(steps.x), std::round(steps.y), std::round(steps.z)} * voxel;

@@ -16,8 +16,8 @@ namespace woodcock {
 
 namespace {
 
-// The format is that of openvdb/points/PointDataGrid.h: after the topology come passes over all
-// leaves: sizes, attributes, the pages' heads of each, counts, the pages of each.
+// The format is that of openvdb/points/PointDataGrid.h. After the topology come passes over all
+// leaves: sizes, attributes, for each the heads of its pages, counts, and for each its pages.
 
 /// Bits of a node's mask, as words of 64.
 using Mask = std::vector<std::uint64_t>;
@@ -246,7 +246,7 @@ private:
                              file_.path().string(), mostPoints_, file_.size());
     }
 
-    /// Blosc believes the sizes in its own header.
+    /// Blosc trusts the sizes in its own header, so they are checked here.
     std::unique_ptr<char[]> unpacked(std::span<const char> stored, std::uint64_t bytes) {
         std::uint32_t inside[4] = {};
         if (stored.size() < sizeof inside) throw file_.damaged("compressed points");

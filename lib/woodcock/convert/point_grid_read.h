@@ -10,8 +10,8 @@ namespace woodcock {
 bool isPointGrid(const GridListing& grid);
 
 /// The points of such a grid, in world space, with their radii where it has an attribute pscale or
-/// radius. What the file says is not trusted: sizes are held against its length before memory is
-/// taken, and it may hold a million points more than four for each of its bytes. Errors: Input,
+/// radius. The file is not trusted: sizes are checked against its length before memory is taken,
+/// and it may hold at most four points for each of its bytes, and a million more. Errors: Input,
 /// with the place; also for codecs and transforms that are not known.
 PointCloud readPointGrid(const VdbFile& file, const GridListing& grid);
 

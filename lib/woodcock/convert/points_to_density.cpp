@@ -30,8 +30,8 @@ struct Bump {
     Vec3i lower, upper;  ///< leaves that it may reach, in units of leaves
 };
 
-/// The share of a point in a leaf. In their order, leaves come one after the other, and each has
-/// its points in the order of the file.
+/// A point's share in a leaf. Sorted, leaves come one after another, and each has its points in the
+/// order of the file.
 struct Share {
     std::array<int, 3> leaf;
     std::uint32_t point;

@@ -14,15 +14,15 @@ struct VdbGrids;
 struct PointsToDensityOptions {
     double voxel = 0;   ///< world units
     double radius = 0;  ///< of points that have none of their own; 0: two voxels
-    /// Off: the weight is the density at the point, where it is alone. On: it is the integral of
-    /// the point's density.
+    /// False: the weight is the density at the point, if no other is near. True: it is the integral
+    /// of the point's density.
     bool normalised = false;
     std::string name = "density";
     std::uint64_t mostVoxels = 500'000'000;
 };
 
 /// Sums a smooth bump for each point: weight x (1 - (distance / radius)^2)^3. Radii below 1.5
-/// voxels are widened to that, with their integral kept; `notes` says of how many. The result does
+/// voxels are widened to that, with their integral kept; `notes` tells how many. The result does
 /// not depend on the number of threads. Errors: Input.
 VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& options,
                          std::vector<std::string>& notes);

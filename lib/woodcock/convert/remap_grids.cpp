@@ -143,7 +143,7 @@ bool convertIf(openvdb::GridBase::Ptr& grid) {
     return true;
 }
 
-/// How far a double is from the whole number that it stands for, at most.
+/// The largest difference between an integer and its double.
 double lossOfInt64(const openvdb::GridBase& grid) {
     if (!grid.isType<openvdb::Int64Grid>()) return 0;
     struct Change {
@@ -154,7 +154,7 @@ double lossOfInt64(const openvdb::GridBase& grid) {
     return overActiveValues<const openvdb::Int64Tree, Change>(
                tree,
                [](const auto& it, Change& loss) {
-                   // Magnitudes, as the largest may be rounded to 2^63, which is no std::int64_t.
+                   // Magnitudes, as the largest may be rounded to 2^63, beyond std::int64_t.
                    const auto exact = *it < 0 ? 0 - static_cast<std::uint64_t>(*it)
                                               : static_cast<std::uint64_t>(*it);
                    const auto rounded =
@@ -165,7 +165,7 @@ double lossOfInt64(const openvdb::GridBase& grid) {
         .most;
 }
 
-/// A mask has no values but whether it is active.
+/// A mask's values are its active states.
 bool convertMask(openvdb::GridBase::Ptr& grid) {
     if (!grid->isType<openvdb::MaskGrid>()) return false;
     const auto& mask = static_cast<const openvdb::MaskGrid&>(*grid);

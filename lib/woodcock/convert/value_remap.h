@@ -10,8 +10,8 @@
 
 namespace woodcock {
 
-/// What becomes of values, in this order: v x scale + offset, held within [low, high], then zero
-/// where it is below the threshold. Colours are below it where all their channels are.
+/// Remapping of values, in this order: v x scale + offset, clamped to [low, high], then zero where
+/// below the threshold. A colour is below it where all of its channels are.
 struct ValueRemap {
     double scale = 1, offset = 0;
     double low = -std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ struct ValueOptions {
     bool repair = false;   ///< NaN and infinite values become zero, instead of an error
 };
 
-/// What a pass over the values has found.
+/// Statistics of a pass over the values.
 struct ValueSummary {
     VoxelCount nan, infinite;                              ///< as they came
     VoxelCount beyond;                                     ///< made infinite by the remapping
@@ -46,8 +46,8 @@ struct ValueSummary {
     }
 };
 
-/// Remaps the channels of one voxel. False where nothing but zero is left; the channels are zero
-/// then.
+/// Remaps the channels of one voxel. False where all of them become zero, within the tolerance;
+/// they are exactly zero then.
 template <class Value>
 bool remapVoxel(Value* values, int channels, Vec3i at, const ValueOptions& options,
                 ValueSummary& summary) {
@@ -83,8 +83,8 @@ bool remapVoxel(Value* values, int channels, Vec3i at, const ValueOptions& optio
     return false;
 }
 
-/// Throws Error{Input} that names `place` where values were not finite and are not to be repaired,
-/// or became so. Returns a note about what was repaired; empty where nothing was.
+/// Throws Error{Input}, naming `place`, where values were not finite and are not to be repaired, or
+/// became infinite. Returns a note about what was repaired, or an empty text.
 std::string requireSound(const ValueSummary& summary, const std::string& place, bool repair);
 
 }  // namespace woodcock

@@ -8,11 +8,11 @@
 
 namespace woodcock {
 
-/// Told from time to time how far a piece of work is, from 0 to 1, by one thread at a time. What it
-/// throws ends the work and reaches the caller.
+/// Called from time to time, by one thread at a time, with the fraction of the work that is done, 0
+/// to 1. If it throws, the work ends, and the exception reaches the caller.
 using WorkProgress = std::function<void(double fraction)>;
 
-/// Counts the steps that several threads take.
+/// Counts the steps of several threads.
 class WorkCounter {
 public:
     WorkCounter(const WorkProgress& progress, std::uint64_t steps)

@@ -74,7 +74,7 @@ void warnOfVectors(const VdbGrids& grids, const ConvertOptions& options) {
                 fmt::format("'{}' stays vec3s: NanoVDB has no smaller vectors", grid->getName()));
 }
 
-/// As --grid would choose them.
+/// The names by which --grid chooses.
 std::vector<std::string> namesOf(const Source& source) {
     if (source.uniqueNames.size() == source.grids.grids.size()) return source.uniqueNames;
     std::vector<std::string> names;
@@ -98,7 +98,7 @@ void writeVdbSource(const fs::path& in, const fs::path& out, VdbGrids& grids,
                     const ConvertOptions& options) {
     applyPrecision(grids, options);
     VdbWriteOptions how;
-    // Halves stay halves, as long as nothing has changed them.
+    // Halves stay halves where no value has changed.
     how.half = options.precision == Precision::Half ||
                (options.precision == Precision::Source && options.values.remap.identity() &&
                 allSavedAsHalf(grids));

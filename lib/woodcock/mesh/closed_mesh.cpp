@@ -26,7 +26,7 @@ public:
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    /// The lower number stays.
+    /// The lower number is kept.
     void join(std::uint32_t a, std::uint32_t b) {
         a = find(a), b = find(b);
         parent_[std::max(a, b)] = std::min(a, b);
@@ -122,8 +122,9 @@ private:
         mesh().triangles.resize(n);
     }
 
-    /// Triangles of the same three points: twice the same way is once, and both ways is a wall
-    /// without thickness, but where all of a piece is so: that one is drawn from both sides.
+    /// Drops triangles of the same three points. Two that face the same way count once. Two that
+    /// face opposite ways are a wall without thickness and are dropped, unless a whole piece is
+    /// such: then it was drawn from both sides.
     void dropDuplicates() {
         const std::vector<Triangle>& triangles = mesh().triangles;
         std::vector<std::uint32_t> order(triangles.size());
@@ -187,7 +188,7 @@ private:
         return open;
     }
 
-    /// Makes points at open edges one that differ by no more than rounding leaves.
+    /// Merges points at open edges that differ only by rounding.
     void joinAlongOpenEdges() {
         const Vec3d size = boundsOf(mesh()).size();
         const double reach = 1e-6 * std::max({size.x, size.y, size.z});
@@ -269,7 +270,7 @@ private:
                 odd, s(odd), odd == 1 ? "s" : "", placeOf(firstOdd));
     }
 
-    /// Turns triangles so that neighbours run along their edge in opposite ways.
+    /// Flips triangles so that neighbours run along their common edge in opposite directions.
     void turnAlike() {
         std::vector<Triangle>& triangles = mesh().triangles;
         const std::vector<Edge> edges = sortedEdges(triangles);
@@ -333,8 +334,8 @@ private:
         result_.partOf = labels(sets, triangles.size(), parts);
     }
 
-    /// Where four and more triangles meet at an edge, each part must be closed by itself; those
-    /// that are not are parts of one.
+    /// Where four or more triangles meet at an edge, each part must be closed by itself; parts that
+    /// are not closed are joined.
     void joinCrowdedParts() {
         const std::vector<Edge> edges = sortedEdges(mesh().triangles);
         std::vector<std::uint32_t>& partOf = result_.partOf;

@@ -8,19 +8,19 @@
 
 namespace woodcock {
 
-/// A mesh of which it can be said what is inside: closed parts, each of triangles that face one
-/// way, all outwards of the part or all inwards.
+/// A mesh with a well-defined inside: closed parts, each of whose triangles all face outwards, or
+/// all inwards.
 struct ClosedMesh {
     TriangleMesh mesh;
     std::vector<std::uint32_t> partOf;  ///< of each triangle
     std::vector<double> volumes;        ///< of each part; negative where it faces inwards
-    std::vector<std::string> notes;     ///< what was mended
+    std::vector<std::string> notes;     ///< what was repaired
 };
 
-/// Takes a welded mesh apart. What can be mended without a doubt is, and noted: triangles that are
-/// there twice, single ones that face the wrong way, points that differ by rounding along open
-/// edges. Errors: Input, saying where, for open edges, for edges that an odd number of triangles
-/// share, and where triangles cannot all face one way; then no place is inside.
+/// Takes a welded mesh apart. Faults that can be repaired without doubt are repaired and noted:
+/// duplicate triangles, single triangles that face the wrong way, points along open edges that
+/// differ by rounding. Errors: Input, with the position, for open edges, for edges of an odd number
+/// of triangles, and where triangles cannot all face one way; such a mesh has no inside.
 ClosedMesh closedMesh(const TriangleMesh& mesh);
 
 }  // namespace woodcock

@@ -25,7 +25,7 @@ Vec3d cut(const Plane& plane, Vec3d a, Vec3d b) {
     return a + (b - a) * (u / (u - v));
 }
 
-/// Convex polygons around a body, of which planes cut pieces off.
+/// The convex polygons around a body, from which planes cut pieces off.
 class Body {
 public:
     explicit Body(double size) : near_(size * 1e-9) {
@@ -75,8 +75,8 @@ private:
         faces_.push_back(std::move(face));
     }
 
-    /// Leaves of a face what lies below, and adds to the rim what lies in the plane. False: nothing
-    /// is left.
+    /// Keeps the part of a face below the plane, and adds its points in the plane to the rim.
+    /// False: nothing is left.
     bool cutFace(Polygon& face, const Plane& plane, Polygon& rim) const {
         Polygon kept;
         for (std::size_t i = 0; i < face.size(); ++i) {
@@ -89,7 +89,7 @@ private:
                 rim.push_back(kept.back());
             }
         }
-        // A face that only touches the plane from above is gone.
+        // A face that only touches the plane from above is dropped.
         if (kept.size() < 3 || std::none_of(kept.begin(), kept.end(),
                                             [&](Vec3d p) { return plane.above(p) < -near_; }))
             return false;
@@ -122,7 +122,7 @@ private:
     std::vector<Ball> balls_;  ///< around each face
 };
 
-/// The work grows with the square of their number: so many take seconds.
+/// The work grows with the square of their number; this many take seconds.
 constexpr std::size_t mostFacets = 25'000;
 
 std::vector<Plane> planesOf(std::span<const FacetRing> rings) {

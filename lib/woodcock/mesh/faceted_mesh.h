@@ -7,7 +7,7 @@
 
 namespace woodcock {
 
-/// Facets around the y axis, as a gem cutter says them.
+/// A ring of facets around the y axis, as gem cutters describe them.
 struct FacetRing {
     double angle = 0;  ///< of the facets' outward normal from +y, degrees: 0 a table, 180 a culet
     int count = 1;     ///< evenly around the axis
@@ -16,8 +16,8 @@ struct FacetRing {
     bool operator==(const FacetRing&) const = default;
 };
 
-/// The convex body that lies behind all facets: flat, closed, facing outwards. Errors: Usage on
-/// numbers out of range, and where the facets leave it open.
+/// The convex body behind all facets: flat faces, closed, facing outwards. Errors: Usage on numbers
+/// out of range, and where the facets leave it open.
 SurfaceMesh facetedMesh(std::span<const FacetRing> rings);
 
 }  // namespace woodcock

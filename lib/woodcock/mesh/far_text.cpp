@@ -40,7 +40,7 @@ Found readPoint(std::string_view& line, std::string_view keyword, Vec3d& point) 
     }
     if (!isFinite(point)) return Found::Unusual;
     line = rest;
-    // A fourth number alone is a weight, which divides the others; three more are a colour.
+    // A single fourth number is a weight that divides the others; three more numbers are a colour.
     const std::string_view fourth = nextWord(rest), fifth = nextWord(rest);
     const bool weightOfOne =
         fourth.starts_with('1') && fourth.find_first_not_of("1.0") == fourth.npos;

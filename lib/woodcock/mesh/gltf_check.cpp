@@ -58,7 +58,7 @@ std::vector<std::vector<std::size_t>> childrenIn(const nlohmann::json& scene) {
     return children;
 }
 
-/// How many nodes follow each other at most; more than there are where they lead in a circle.
+/// The longest chain of nodes; longer than the number of nodes where they form a circle.
 std::size_t levelsOf(const std::vector<std::vector<std::size_t>>& children) {
     std::vector<std::size_t> parents(children.size()), level(children.size(), 1), ready;
     for (const auto& list : children)

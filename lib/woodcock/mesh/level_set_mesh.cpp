@@ -54,7 +54,7 @@ SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& plac
     std::vector<openvdb::Vec4I> quads;
     SurfaceMesh surface;
     TriangleMesh mesh;
-    // Of the same voxels, but placed where floats have digits.
+    // The same voxels, moved to where floats are precise.
     const openvdb::CoordBBox active = grid.evalActiveVoxelBoundingBox();
     const openvdb::BBoxd world = grid.transform().indexToWorld(
         openvdb::BBoxd(active.min().asVec3d(), active.max().asVec3d()));

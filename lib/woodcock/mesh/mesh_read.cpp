@@ -60,7 +60,7 @@ std::string requireReadable(const fs::path& file) {
 
 constexpr double bytesPerTriangle = 160;  ///< of a SurfaceMesh while it is welded
 
-/// Ends reading that goes on at the end of a file: some of Assimp's readers never would.
+/// Ends reading at the end of a file: some of Assimp's readers would go on forever.
 class EndingStream : public Assimp::IOStream {
 public:
     explicit EndingStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
@@ -114,8 +114,8 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Knows regular files alone: a pipe that a mesh refers to would be waited for without end.
-/// One of them may be read as another text.
+/// Opens regular files only: a mesh may refer to a pipe, for which reading would wait forever. One
+/// file may be replaced by another text.
 class RegularFiles : public Assimp::DefaultIOSystem {
 public:
     void replace(const std::string& file, std::string text) {
@@ -144,7 +144,7 @@ Affine3d toAffine(const aiMatrix4x4& m) {
             Vec3d{m.a4, m.b4, m.c4}};
 }
 
-/// Joins the parts of a scene, each where its nodes put it.
+/// Joins the parts of a scene, each transformed by its nodes.
 class Joiner {
 public:
     /// `origin`: what has been taken off already.
@@ -156,7 +156,7 @@ public:
             const aiNode* node;
             Affine3d parent;
         };
-        std::vector<Placed> waiting;  // a stack, not recursion: files may nest without end
+        std::vector<Placed> waiting;  // a stack, not recursion: files may nest very deeply
         if (scene_.mRootNode) waiting.push_back({scene_.mRootNode, {}});
         while (!waiting.empty()) {
             const auto [node, parent] = waiting.back();
@@ -181,7 +181,7 @@ public:
     }
 
 private:
-    /// Points become floats where the origin is off.
+    /// Points become floats after the origin is taken off.
     void place() {
         Box3d bounds;
         for (const Vec3d& p : points_) bounds.add(p);
@@ -245,7 +245,7 @@ private:
         }
     }
 
-    /// One part may stand at many places.
+    /// One part may have many instances.
     void requireRoom(const aiMesh& part) const {
         const std::uint64_t points = points_.size() + std::uint64_t{part.mNumVertices};
         const std::uint64_t triangles = mesh_.triangles.size() + std::uint64_t{part.mNumFaces};
@@ -298,7 +298,7 @@ constexpr bool hasAssimp = false;
 
 #endif
 
-/// As it stands in the file: points not welded, normals of any length.
+/// The mesh as in the file: points not welded, normals of any length.
 SurfaceMesh readAny(const fs::path& file) {
     const std::string extension = requireReadable(file);
     if (extension == ".gltf" || extension == ".glb") refuseDeepGltf(file);

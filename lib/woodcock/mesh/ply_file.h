@@ -13,7 +13,7 @@
 
 namespace woodcock {
 
-/// One kind of thing in a PLY file: its vertices, or its faces.
+/// An element of a PLY file, such as its vertices or its faces.
 struct PlyElement {
     struct Property {
         std::string name;
@@ -34,8 +34,8 @@ struct PlyElement {
     const Property* find(std::initializer_list<std::string_view> names) const;
 };
 
-/// Reads an ascii or binary PLY file, of either byte order. What a file says of its sizes is
-/// checked against its length before memory is taken. Errors: Input, with the place.
+/// Reads an ascii or binary PLY file, of either byte order. Sizes are checked against the file's
+/// length before memory is taken. Errors: Input, with the place.
 std::vector<PlyElement> readPly(const std::filesystem::path& file);
 
 /// Whether there are faces among them. Errors: as of readPly().

@@ -11,8 +11,8 @@
 namespace woodcock {
 
 /// Cuts a polygon of three or more corners into triangles of the same winding, as indices of its
-/// corners: ears are cut off, so that reentrant corners are right too. Those of more than 512
-/// corners, and those that cross themselves, become a fan where no ear is found.
+/// corners: by cutting off ears, which is right for reentrant corners too. A polygon of more than
+/// 512 corners, or one that crosses itself, becomes a fan where no ear is found.
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Vec3d> corners);
 
 }  // namespace woodcock

@@ -84,7 +84,8 @@ struct DirectedEdge {
     bool forwards;
 };
 
-/// How the triangles meet at edges: what is not two that run along one in opposite ways.
+/// Faults at edges: everything other than two triangles that run along the edge in opposite
+/// directions.
 struct EdgeFaults {
     std::size_t open = 0, crowded = 0, inconsistent = 0;
     Vec3d firstOpen, firstCrowded, firstInconsistent;
@@ -124,7 +125,7 @@ EdgeFaults findEdgeFaults(const TriangleMesh& mesh) {
 }
 
 double enclosedVolume(const TriangleMesh& mesh) {
-    // From its middle, so that a far place costs no digits.
+    // Computed from its middle, so that a far position costs no digits.
     const Vec3d middle = boundsOf(mesh).centre();
     double six = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -17,13 +17,13 @@ struct Vec2f {
     bool operator==(const Vec2f&) const = default;
 };
 
-/// A mesh as light sees it: its triangles, counter-clockwise from outside, with what is
-/// interpolated over them. Corners are in the order of mesh.triangles.
+/// A mesh for rendering: triangles, counter-clockwise from outside, with normals and texture
+/// coordinates that are interpolated over them. Corners are in the order of mesh.triangles.
 struct SurfaceMesh {
     TriangleMesh mesh;
     std::vector<std::array<Vec3f, 3>> normals;  ///< at corners; empty: flat
     std::vector<std::array<Vec2f, 3>> uvs;      ///< at corners; empty: none
-    std::size_t droppedTriangles = 0;           ///< of no area, left out while it was read
+    std::size_t droppedTriangles = 0;  ///< triangles of zero area that were left out while reading
 };
 
 /// Reads a mesh with its normals and texture coordinates where the file has them (OBJ, PLY, STL,
@@ -31,8 +31,8 @@ struct SurfaceMesh {
 /// no triangle has an area.
 SurfaceMesh readSurfaceMesh(const std::filesystem::path& file);
 
-/// Normals that are the mean, by area and corner, of the triangles at a point that face by less
-/// than `angle` degrees apart. Replaces those of the mesh.
+/// Replaces the mesh's normals. The normal at a corner is the mean, by area, of the triangles at
+/// the point whose normals differ by less than `angle` degrees.
 void smoothNormals(SurfaceMesh& mesh, double angle);
 
 /// Whether a mesh encloses something: each edge belongs to two triangles that run along it in
@@ -45,7 +45,7 @@ struct Closedness {
 };
 Closedness checkClosed(const TriangleMesh& mesh);
 
-/// Turns all triangles (and normals) over.
+/// Flips all triangles and normals.
 void flip(SurfaceMesh& mesh);
 
 // Meshes from numbers, closed and facing outwards.
@@ -54,9 +54,9 @@ void flip(SurfaceMesh& mesh);
 SurfaceMesh boxMesh(const Box3d& box);
 /// A flat rectangle in y = 0 that faces +y, centred at the origin; open. uv from its -x, +z corner.
 SurfaceMesh rectangleMesh(double width, double depth);
-/// A body of revolution about y: `profile` is radius and height from one point of it to the next,
-/// counter-clockwise in the half-plane (radius to the right, height upwards), so that its outside
-/// lies to the right of the way; closed where it starts and ends on the axis, or where it starts.
+/// A body of revolution about y: `profile` is a list of points (radius, height), counter-clockwise
+/// in the half-plane (radius to the right, height upwards), so that the outside is on the right.
+/// The body is closed if the profile starts and ends on the axis, or ends where it starts.
 /// `smoothAngle` as of smoothNormals(). Errors: Usage on fewer than 3 segments or 2 points, on a
 /// negative radius.
 SurfaceMesh latheMesh(std::span<const std::array<double, 2>> profile, int segments,

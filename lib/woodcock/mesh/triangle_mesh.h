@@ -15,18 +15,18 @@ namespace woodcock {
 struct TriangleMesh {
     std::vector<Vec3f> points;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of three different points each
-    /// Where points are (0, 0, 0): other than zero where a mesh lies so far from there that floats
-    /// would lose its digits. It is off before anything is rounded.
+    /// The position of point (0, 0, 0). It is not zero where a mesh is so far away that floats
+    /// would lose its digits; it is taken off before anything is rounded.
     Vec3d origin{};
 };
 
 /// Whether this build can read meshes of all formats: it was made with Assimp. PLY needs none.
 bool canReadMeshes();
 
-/// All triangles of an OBJ, PLY, STL or glTF file (.gltf, .glb), each part where its nodes put it;
-/// faces of more corners are cut into triangles. The file's own axes and units are kept.
-/// Errors: Input, naming the file and what is wrong with it; Failure where this build has no Assimp
-/// or the mesh does not fit into memory.
+/// All triangles of an OBJ, PLY, STL or glTF file (.gltf, .glb), each part transformed by its
+/// nodes; other faces are cut into triangles. The file's own axes and units are kept. Errors:
+/// Input, naming the file and what is wrong with it; Failure where this build has no Assimp or the
+/// mesh does not fit into memory.
 TriangleMesh readMesh(const std::filesystem::path& file);
 
 /// Edges that belong to one triangle only: a mesh that has them encloses nothing.
@@ -36,10 +36,10 @@ struct OpenEdges {
 };
 OpenEdges findOpenEdges(const TriangleMesh& mesh);
 
-/// Makes points of one position one, and drops triangles that lose a corner by it.
+/// Merges points of equal position, and drops triangles that lose a corner by that.
 TriangleMesh weld(const TriangleMesh& mesh);
 
-/// Of the points, without their origin.
+/// The bounds of the points, without their origin.
 Box3d boundsOf(const TriangleMesh& mesh);
 
 /// The origin of points in `bounds`: zero, or their rounded middle where they lie so far away that

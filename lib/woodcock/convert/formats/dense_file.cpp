@@ -18,7 +18,7 @@ namespace woodcock {
 
 namespace {
 
-/// The nearest number of the type; nothing where there is none.
+/// The nearest number of the type; absent where the type cannot hold the value.
 template <class Sample>
 std::optional<Sample> toSample(double v) {
     if constexpr (std::is_same_v<Sample, double>) {
@@ -48,7 +48,8 @@ double toDouble(Sample sample) {
         return static_cast<double>(sample);
 }
 
-/// Packs bytes by gzip, piece by piece. The same bytes give the same file: no name, no time.
+/// Packs bytes by gzip, piece by piece. The same bytes give the same file: its header has neither a
+/// name nor a time.
 class Gzip {
 public:
     Gzip() {

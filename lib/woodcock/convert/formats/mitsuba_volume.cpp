@@ -33,9 +33,8 @@ SampleType typeOf(std::int32_t encoding, const std::filesystem::path& file) {
     }
 }
 
-/// Mitsuba fills the unit cube and does not look at the box unless `use_grid_bbox` is set: so
-/// nobody notices that some writers leave it empty, and others write whole numbers there, which are
-/// next to nothing as floats.
+/// Mitsuba ignores the box and fills the unit cube unless `use_grid_bbox` is set. So some writers
+/// leave the box empty, and others write integers there, which are tiny numbers as floats.
 void placeInBox(DenseVolume& volume, Vec3d lower, Vec3d upper, const std::filesystem::path& file) {
     constexpr double least = 1e-30;
     bool usable = isFinite(lower) && isFinite(upper);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// NanoVDB would find these faults halfway, and leave the grid's nodes marked.
+/// Checked here: NanoVDB would find these faults halfway, and leave the grid's nodes marked.
 void requireWritable(const fs::path& file, const openvdb::GridBase& grid) {
     using namespace openvdb;
     const bool isScalar = grid.isType<FloatGrid>() || grid.isType<DoubleGrid>();
@@ -55,8 +55,8 @@ template <class TreeT,
           class BuildT = typename nanovdb::OpenToNanoType<typename TreeT::BuildType>::Type>
 Handle toNano(const openvdb::GridBase& base) {
     const auto& grid = static_cast<const openvdb::Grid<TreeT>&>(base);
-    // Of a tree without active voxels NanoVDB could only warn, on the terminal. The minimum and
-    // maximum do not depend on the order in which threads find them, averages would.
+    // No statistics for a tree without active voxels, about which NanoVDB would print a warning.
+    // Minimum and maximum do not depend on the order of threads; averages would.
     const auto stats = grid.tree().activeVoxelCount() > 0 ? nanovdb::StatsMode::MinMax
                                                           : nanovdb::StatsMode::Disable;
     return nanovdb::openToNanoVDB<NanoBuffer, TreeT, BuildT>(grid, stats,
@@ -98,7 +98,7 @@ NanoVdbLoss writeNanoVdb(const fs::path& file, const VdbGrids& grids,
     errno = 0;
     try {
         std::ofstream out(making.temporary(), std::ios::binary);
-        // A segment for each, so that one grid at a time is in memory twice.
+        // A segment for each grid, so that only one grid at a time is in memory twice.
         for (const openvdb::GridBase::Ptr& grid : grids.grids)
             nanovdb::io::writeGrid(out, toNano(*grid, options.quantise, loss),
                                    codecOf(options.compression));

@@ -16,16 +16,16 @@ struct NanoVdbWriteOptions {
     bool quantise = false;
 };
 
-/// What the type of a file's numbers costs at most, among active values.
+/// The largest changes of active values by the type of a file's numbers.
 struct NanoVdbLoss {
     double absolute = 0, relative = 0;
 };
 
-/// Writes grids of float, double and vectors of float, whole or not at all. The same grids give
-/// the same bytes. No other thread may use the grids meanwhile: NanoVDB marks their nodes, and
-/// restores them. Returns what quantising has changed. Errors: Usage for a grid of another type, or
-/// with a transform that is not affine; Failure with the system's reason, and where this build has
-/// no NanoVDB.
+/// Writes grids of float, double and vectors of float, whole or not at all. The same grids give the
+/// same bytes. No other thread may use the grids meanwhile: NanoVDB marks their nodes, and restores
+/// them. Returns the loss by quantising. Errors: Usage for a grid of another type, or with a
+/// transform that is not affine; Failure with the system's reason, and where this build has no
+/// NanoVDB.
 NanoVdbLoss writeNanoVdb(const std::filesystem::path& file, const VdbGrids& grids,
                          const NanoVdbWriteOptions& options = {});
 

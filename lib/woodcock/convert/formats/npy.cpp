@@ -192,7 +192,7 @@ std::string shapeText(const std::vector<std::int64_t>& shape) {
     return "[" + text + "]";
 }
 
-/// One array of an archive; nothing where it is no volume, with a note that says so.
+/// One array of an archive. Absent, with a note, where it is not a volume.
 std::optional<DenseVolume> readArray(FileBytes& file, const ZipEntry& entry, bool wanted,
                                      std::vector<std::string>& notes) {
     const UnpackedEntry unpacked = unpackZipEntry(file, entry);
@@ -256,7 +256,7 @@ std::vector<DenseVolume> readNpz(const std::filesystem::path& path,
                 path.string(), volumes.front().name, volume.name,
                 shapeText({volumes[0].dims.begin(), volumes[0].dims.end()}),
                 shapeText({volume.dims.begin(), volume.dims.end()}), joinNames(names));
-    // numpy.savez(file, array) leaves the name to NumPy.
+    // numpy.savez(file, array) names it arr_0.
     if (volumes.size() == 1 && volumes.front().name == "arr_0") volumes.front().name = "density";
     volumes.front().notes = std::move(notes);
     return volumes;

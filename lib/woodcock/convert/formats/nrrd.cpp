@@ -115,7 +115,7 @@ std::span<const char> restOf(FileBytes& file) {
     return file.loaded(begin, file.size());
 }
 
-/// Inflates as many bytes as `to` has, after those that are skipped. True where there are more.
+/// Inflates as many bytes as `to` has, after the skipped ones. True where there are more.
 bool inflateInto(FileBytes& file, std::uint64_t skipped, std::span<char> to) {
     const std::uint64_t needed = skipped + to.size();
     if (needed / largestInflation > file.left())
@@ -179,7 +179,7 @@ bool parseInto(FileBytes& file, SampleType type, std::span<char> to) {
     return !numbers.atEnd();
 }
 
-/// Where raw values begin, of which `needed` bytes are there.
+/// The position of the raw values; checks that `needed` bytes are there.
 std::uint64_t rawBegin(FileBytes& file, const NrrdData& data, std::uint64_t needed) {
     const std::uint64_t left = file.left();
     const auto skip = static_cast<std::uint64_t>(std::max<std::int64_t>(data.skipBytes, 0));
@@ -190,7 +190,7 @@ std::uint64_t rawBegin(FileBytes& file, const NrrdData& data, std::uint64_t need
     return data.skipBytes < 0 ? file.size() - needed : file.position() + skip;
 }
 
-/// Fills `to` from a file, which stands where its values, or lines to be skipped, begin. True where
+/// Fills `to` from a file, whose position is at its values, or at lines to be skipped. True where
 /// it has more.
 bool readPart(FileBytes& file, const NrrdData& data, SampleType type, std::span<char> to) {
     skipLines(file, data.skipLines);
@@ -273,7 +273,7 @@ void loadValues(DenseVolume& volume, const NrrdHeader& header, std::shared_ptr<F
                       fmt::format("{}: {}", header.file.string(), volume.describe()));
         more = loadAttached(volume, std::move(file), data, needed);
     } else {
-        // Before memory is taken: what is there can hold what is promised.
+        // Checked before memory is taken: the file is large enough for its values.
         const std::uint64_t size = attached ? file->left() : needed;
         if (attached && needed / largestInflation / sizeof(double) > size)
             throw inputError("{}: {} need {} bytes, and {} bytes cannot hold them",

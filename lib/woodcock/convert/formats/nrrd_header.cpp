@@ -216,7 +216,7 @@ NrrdHeader readNrrdHeader(FileBytes& file) {
         std::erase(name, ' ');
         header.fields[name] = trimmed(line->substr(colon + 1));
         if (name != "datafile" || !header.fields[name].starts_with("LIST")) continue;
-        // It is the last field, and all lines below are names.
+        // This is the last field; all lines below are names.
         while (const std::optional<std::string> listed = readLine(file)) {
             if (!trimmed(*listed).empty()) header.listed.push_back(trimmed(*listed));
             if (header.listed.size() > 100000) throw header.wrong(name, "at most 100000 files");
@@ -264,8 +264,8 @@ NrrdAxes nrrdAxes(const NrrdHeader& header) {
         throw header.wrong("dimension", fmt::format("{}, the number of sizes", count));
     std::vector<AxisKind> kinds = kindsOf(header, count);
     const auto number = [&](AxisKind kind) { return std::count(kinds.begin(), kinds.end(), kind); };
-    // Axes that say nothing: space, where that makes three of them; the first where one is too
-    // many.
+    // Axes without a kind: they are axes of space if that makes three. If there is one too many,
+    // the first is for channels.
     if (number(AxisKind::Unknown) + number(AxisKind::Space) == 4 && number(AxisKind::Unknown) > 0) {
         const auto first = std::find(kinds.begin(), kinds.end(), AxisKind::Unknown);
         const bool sure = number(AxisKind::Unknown) == 1;

@@ -14,7 +14,7 @@
 
 namespace woodcock {
 
-/// The text before the values of a NRRD file, or beside them.
+/// The header of a NRRD file: before its values, or in a file of its own.
 struct NrrdHeader {
     std::filesystem::path file;
     std::map<std::string, std::string> fields;  ///< names in lower case, without spaces
@@ -22,7 +22,7 @@ struct NrrdHeader {
 
     bool has(const std::string& name) const { return fields.contains(name); }
     const std::string& get(const std::string& name) const;  ///< Errors: Input where there is none
-    /// What the field is, where it is not what is expected.
+    /// The error where a field is not as expected.
     Error wrong(const std::string& name, const std::string& expected) const;
 };
 
@@ -30,7 +30,7 @@ struct NrrdHeader {
 /// Errors: Input.
 NrrdHeader readNrrdHeader(FileBytes& file);
 
-/// Words apart by spaces; a vector in parentheses is one.
+/// The words of a text, separated by spaces; a vector in parentheses is one word.
 std::vector<std::string> nrrdWords(const std::string& text);
 
 /// In lower case.
@@ -47,7 +47,7 @@ struct NrrdAxes {
     /// What the channels are where each is a volume of its own ("times"); empty: they belong
     /// together.
     std::string list;
-    std::string note;  ///< what was assumed of axes that say nothing
+    std::string note;  ///< what was assumed of axes without a kind
 };
 
 /// By the axes' kinds and directions. Errors: Input where they are not three of space, and at most
@@ -57,9 +57,9 @@ NrrdAxes nrrdAxes(const NrrdHeader& header);
 SampleType nrrdType(const NrrdHeader& header);
 
 /// Sets the volume's place by directions or spacings, origin and space. The world is
-/// right-anterior-superior (x to the right, y to the front, z up), as in NIfTI and 3D Slicer: what
-/// is said in another order, such as left-posterior-superior, is turned to it. Spaces of no body
-/// (3D-right-handed, scanner-xyz) stay as they are, and 3D-left-handed has its z reversed.
+/// right-anterior-superior (x to the right, y to the front, z up), as in NIfTI and 3D Slicer: other
+/// orders, such as left-posterior-superior, are turned to it. Spaces without anatomy
+/// (3D-right-handed, scanner-xyz) stay, and 3D-left-handed gets its z reversed.
 void placeNrrd(DenseVolume& volume, const NrrdHeader& header, const NrrdAxes& axes);
 
 }  // namespace woodcock

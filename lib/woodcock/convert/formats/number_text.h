@@ -7,7 +7,7 @@
 
 namespace woodcock {
 
-/// The whole text as a number, with a plus sign or not.
+/// The whole text as a number; a plus sign is allowed. Absent where it is not a number.
 std::optional<double> parseDouble(std::string_view text);
 
 /// Numbers one after the other, with white space or commas between them.
@@ -15,7 +15,7 @@ class NumberText {
 public:
     explicit NumberText(std::string_view text) : rest_(text) {}
 
-    /// Nothing at the end, and where something else than a number stands.
+    /// The next number. Absent at the end, and where the next word is not a number.
     std::optional<double> next();
     bool atEnd();
     std::string describeRest();  ///< "the end", or "'...'"

@@ -212,7 +212,7 @@ Vec3d pointOf(const PbrtMedium& medium, const char* name, double usual,
     return v;
 }
 
-/// Dims and place, which all grids of a medium share.
+/// Dims and transform, which all grids of a medium share.
 DenseVolume frameOf(const PbrtMedium& medium, const std::filesystem::path& file) {
     DenseVolume frame;
     frame.dims = {countOf(medium, "nx", file), countOf(medium, "ny", file),
@@ -231,7 +231,7 @@ DenseVolume frameOf(const PbrtMedium& medium, const std::filesystem::path& file)
     return frame;
 }
 
-/// Colours that are no grids may have as many numbers as a tiny grid.
+/// A colour that is not a grid may have as many numbers as a tiny grid.
 bool maySample(const PbrtParameter& parameter) {
     static const std::set<std::string_view> names{"density", "temperature", "Lescale", "LeScale",
                                                   "sigma_a", "sigma_s",     "Le"};
@@ -258,7 +258,7 @@ std::vector<DenseVolume> readPbrtGrids(const std::filesystem::path& path,
         volume.channels = parameter.type == "rgb" ? 3 : 1;
         const std::uint64_t needed = volume.voxels() * static_cast<unsigned>(volume.channels);
         const bool single = parameter.numbers.size() == static_cast<unsigned>(volume.channels);
-        // One value for all is a factor of the medium, unless it is what the medium is made of.
+        // A single value is a factor of the medium, unless it is the medium's density.
         if (single && needed != parameter.numbers.size() && parameter.name != "density") continue;
         if (medium.type() != "rgbgrid" && parameter.type == "rgb" && parameter.name != "density" &&
             single)

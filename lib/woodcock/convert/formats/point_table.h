@@ -10,7 +10,7 @@
 namespace woodcock {
 
 /// The text of a table, without a byte order mark, each line ended by '\n'. Errors: Input for
-/// UTF-16 and for what is no text; as of readInput().
+/// UTF-16 and for files that are not text; and those of readInput().
 std::string readTableText(const std::filesystem::path& file);
 
 struct TableCell {
@@ -20,7 +20,7 @@ struct TableCell {
 
 struct TableRow {
     std::vector<TableCell> cells;
-    bool decimalCommas = false;  ///< commas stand in numbers, not between them
+    bool decimalCommas = false;  ///< commas are decimal points
 };
 
 /// The cells between semicolons, else tabs, commas or spaces. Commas and semicolons each end a

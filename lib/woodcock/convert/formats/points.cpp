@@ -130,7 +130,7 @@ void append(PointCloud& cloud, Column column, Vec3d& point, double value) {
     }
 }
 
-/// Two columns that say the same would give a point two radii.
+/// Two columns of one meaning would give a point two radii.
 void requireColumns(const fs::path& file, const Columns& columns) {
     const auto count = [&](auto... c) {
         return std::count_if(columns.is.begin(), columns.is.end(),

@@ -7,7 +7,7 @@ namespace woodcock {
 
 namespace {
 
-/// The one number that would explain the size, for people.
+/// A hint for the user: the one number whose change would explain the file's size.
 std::string hint(const DenseVolume& volume, std::uint64_t found) {
     const auto fits = [&](const Dims& dims, int channels, SampleType type) {
         return denseBytes(dims, channels, type) == found;

@@ -9,11 +9,12 @@
 namespace woodcock {
 
 /// Gives `volume` (dims, channels and type are set) its samples: all bytes of the file from `begin`
-/// on. Errors: Input where the dims are none, where they do not need just these bytes (with a hint
-/// where one number explains it), and where the bytes are more than the machine's memory.
+/// on. Errors: Input where the dims are not valid, where they need another number of bytes (with a
+/// hint where one number explains it), and where the bytes exceed the machine's memory.
 void loadSamples(DenseVolume& volume, std::shared_ptr<FileBytes> file, std::uint64_t begin);
 
-/// Throws where dims x channels are not positive or beyond all bounds; returns their bytes.
+/// Returns the bytes of dims x channels samples. Throws Error{Input} where a number is not positive
+/// or too large.
 std::uint64_t requireDims(const DenseVolume& volume, const std::filesystem::path& file);
 
 /// Throws Error{Input} where `bytes` for `what` are more than the memory of the machine.

@@ -21,9 +21,9 @@ struct ZipEntry {
     bool deflated = false;  ///< else stored as they are
 };
 
-/// All files of an archive, by its central directory, of 32 or 64 bits; places lie inside it, and
-/// no entry claims more bytes than deflate can make of what is stored. Errors: Input where it is no
-/// archive, damaged, encrypted, or packed in another way.
+/// All files of an archive, by its central directory, of 32 or 64 bits. Positions are checked, and
+/// no entry claims more bytes than deflate can make of its stored ones. Errors: Input where the
+/// file is not an archive, is damaged, encrypted, or packed in another way.
 std::vector<ZipEntry> listZip(FileBytes& file);
 
 struct UnpackedEntry {
