@@ -23,7 +23,7 @@ ChannelComparison compareChannel(const Picture& a, const Picture& b, std::size_t
     c.tested = !planeA.isDepth();
     c.errorsKnown = !planeA.errors.empty() && !planeB.errors.empty();
     c.metrics = differenceMetrics(planeA.values, planeB.values, a.width);
-    if (planeA.isDepth())  // nothing there is no defect
+    if (planeA.isDepth())  // missing depth is not a defect
         c.metrics.nonFiniteA = c.metrics.nonFiniteB = c.metrics.nonFiniteInOne = 0;
     if (c.metrics.pixels == 0 && c.tested)
         throw inputError("no pixel of channel {} is finite in both '{}' and '{}'", c.name,
@@ -32,7 +32,7 @@ ChannelComparison compareChannel(const Picture& a, const Picture& b, std::size_t
     c.chance = c.bias.chance();
     c.ratio = c.ratioError = std::numeric_limits<double>::quiet_NaN();
     if (const double mean = c.metrics.meanA; mean != 0) {
-        // To first order, the ratio's error is that of the mean of b - ratio * a.
+        // To first order, the error of the ratio is that of the mean of b - ratio * a.
         c.ratio = c.metrics.meanB / mean;
         c.ratioError =
             overall(tileDifferences(a, planeA, b, planeB, tiles, c.ratio)).error / std::abs(mean);
@@ -68,8 +68,8 @@ std::optional<FlipComparison> compareByEye(const Picture& a, const Picture& b) {
     return flip;
 }
 
-/// Tests the means of all channels with half of the rate, and all tiles with the other half: many
-/// tiles would make the means' bounds needlessly low.
+/// Tests the means of all channels at half of the rate, and all tiles at the other half: together,
+/// the many tiles would make the bounds of the means needlessly strict.
 void test(ImageComparison& image, const std::vector<std::vector<MeanDifference>>& differences,
           const Tiles& tiles, double falseAlarms) {
     std::vector<double> ofMeans, ofTiles;
@@ -137,7 +137,7 @@ ImageComparison compareWith(const Picture& a, const Picture& b, std::size_t inde
     return image;
 }
 
-/// Who has values that are not finite, and where the first is.
+/// Notes values that are not finite, with the position of the first.
 void noteNonFinite(const Picture& p, std::vector<std::string>& notes) {
     std::size_t count = 0;
     std::string first;

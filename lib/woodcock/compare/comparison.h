@@ -15,7 +15,7 @@ struct CompareSettings {
     bool resample = false;
     int tile = 8;  ///< least side of a tile, in pixels
     double falseAlarms =
-        1e-3;  ///< chance that equal images are found to differ, all tests together
+        1e-3;  ///< probability that equal images are found to differ, over all tests
 };
 
 /// One channel of an image against the reference's.
@@ -25,13 +25,13 @@ struct ChannelComparison {
     MeanDifference bias;       ///< mean of image - reference
     double ratio = 0;          ///< of the means; NaN where the reference's is 0
     double ratioError = 0;     ///< its standard error
-    double chance = 1;         ///< of such a bias under equal expectations
+    double chance = 1;         ///< probability of such a bias under equal expectations
     bool tested = true;        ///< false: depth, whose expectation depends on the samples
     bool errorsKnown = false;  ///< false: from the scatter inside tiles
-    bool biased = false;       ///< too small a chance, all tests taken together
+    bool biased = false;       ///< `chance` is too small, over all tests
 };
 
-/// A tile whose difference chance does not explain.
+/// A tile whose difference is significant.
 struct TileDifference {
     std::size_t channel = 0;  ///< into ImageComparison::channels
     std::size_t tile = 0;     ///< of the grid, row by row
@@ -54,7 +54,7 @@ struct ImageComparison {
     std::vector<TileDifference> tiles;  ///< those that differ, the least chance first
     std::size_t differentTiles = 0;     ///< a tile that differs in several channels counts once
     bool differ = false;
-    std::string reason;  ///< of that
+    std::string reason;  ///< why it differs
 };
 
 struct Comparison {

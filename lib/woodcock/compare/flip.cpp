@@ -69,7 +69,8 @@ double hyab(const std::array<double, 3>& a, const std::array<double, 3>& b) {
 
 constexpr double colourExponent = 0.7;
 
-/// Distance of Lab colours to 0..1: section 4.1.3 of the paper; small ones get most of the range.
+/// Maps a distance of Lab colours to 0..1 by section 4.1.3 of the paper; small distances get most
+/// of the range.
 double compressed(double distance) {
     constexpr double knee = 0.4, kneeHeight = 0.95;
     static const double largest =
@@ -93,7 +94,7 @@ void normalise(Kernel& k) {
     for (float& v : k) v /= sum;
 }
 
-/// Positive weights to a sum of 1, negative ones to -1.
+/// Scales positive weights to a sum of 1, negative ones to -1.
 void normaliseSigns(Kernel& k) {
     float above = 0, below = 0;
     for (const float v : k) (v > 0 ? above : below) += v;
@@ -135,7 +136,7 @@ struct Sensitivity {
 constexpr std::array<Sensitivity, 3> sensitivities{
     {{1, 0.0047, 0, 1e-5}, {1, 0.0053, 0, 1e-5}, {34.1, 0.04, 13.5, 0.025}}};
 
-/// The planes as an eye sees them that cannot resolve what is finer.
+/// The planes, filtered by the contrast sensitivity of the eye.
 std::array<Plane, 3> seen(const std::array<Plane, 3>& planes, Size size, double pixelsPerDegree) {
     constexpr double pi = std::numbers::pi;
     const int radius =
@@ -254,7 +255,7 @@ std::vector<float> exposed(std::span<const float> rgb, double stops) {
     const double gain = std::exp2(stops);
     std::vector<float> out(rgb.size());
     tbb::parallel_for(std::size_t{0}, rgb.size(), [&](std::size_t i) {
-        // Light that overflows is as white as can be.
+        // Light that overflows is white.
         const double x = std::min(gain * std::max(0.0f, rgb[i]), 1e100);
         out[i] = static_cast<float>(map(x));
     });

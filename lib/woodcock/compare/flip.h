@@ -6,9 +6,10 @@
 
 namespace woodcock {
 
-// The difference that somebody notices who flips between two pictures, from 0 to 1 for each pixel.
-// Pictures are linear with Rec.709 primaries, three floats a pixel, row by row, finite; what is
-// negative counts as 0. The default of `pixelsPerDegree` is a 4K screen 0.7 m wide seen from 0.7 m.
+// The difference that an observer notices when flipping between two pictures, from 0 to 1 for each
+// pixel. Pictures are linear with Rec.709 primaries, three floats a pixel, row by row, finite;
+// negative values count as 0. The default of `pixelsPerDegree` is a 4K screen 0.7 m wide seen from
+// 0.7 m.
 
 /// Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images": of pictures on a
 /// screen whose white is 1; brighter is clipped.

@@ -57,7 +57,7 @@ std::string dimensions(const LayeredImage& image) {
                        w.x0, w.x1, w.y0, w.y1);
 }
 
-/// Seeds of one image must be the same picture in all but noise.
+/// Seeds of one image must differ in noise only.
 void requireSame(const LayeredImage& image, const LayeredImage& first) {
     if (image.width != first.width || image.height != first.height || image.window != first.window)
         throw inputError("'{}' is not another seed of '{}': it is {}, not {}", image.file.string(),
@@ -73,8 +73,8 @@ std::string fact(const LayeredImage& image, const char* name) {
     return found == image.facts.end() ? std::string() : found->second;
 }
 
-/// Standard errors of a mean over `images`, from their error layers; empty where one lacks them
-/// or does not know an error.
+/// Standard errors of a mean over `images`, from their error layers; empty where one image lacks
+/// them or an error is unknown.
 std::vector<float> errorsFromLayers(const std::vector<LayeredImage>& images,
                                     const std::string& plane) {
     std::vector<double> variances;
@@ -93,7 +93,7 @@ std::vector<float> errorsFromLayers(const std::vector<LayeredImage>& images,
     return found;
 }
 
-/// Sums over the files of what each header says; empty where one is silent.
+/// The sum of a number over the files' headers; absent where one header lacks it.
 std::optional<double> total(const std::vector<LayeredImage>& images, const char* name) {
     double sum = 0;
     for (const LayeredImage& image : images) {
@@ -228,7 +228,7 @@ void makeOneSize(std::vector<Whole>& all, bool resample, std::vector<std::string
     }
 }
 
-/// Planes of the first that all have, in its order.
+/// Keeps the planes of the first image that all images have, in its order.
 void keepCommonPlanes(std::vector<Whole>& all, std::vector<std::string>& notes) {
     std::vector<std::string> common, missing;
     for (const ComparedPlane& plane : all.front().picture.planes) {

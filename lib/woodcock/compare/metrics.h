@@ -16,9 +16,9 @@ struct PixelDifference {
     double a = 0, b = 0;
 };
 
-/// How far the channel b is from the reference a, over the pixels that are finite in both.
+/// Differences of channel b from the reference a, over the pixels that are finite in both.
 struct DifferenceMetrics {
-    std::size_t pixels = 0;  ///< finite in both; the rest means nothing where there is none
+    std::size_t pixels = 0;  ///< finite in both; if 0, the other members are void
     std::size_t nonFiniteA = 0, nonFiniteB = 0, nonFiniteInOne = 0;
     double meanA = 0, meanB = 0;
     double rmse = 0, relMse = 0;

@@ -14,7 +14,7 @@ namespace woodcock {
 
 namespace {
 
-/// Rounded to nearest; what would become infinite by that keeps its size.
+/// Rounded to nearest, but not to infinity.
 std::uint32_t upperBits(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     if (std::isnan(value)) return 0x7fc000;

@@ -13,8 +13,8 @@ std::string base64(std::span<const unsigned char> bytes);
 /// Compressed as zlib does, in base64.
 std::string packBytes(std::span<const unsigned char> bytes);
 
-/// Floats rounded to their upper 24 bits, which leave 5 digits: first the highest byte of each,
-/// then the next ones, which compress better so.
+/// Floats rounded to their upper 24 bits, which keep 5 digits: first the highest byte of each, then
+/// the next bytes, as this compresses better.
 std::string packFloats(std::span<const float> values);
 
 }  // namespace woodcock

@@ -17,7 +17,7 @@ struct ComparedPlane {
     std::vector<float> errors;       ///< standard error of each value; empty: unknown
     std::vector<float> roundings{};  ///< of what was an integer, as ImagePlane has them
 
-    /// Distances, in which renderers write "nothing there" as a huge number.
+    /// True for distances, in which renderers write "nothing" as a huge number.
     bool isDepth() const { return name == "Z" || name.ends_with(".Z"); }
 };
 
@@ -31,9 +31,9 @@ struct Picture {
     double resolution = 0;  ///< of the numbers, relative to them
     /// Degrees of freedom of each standard error.
     double errorDegrees = std::numeric_limits<double>::infinity();
-    /// What the variance of a mean over a tile is multiplied by, because pixels share noise.
+    /// Factor of the variance of a mean over a tile, as pixels share noise.
     double sharedNoise = 1;
-    std::string errorsFrom;                  ///< for readers; empty: there are none
+    std::string errorsFrom;  ///< their source, for the report; empty: there are none
     std::string madeBy, seed;                ///< as headers have it; empty: unknown
     std::optional<double> samples, seconds;  ///< sums over the files
 

@@ -8,7 +8,7 @@ namespace woodcock {
 
 namespace {
 
-/// Which pixels make one, and how much of each.
+/// The pixels that make one, with their weights.
 struct Share {
     int first = 0;
     std::vector<double> weights;  ///< their sum is 1
@@ -29,7 +29,7 @@ std::vector<Share> sharesOf(int from, int to) {
     return shares;
 }
 
-/// Of a mean over all pixels, its variance over what it were if they were independent.
+/// The variance of a mean over all pixels, divided by that for independent pixels.
 double sharedNoise(const std::vector<Share>& shares, int from) {
     double squares = 0;
     for (const Share& share : shares)

@@ -5,8 +5,9 @@
 
 namespace woodcock {
 
-/// Averages over areas to a size that is not larger in either direction; errors go with it, and
-/// `sharedNoise` says how much more a mean over many pixels varies than independent ones would.
+/// Averages a picture over areas, to a size that is not larger in either direction. Standard errors
+/// follow. `sharedNoise` becomes the ratio of the variance of a mean over many pixels to that for
+/// independent pixels.
 void shrink(Picture& picture, int width, int height);
 
 }  // namespace woodcock

@@ -3,7 +3,7 @@
 
 namespace woodcock {
 
-/// Chance that a number of Student's t distribution lies further from zero than `t`. Infinite
+/// Probability that a number of Student's t distribution is further from zero than `t`. Infinite
 /// `degrees` make it the normal distribution. Relative error below 1e-9, in the far tail too.
 double studentTwoSided(double t, double degrees);
 

@@ -9,13 +9,14 @@
 namespace woodcock {
 
 // Welch's test of means, tile by tile: is the mean of b - a over a tile further from zero than
-// noise makes it?
+// noise explains?
 //
 // Where both images know the standard error of each pixel, that is the noise, with degrees of
 // freedom by Welch and Satterthwaite. Where one does not, the scatter of b - a over the tile's
 // pixels is taken for the noise of both: right where pixels are independent. A true difference that
-// varies inside the tile then counts as noise too, which makes the test less sharp and never adds
-// false alarms. Noise that neighbouring pixels share (wide pixel filters, denoisers) does.
+// varies inside the tile then counts as noise too. That makes the test less sensitive, but does not
+// add false alarms. Noise that neighbouring pixels share (wide pixel filters, denoisers) adds false
+// alarms.
 
 /// The tiles' grid: at least `side` pixels wide and high each, or the whole image.
 class Tiles {
@@ -38,30 +39,31 @@ struct MeanDifference {
     double value = 0;
     double error = 0;      ///< standard error
     double degrees = 0;    ///< of freedom, of that error
-    double allowance = 0;  ///< what the numbers do not resolve
+    double allowance = 0;  ///< the resolution of the numbers
     std::size_t pixels = 0;
 
-    /// Chance of as much under equal expectations; 1 where there is nothing to compare.
+    /// Probability of such a difference under equal expectations; 1 where there is nothing to
+    /// compare.
     double chance() const;
 };
 
-/// Of one channel, for each tile.
+/// The differences of one channel, for each tile.
 std::vector<MeanDifference> tileDifferences(const Picture& a, const ComparedPlane& planeA,
                                             const Picture& b, const ComparedPlane& planeB,
                                             const Tiles& tiles, double factor = 1);
 
-/// Of all pixels, from their tiles.
+/// The difference over all pixels, from their tiles.
 MeanDifference overall(const std::vector<MeanDifference>& tiles);
 
-/// The same with standard errors at least as large as the mean noise of a tile and its eight
-/// neighbours makes them. Rare bright samples raise a tile's mean and its noise together, so that a
-/// tile which missed them looks dark and certain: its neighbours know better. Where noise is normal
-/// and even, this changes little.
+/// The same differences, with standard errors at least as large as by the mean noise of a tile and
+/// its eight neighbours. Rare bright samples raise a tile's mean and its noise together, so a tile
+/// that missed them is dark and seems certain. Where noise is normal and uniform, this changes
+/// little.
 std::vector<MeanDifference> cautious(const std::vector<MeanDifference>& differences,
                                      const Tiles& tiles);
 
-/// Which of these chances are too small to be chance: Holm's procedure with Sidak's bounds, so that
-/// under equal expectations any is found with probability `rate` at most.
+/// Which of these probabilities are significant, by Holm's procedure with Sidak's bounds: under
+/// equal expectations, any is found with probability `rate` at most.
 std::vector<bool> tooSmall(const std::vector<double>& chances, double rate);
 
 }  // namespace woodcock

@@ -7,11 +7,11 @@
 
 namespace woodcock {
 
-/// CIE xy of red, green, blue and white, in this order, as OpenEXR keeps them.
+/// CIE xy of red, green, blue and white, in this order, as OpenEXR stores them.
 using Chromaticities = std::array<float, 8>;
 
-/// Of the linear colour space that users call `name` ("Linear Rec.709 (sRGB)", "ACES - ACEScg",
-/// "lin_rec2020", "ACES2065-1"); empty where the name tells nothing.
+/// The chromaticities of the linear colour space named `name` ("Linear Rec.709 (sRGB)", "ACES -
+/// ACEScg", "lin_rec2020", "ACES2065-1"); absent where the name is not known.
 std::optional<Chromaticities> chromaticitiesFromName(std::string_view name);
 
 }  // namespace woodcock

@@ -14,7 +14,7 @@ namespace woodcock {
 
 namespace {
 
-// Their repetitions have ends: each letter takes some of the stack.
+// Their repetitions are bounded: each letter takes some of the stack.
 const std::regex& versionLine() {
     static const std::regex line(
         R"((^|\n)ocio_profile_version:[ \t]{0,9}(\d{1,11})(?:\.(\d{1,11}))?)");
@@ -28,7 +28,7 @@ const std::regex& builtinTransform() {
     return text;
 }
 
-/// The largest one where there are too many digits: later than all that is known.
+/// Where there are too many digits, the largest number: later than every known version.
 int versionNumber(const std::string& digits) {
     int number = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
@@ -70,7 +70,7 @@ AdaptedConfig adaptConfig(std::string_view text, ConfigVersion library,
 double yamlExpansion(std::string_view text) {
     struct Anchor {
         std::string name;
-        std::size_t indent = 0;  ///< of its line: what follows is its own while indented more
+        std::size_t indent = 0;  ///< of its line: more indented lines below belong to it
         double weight = 1;
     };
     std::map<std::string, double, std::less<>> weights;

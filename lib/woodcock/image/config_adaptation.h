@@ -13,7 +13,7 @@ struct ConfigVersion {
     auto operator<=>(const ConfigVersion&) const = default;
 };
 
-/// What an OpenColorIO config says of itself (ocio_profile_version); 0.0 where it says nothing.
+/// The version in an OpenColorIO config (ocio_profile_version); 0.0 where there is none.
 ConfigVersion configVersion(std::string_view text);
 
 struct AdaptedConfig {
@@ -21,15 +21,15 @@ struct AdaptedConfig {
     std::vector<std::string> missing;  ///< built-in transforms that the library does not have
 };
 
-/// A config of a later minor version, so that an older library reads it: it claims `library`'s
-/// version, and each built-in transform that is not among `known` becomes a reference to a file of
-/// its name, which does not exist. All that does not use those works as written; what does fails
-/// when it is used, with the name in OpenColorIO's message.
+/// Changes a config of a later minor version so that an older library can read it. It claims
+/// `library`'s version. Each built-in transform that is not among `known` becomes a reference to a
+/// file of its name, which does not exist. Views without these work as written. Others fail when
+/// they are used, with the name in OpenColorIO's message.
 AdaptedConfig adaptConfig(std::string_view text, ConfigVersion library,
                           const std::vector<std::string>& known);
 
-/// How many nodes a YAML text stands for at most once its aliases (*name) are what their anchors
-/// (&name) hold: aliases of aliases multiply.
+/// An upper bound of the nodes of a YAML text whose aliases (*name) are replaced by the contents of
+/// their anchors (&name): aliases of aliases multiply.
 double yamlExpansion(std::string_view text);
 
 }  // namespace woodcock

@@ -38,7 +38,7 @@ struct ColorConfig::Impl {
     std::vector<std::string> missing;  ///< built-in transforms that it uses and the library lacks
 
     void parse(const std::string& text, const std::filesystem::path& directory);
-    /// With the defaults filled in and the names checked.
+    /// The settings with defaults filled in and names checked.
     DisplaySettings complete(DisplaySettings settings) const;
     Error cannotShow(const DisplaySettings& settings, std::string_view reason) const;
 };
@@ -60,7 +60,7 @@ std::vector<std::string> builtinStyles() {
 
 constexpr std::uint64_t largestConfig = 64 << 20;
 
-/// Keys that only later versions know are no news while such a config is read.
+/// Suppresses warnings about keys of later versions while such a config is read.
 class SilentOcio {
 public:
     SilentOcio() { OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE); }
@@ -78,7 +78,7 @@ OCIO::ConstConfigRcPtr archived(const std::string& name) {
     return OCIO::Config::CreateFromFile(name.c_str());
 }
 
-/// Archives and "ocio://" names are OpenColorIO's own business (2.2 and later).
+/// OpenColorIO itself reads archives and "ocio://" names (2.2 and later).
 bool isPlainFile(const std::string& name) {
     return !name.starts_with("ocio://") && !name.ends_with(".ocioz");
 }
@@ -127,7 +127,7 @@ std::string notAvailable(const std::vector<std::string>& styles) {
                        styles.size() == 1 ? "" : fmt::format(" and {} more", styles.size() - 1));
 }
 
-/// "+a, -b | c" is an expression that OpenColorIO reads itself.
+/// "+a, -b | c" is an expression, which OpenColorIO parses.
 bool isPlainLook(const std::string& look) {
     return look.find_first_of(",|:") == std::string::npos && !look.starts_with('+') &&
            !look.starts_with('-');

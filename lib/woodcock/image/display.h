@@ -12,7 +12,7 @@
 
 namespace woodcock {
 
-/// How scene-linear light becomes a picture. Names are the config's, letter case aside; empty: its
+/// How scene-linear light becomes a picture. Names are those of the config, in any case; empty: its
 /// default.
 struct DisplaySettings {
     std::string display, view;
@@ -40,15 +40,14 @@ public:
     /// Error{Input} on one that cannot be used.
     explicit ColorConfig(const std::filesystem::path& file = {});
 
-    /// The files that it is read from: itself, where it is one, and its look-up tables.
+    /// The files of the configuration: the config file, if there is one, and its look-up tables.
     const std::vector<std::filesystem::path>& files() const;
 
-    /// What the user should know of it, say that some of its views need a newer OpenColorIO; empty:
-    /// nothing.
+    /// A note for the user, such as that some views need a newer OpenColorIO; may be empty.
     const std::string& note() const;
 
-    /// Of its scene_linear role, where that is recognisable by name: Rec.709, Rec.2020, ACEScg,
-    /// ACES2065-1.
+    /// The chromaticities of its role scene_linear, where its name tells them: Rec.709, Rec.2020,
+    /// ACEScg, ACES2065-1.
     std::optional<Chromaticities> chromaticities() const;
 
     /// Throws Error{Usage} on names that the config does not have, and lists those that it has.
@@ -57,8 +56,8 @@ public:
     /// Turns colours of the named space, three floats each, into scene_linear in place. Throws
     /// Error{Input} on names that the config does not have, and lists those that it has.
     void toSceneLinear(std::span<float> rgb, const std::string& space) const;
-    /// What the config calls the space of ordinary pictures, the sRGB curve over Rec.709 primaries;
-    /// empty where no name that is known for it is found.
+    /// The config's name of the space of ordinary pictures (sRGB curve, Rec.709 primaries); empty
+    /// where the config has none of its usual names.
     std::string pictureSpace() const;
 
     /// The views of a display, an empty name meaning the default one; Error{Usage} as above.

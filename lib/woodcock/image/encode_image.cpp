@@ -53,7 +53,7 @@ OIIO::ImageSpec specOf(const ImageHeader& header) {
         spec.channelnames.push_back(channel.name);
         spec.channelformats.push_back(typeOf(channel.type));
     }
-    // Formats that know one type for all channels read it here.
+    // Formats with one type for all channels take it from here.
     spec.format = spec.channelformats.front();
     for (const auto& [name, value] : header.attributes)
         std::visit(AttributeSetter{spec, name}, value);
@@ -62,10 +62,11 @@ OIIO::ImageSpec specOf(const ImageHeader& header) {
 
 }  // namespace
 
-// Into memory, because OpenEXR's file closes in a destructor that hides a full disk.
+// Into memory: OpenEXR closes its file in a destructor, which hides a full disk.
 std::vector<unsigned char> encodeImage(const ImageHeader& header, std::span<const float> pixels) {
     std::vector<unsigned char> bytes;
-    // At once, or growing would hold it twice. No encoder makes much more of what it cannot pack.
+    // Reserved at once: growing would hold it twice. No encoder makes pixels that it cannot
+    // compress much larger.
     std::size_t pixelBytes = 0;
     for (const ImageChannel& channel : header.channels) pixelBytes += typeOf(channel.type).size();
     bytes.reserve(pixels.size() / std::max<std::size_t>(header.channels.size(), 1) * pixelBytes +

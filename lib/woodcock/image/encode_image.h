@@ -20,10 +20,10 @@ struct ImageChannel {
 
 using ImageAttribute = std::variant<int, float, std::string, std::vector<float>>;
 
-/// What an image file says beside its pixels.
+/// The description of an image file, beside its pixels.
 struct ImageHeader {
     std::string format;         ///< as OpenImageIO calls it: openexr, png, jpeg, tiff, webp
-    Film::Window window;        ///< where the pixels lie in the whole image
+    Film::Window window;        ///< the position of the pixels in the whole image
     int width = 0, height = 0;  ///< of the whole image
     std::vector<ImageChannel> channels;
     std::vector<std::pair<std::string, ImageAttribute>> attributes;

@@ -21,7 +21,7 @@ constexpr int mostParts = 1000, mostAttributes = 10000;
 /// OpenEXR's compressions, in the order of their numbers.
 struct Compression {
     int lines;     ///< of a chunk
-    double ratio;  ///< of bytes, which the best case reaches or nearly so
+    double ratio;  ///< the best ratio of compression, or a little more
 };
 // Deflate ends at 1032; PXR24 deflates three bytes of four; PIZ codes runs of up to 255 zeros in a
 // few bits; B44 packs 32 bytes into 3 where they are equal; DWA keeps one number of 64 equal ones,
@@ -90,7 +90,7 @@ struct Part {
     std::optional<std::array<std::uint32_t, 2>> tile;
     std::optional<std::size_t> compression;
     double pixelBytes = 0;
-    double chunkCount = 0;  ///< as the file says it; 0: it does not
+    double chunkCount = 0;  ///< as in the file; 0: not there
     bool tiled = false, deep = false;
 };
 
@@ -141,7 +141,7 @@ private:
         return part;
     }
 
-    /// Types whose contents have sizes of their own, which OpenEXR would allocate.
+    /// Types whose contents hold sizes that OpenEXR would allocate.
     void checkAttribute(const std::string& name, const std::string& type,
                         const std::string& bytes) const {
         const auto fail = [&] {

@@ -10,32 +10,34 @@
 
 namespace woodcock {
 
-/// One camera path's answer.
+/// The result of one camera path.
 struct FilmSample {
     Rgb radiance;
     float alpha = 0;      ///< 1 - transmittance along the camera ray
     float events = 0;     ///< scatterings and bounces of the path
-    Rgb background = {};  ///< what of the radiance comes straight from infinitely far lights
-    float glow = 0;       ///< 1: the camera ray meets what glows, which need not cover anything
+    Rgb background =
+        {};          ///< the part of the radiance that comes straight from infinitely far lights
+    float glow = 0;  ///< 1: the camera ray meets emission, which need not cover the background
 };
 
-/// Depth and transmittance of one camera ray, only where layers ask for them.
+/// Depth and transmittance of one camera ray; only for layers that need them.
 struct DepthSample {
     Rgb transmittance;
     float weightedDepth = 0;  ///< sum over absorbed-or-scattered weight x distance, world units
     float weight = 0;
-    Rgb weightedAlbedo = {};    ///< of what it meets first; this and the normal only for features
+    Rgb weightedAlbedo =
+        {};  ///< of what the ray meets first; this and the normal only for feature layers
     Vec3f weightedNormal = {};  ///< world space; see Film::normal()
 };
 
-/// Light on a shadow catcher that one camera path met: with what is in the scene, and without.
+/// Light on a shadow catcher that a camera path met: with the scene's occlusion, and without.
 struct CatcherSample {
     float lit = 0, unlit = 0;  ///< means of the channels
     float weight = 0;          ///< transmittance in front of it
 };
 
-/// Sums over samples, per pixel and in double, so that sample ranges merge: the sums of [0,n) and
-/// of [n,2n) added give those of [0,2n) to a float's last place.
+/// Sums over samples, for each pixel, in double. So sample ranges can be merged: the sums of [0, n)
+/// and of [n, 2n) add to those of [0, 2n), up to a float's last place.
 class Film {
 public:
     struct Pixel {
@@ -49,20 +51,20 @@ public:
         std::uint64_t nonFinite = 0;     ///< samples dropped because they were NaN or infinite
     };
 
-    /// What only scenes with surfaces need.
+    /// Sums that only scenes with surfaces need.
     struct SurfacePixel {
         double catcherLit = 0, catcherUnlit = 0, catcherWeight = 0;
     };
 
-    /// What tells a denoiser what it sees.
+    /// Feature layers for denoisers.
     struct FeaturePixel {
         double albedo[3] = {}, normal[3] = {};
     };
-    /// Where infinitely far lights are seen: radiance without them.
+    /// Radiance without infinitely far lights, where these are visible.
     struct ForegroundPixel {
         double radiance[3] = {}, radianceSquared[3] = {};
     };
-    /// What is kept beside Pixel.
+    /// Which sums are kept beside Pixel.
     struct Kept {
         bool surfaces, features, background = false;
     };
@@ -76,7 +78,8 @@ public:
         bool operator==(const Window&) const = default;
     };
 
-    /// Throws Error{Usage} on an empty image, and on a crop that is empty or leaves it.
+    /// Throws Error{Usage} on an empty image, and on a crop that is empty or reaches beyond the
+    /// image.
     Film(int width, int height, Window crop, Kept kept = {false, false, false});
 
     int width() const { return width_; }
@@ -94,19 +97,19 @@ public:
     /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other.
     void merge(const Film& other);
 
-    /// Means over samples; zero where there is none.
+    /// Means over samples; zero where there are none.
     Rgb radiance(int x, int y) const;
-    /// A shadow catcher adds the share of its light that the scene takes away.
+    /// On a shadow catcher, alpha includes the share of its light that the scene occludes.
     float alpha(int x, int y) const;
     Rgb transmittance(int x, int y) const;
-    /// Of the mean radiance; infinite, as unknown, below two samples. From the variance of the
-    /// samples, which counts as no less than its mean over the pixel and the eight around it: where
-    /// rare bright samples make the noise, a pixel that missed them is dark and looks certain, and
-    /// its neighbours know better. So two standard errors hold the truth in 95 % of pixels or
-    /// more, where the pixel's own variance may mean 60 %.
+    /// The standard error of the mean radiance; infinite (unknown) below two samples. It uses the
+    /// variance of the samples, or the mean variance of the pixel and the eight around it, if that
+    /// is larger: where rare bright samples make the noise, a pixel that missed them is dark and
+    /// seems certain. So the truth lies within two standard errors in at least 95 % of pixels; by
+    /// the pixel's own variance it may be 60 %.
     Rgb standardError(int x, int y) const;
-    Rgb variance(int x, int y) const;  ///< of the mean radiance: the standard error's square
-    /// Mean distance to what the camera ray meets, world units; `noDepth` where it meets nothing.
+    Rgb variance(int x, int y) const;  ///< of the mean radiance: the square of the standard error
+    /// Mean distance to what the camera rays meet, world units; `noDepth` where they meet nothing.
     float depth(int x, int y) const;
     static constexpr float noDepth = 1e10f;
     /// Mean over camera rays of the albedo of what they meet first, in [0, 1]: sigma_s / sigma_t in
@@ -124,7 +127,7 @@ public:
     double meanSamples() const;  ///< per pixel
     std::uint64_t fewestSamples() const;
 
-    /// What a pixel shows of the scene, without the background.
+    /// The scene in a pixel, without the background.
     struct Foreground {
         double radiance = 0;  ///< mean over samples and channels
         double variance = 0;  ///< of one sample, mean over channels; 0 of a single one
@@ -133,15 +136,15 @@ public:
     };
     Foreground foreground(int x, int y) const;
 
-    /// The relative standard error of what the scene shows, background left out, in one number:
-    /// root mean square over pixels, which count as much as they cover of the background (what
-    /// glows without covering anything: as bright as it is, up to the mean). An error is relative
-    /// to the mean brightness of the nine pixels around, where what is seen is taken to stand
-    /// before a background as bright as itself, plus a tenth of the mean in squares. So neither
-    /// the background's brightness nor how much of it is in the picture matters, and a number below
-    /// 1 % is a picture in which one sees no grain.
-    /// Where media only absorb, it is the error of alpha. 0 where nothing but background was seen;
-    /// infinite, as unknown, where no pixel has two samples or nothing that is seen has any light.
+    /// The noise of a picture in one number: the relative standard error of the scene without its
+    /// background, as a root mean square over pixels.
+    /// A pixel counts as much as it covers of the background; emission that covers nothing counts
+    /// by its brightness, up to the mean. The error of a pixel is relative to the mean brightness
+    /// of the nine pixels around it, before a background as bright as the scene itself; a tenth of
+    /// the mean brightness is added to that in squares. So the result depends neither on the
+    /// background's brightness nor on its share of the picture. Below 1 % one sees no grain.
+    /// Where media only absorb, it is the error of alpha. It is 0 where only background was seen.
+    /// It is infinite (unknown) where no pixel has two samples, or where the scene sends no light.
     double noise() const;
 
 private:
@@ -151,8 +154,8 @@ private:
     Window crop_;
     std::vector<Pixel> pixels_;
     std::vector<SurfacePixel> surfacePixels_;        // empty without surfaces
-    std::vector<FeaturePixel> featurePixels_;        // empty where nobody asks
-    std::vector<ForegroundPixel> foregroundPixels_;  // empty where no background is seen
+    std::vector<FeaturePixel> featurePixels_;        // empty where not asked for
+    std::vector<ForegroundPixel> foregroundPixels_;  // empty where no background is visible
 };
 
 }  // namespace woodcock

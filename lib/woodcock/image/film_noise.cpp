@@ -10,7 +10,8 @@ namespace woodcock {
 
 namespace {
 
-/// Part of the mean brightness that is added to what an error is relative to, in squares.
+/// The part of the mean brightness that is added, in squares, to the brightness to which an error
+/// is relative.
 constexpr double darkness = 0.1;
 /// Times the mean brightness: no pixel counts for more in that mean, or a light in sight would set
 /// it.
@@ -18,7 +19,7 @@ constexpr double brightest = 4;
 
 double unknown() { return std::numeric_limits<double>::infinity(); }
 
-/// What the pixels of a film show, row by row.
+/// The scene in the pixels of a film, row by row.
 class Shown {
 public:
     explicit Shown(const Film& film) : width_(film.crop().width()), height_(film.crop().height()) {
@@ -79,8 +80,8 @@ private:
         return pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                        static_cast<std::size_t>(x)];
     }
-    /// Of the pixel itself and the eight around it: one that holds a rare bright sample, or missed
-    /// it, is no measure of itself.
+    /// Mean of the pixel and the eight around it: a pixel that holds a rare bright sample, or
+    /// missed it, tells little about itself.
     Around meanAround(int x, int y) const {
         Around sum;
         double pixels = 0;

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// The bytes at the begin of an image file, where all but EXR, JPEG and TIFF say how large it is.
+/// The first bytes of an image file. They hold the size in all formats but EXR, JPEG and TIFF.
 constexpr std::size_t headBytes = 4096;
 
 constexpr double bestDeflate = 1032;  // RFC 1951: 258 bytes in two bits
@@ -182,8 +182,8 @@ void checkPnm(const RegularFile& file, std::string_view head) {
     requirePlausible(file, width, height, channels * (bits ? 0.125 : floats ? 4 : 1), 1);
 }
 
-/// libtiff walks its own directories in bounds, and what they say is known before anything is
-/// decoded: openImage() checks it there.
+/// libtiff reads its directories within bounds, and before anything is decoded: OpenImage checks
+/// them there.
 void checkTiff(const RegularFile&, std::string_view) {}
 
 struct KnownFormat {
@@ -226,7 +226,7 @@ const std::array<KnownFormat, 9> known{{
      checkTga},
 }};
 
-/// Endings of formats that readers may have at hand, which are not read.
+/// Extensions of formats that are not read, although libraries may read them.
 std::string adviceFor(const std::string& head) {
     if (head.size() > 132 && head.compare(128, 4, "DICM") == 0)
         return "it is a DICOM image, which woodcock does not read; convert its series to NRRD by "

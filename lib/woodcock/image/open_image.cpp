@@ -11,7 +11,7 @@ namespace woodcock {
 
 namespace {
 
-/// Of bytes in a TIFF, which says in words how it is packed.
+/// The best ratio of a TIFF's compression, which it names.
 double bestRatio(const OIIO::ImageSpec& spec) {
     const std::string packing = spec.get_string_attribute("compression");
     if (packing.empty() || packing == "none") return 1;
@@ -47,14 +47,14 @@ OpenImage::OpenImage(const std::filesystem::path& file, std::string_view what)
         if (!input_)
             throw unreadable(
                 fmt::format("this build's OpenImageIO reads no {} ({})", format, OIIO::geterror()));
-        OIIO::ImageSpec asItIs;  // else colours come multiplied by alpha
+        OIIO::ImageSpec asItIs;  // otherwise colours are multiplied by alpha
         asItIs.attribute("oiio:UnassociatedAlpha", 1);
         if (!input_->open(file.string(), spec_, asItIs)) throw unreadable(input_->geterror());
         check();
         if (format != "tiff") return;
         const auto pixelBytes = static_cast<double>(spec_.pixel_bytes(true));
         requirePlausible(bytes, spec_.width, spec_.height, pixelBytes, bestRatio(spec_));
-        // Those of a whole tile or strip are held at once.
+        // The pixels of a whole tile or strip are held at once.
         if (spec_.tile_width > 0)
             requirePlausible(bytes, spec_.tile_width, spec_.tile_height, pixelBytes,
                              bestRatio(spec_));
@@ -79,7 +79,7 @@ bool OpenImage::goTo(int part) {
 void OpenImage::check() {
     if (spec_.deep || spec_.depth > 1 || spec_.width < 1 || spec_.height < 1 || spec_.nchannels < 1)
         throw unreadable("it does not hold a flat picture");
-    // Some readers leave names out, and OpenImageIO's own functions rely on them.
+    // Some readers leave out names, on which OpenImageIO's own functions rely.
     while (spec_.channelnames.size() < static_cast<std::size_t>(spec_.nchannels))
         spec_.channelnames.push_back(fmt::format("channel{}", spec_.channelnames.size()));
     const double bytes =

@@ -69,8 +69,8 @@ private:
         return text && *text ? context_->resolveStringVar(text) : std::string();
     }
 
-    /// Follows what `enter` leads to, once for each name; adds its steps to those of who refers to
-    /// it.
+    /// Follows the references in `enter`, once for each name, and adds its steps to those of the
+    /// referrer.
     template <class Enter>
     void follow(const std::string& kind, const std::string& name, Enter enter) {
         const std::string node = kind + " '" + shown(name, 100) + "'";
@@ -101,7 +101,7 @@ private:
         return inputError("the OpenColorIO config {} cannot be used: it {}", origin_, what);
     }
 
-    /// Of a colour space or a named transform: names of the two are one set.
+    /// Follows a colour space or a named transform: their names are one set.
     void space(const std::string& name) {
         if (const auto found = config_.getColorSpace(name.c_str()))
             follow("colour space", found->getName(), [&] {
@@ -183,7 +183,7 @@ private:
         try {
             found = context_->resolveFileLocation(name);
         } catch (const OCIO::Exception&) {
-            return;  // a view that needs it will say so
+            return;  // a view that needs it will report it
         }
         std::error_code ignored;
         if (!std::filesystem::exists(found, ignored)) return;
@@ -207,7 +207,7 @@ private:
     const std::string& origin_;
     OCIO::ConstContextRcPtr context_;
     std::map<std::string, double> stepsOf_;
-    std::vector<std::string> open_;  ///< what is being followed, from outside in
+    std::vector<std::string> open_;  ///< the names being followed, outermost first
     std::set<std::filesystem::path> files_;
     double steps_ = 0;
 };

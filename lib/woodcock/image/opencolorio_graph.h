@@ -9,11 +9,11 @@
 
 namespace woodcock {
 
-/// Follows what a config's colour spaces, looks, views, view transforms and named transforms refer
-/// to. OpenColorIO follows it without an end where they lead in a circle. Returns the files of
-/// look-up tables that are named and exist. `origin` names the config in messages. Throws
-/// Error{Input} on circles, on references nested too deeply, on more steps than anybody writes, and
-/// on tables that are no regular files or too large.
+/// Checks the references of a config's colour spaces, looks, views, view transforms and named
+/// transforms: OpenColorIO would follow a circle for ever. Returns the files of look-up tables that
+/// exist. `origin` names the config in messages. Throws Error{Input} on circles, on references
+/// nested too deeply, on more steps than anybody writes, and on tables that are too large or not
+/// regular files.
 std::vector<std::filesystem::path> checkConfigGraph(const OCIO_NAMESPACE::Config& config,
                                                     const std::string& origin);
 

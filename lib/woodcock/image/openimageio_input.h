@@ -10,16 +10,16 @@
 
 namespace woodcock {
 
-/// The one way in for images. What OpenImageIO gets is a regular file of a known format, whose
-/// header claims no more than the file can hold (image_header.h).
+/// The only way to open images. OpenImageIO gets only regular files of a known format, whose
+/// headers claim no more than the file can hold (image_header.h).
 class OpenImage {
 public:
-    /// `what` names the file's part in messages: "image", "slice". Colours are not multiplied by an
-    /// alpha. Throws Error{Input} "cannot read image 'a.exr': ...", of deep and volumetric pixels
-    /// too.
+    /// `what` names the kind of file in messages: "image", "slice". Colours are not multiplied by
+    /// alpha. Throws Error{Input} "cannot read image 'a.exr': ...", also for deep and volumetric
+    /// pixels.
     explicit OpenImage(const std::filesystem::path& file, std::string_view what = "image");
 
-    /// Of the current part; it names every channel.
+    /// The description of the current part; it names every channel.
     const OIIO::ImageSpec& spec() const { return spec_; }
     bool isExr() const;
     /// Goes to a part; false where there is none. Throws Error{Input} as the constructor does.

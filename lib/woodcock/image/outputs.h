@@ -17,26 +17,26 @@ struct OutputSettings {
     bool half = false;                              ///< EXR colour in half instead of float
     ExrLayers layers = {};                          ///< of the EXR files
     DisplaySettings display = {};                   ///< of all others, which are pictures
-    ColorConfig colour;                             ///< for them, and for the EXR's chromaticities
-    bool withAlpha = false;  ///< pictures keep alpha: for renders whose environment is not visible
-    bool glows = false;      ///< there is light where nothing covers; see writeDisplay()
+    ColorConfig colour;                             ///< for those, and for the EXR's chromaticities
+    bool withAlpha = false;  ///< pictures keep alpha; for renders whose environment is not visible
+    bool glows = false;      ///< there is emission that covers nothing; see writeDisplay()
 };
 
-/// The files that one render writes. Made before it, so that what would fail at its end (an
-/// unknown extension or view, a missing directory) fails at once.
+/// The files that a render writes. Make it before rendering, so that errors (an unknown extension
+/// or view, a missing directory) appear at once.
 class Outputs {
 public:
     /// Throws Error{Usage} or Error{Input}.
     explicit Outputs(OutputSettings settings);
 
-    /// What the user should know about the colour configuration; empty: nothing.
+    /// A note about the colour configuration for the user; may be empty.
     const std::string& note() const { return settings_.colour.note(); }
 
     /// Bytes of memory for each pixel that write() takes beside the film.
     double bytesPerPixel() const;
 
-    /// Writes every file, the others too when one fails; then throws Error{Failure} of those.
-    /// Returns what the user should know of what was written; empty: nothing.
+    /// Writes every file. If some fail, it writes the others and then throws Error{Failure} that
+    /// names those. Returns a note for the user; may be empty.
     std::string write(const Film& film, const RenderMetadata& metadata) const;
 
 private:

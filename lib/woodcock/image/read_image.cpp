@@ -10,7 +10,7 @@ namespace woodcock {
 
 namespace {
 
-/// Where R, G and B are among the channels; all the same for a grey image.
+/// The indices of R, G and B among the channels; all the same for a grey image.
 std::array<int, 3> colourChannels(const OIIO::ImageSpec& spec) {
     const std::array<int, 3> named{spec.channelindex("R"), spec.channelindex("G"),
                                    spec.channelindex("B")};

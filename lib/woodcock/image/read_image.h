@@ -22,9 +22,10 @@ struct Image {
     }
 };
 
-/// Reads an image as light: any format that OpenImage takes, one channel meaning grey, alpha and
-/// further channels ignored, numbers taken as they are. Throws Error{Input} on a file that cannot
-/// be read, and on negative, NaN or infinite values, with their count and the first one's place.
+/// Reads an image as light, in any format that OpenImage reads. One channel is grey; alpha and
+/// further channels are ignored; numbers are not converted. Throws Error{Input} on a file that
+/// cannot be read, and on negative, NaN or infinite values, with their number and the position of
+/// the first.
 Image readImage(const std::filesystem::path& file);
 
 }  // namespace woodcock

@@ -19,9 +19,9 @@ Film::Window windowOf(const OIIO::ImageSpec& spec) {
     return {x, y, x + spec.width, y + spec.height};
 }
 
-/// Of all channels that are no integers; 0 where all are.
+/// The resolution of all channels that are not integers; 0 where all are.
 double resolutionOf(const OIIO::ImageSpec& spec) {
-    // Renderers add a thousand samples up in floats: ten bits of theirs go.
+    // Renderers sum up to a thousand samples in floats, which costs ten bits.
     constexpr double half = 0x1p-11, single = 0x1p-14;
     double coarsest = 0;
     for (int c = 0; c < spec.nchannels; ++c)
@@ -30,7 +30,7 @@ double resolutionOf(const OIIO::ImageSpec& spec) {
     return coarsest;
 }
 
-/// Half of the step from one integer to the next, where all that there are make up 1.
+/// Half of the step between integers, whose full range is 1.
 float halfStep(OIIO::TypeDesc type) {
     return type.is_floating_point()
                ? 0.0f
@@ -108,7 +108,7 @@ LayeredImage readLayers(const std::filesystem::path& file) {
     image.resolution = resolutionOf(first);
     image.straightAlpha = first.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     image.facts = factsOf(first);
-    // Only EXR's parts belong together; other formats keep thumbnails and pages there.
+    // Only the parts of an EXR belong together; other formats have thumbnails and pages as parts.
     for (int part = 0; part == 0 || (input.isExr() && input.goTo(part)); ++part) {
         const OIIO::ImageSpec& spec = input.spec();
         if (spec.full_width != image.width || spec.full_height != image.height ||

@@ -24,26 +24,26 @@ struct ImagePlane {
     std::string name() const { return layer.empty() ? channel : layer + "." + channel; }
 };
 
-/// All that an image file holds, as numbers.
+/// All channels of an image file, as numbers.
 struct LayeredImage {
     std::filesystem::path file;
     int width = 0, height = 0;  ///< of the whole image (EXR's display window)
-    Film::Window window;        ///< where there are pixels, from the whole image's top left
+    Film::Window window;        ///< the position of the pixels, from the whole image's top left
     std::vector<ImagePlane> planes;
-    /// How finely the file's numbers resolve, relative to them; 0: all are integers.
+    /// The relative resolution of the file's numbers; 0: all are integers.
     double resolution = 0;
     bool straightAlpha = false;                ///< colour is not multiplied by alpha
-    std::map<std::string, std::string> facts;  ///< the header's numbers and words, as text
+    std::map<std::string, std::string> facts;  ///< numbers and texts of the header, as text
 
-    /// Where there is no such plane: null.
+    /// The plane of this name; null: there is none.
     const ImagePlane* find(const std::string& name) const;
-    /// A header's number: "woodcock/samples".
+    /// A number of the header, such as "woodcock/samples".
     std::optional<double> number(const std::string& fact) const;
 };
 
-/// Reads every channel of every part, of any format that OpenImage takes. Integers come as 0..1;
-/// NaN and infinite values stay. A part beyond the first has its name before its channels'. Throws
-/// Error{Input} where the file cannot be read, holds deep or volumetric pixels or parts of
+/// Reads every channel of every part, in any format that OpenImage reads. Integers are scaled to
+/// 0..1; NaN and infinite values stay. Channels of a part beyond the first have its name in front.
+/// Throws Error{Input} where the file cannot be read, holds deep or volumetric pixels or parts of
 /// different windows, or does not fit into memory.
 LayeredImage readLayers(const std::filesystem::path& file);
 

@@ -40,7 +40,7 @@ std::optional<NumberPlace> findNumber(const std::string& name) {
     return NumberPlace{name.substr(0, percent), name.substr(at + 1), digits};
 }
 
-/// The number in `name`, where it is one of the pattern's: padded to its digits and no more.
+/// The number in `name`, where it matches the pattern: padded to exactly its digits.
 std::optional<std::uint64_t> numberOf(const std::string& name, const NumberPlace& place) {
     if (name.size() < place.before.size() + place.after.size() + place.digits ||
         !name.starts_with(place.before) || !name.ends_with(place.after))
@@ -73,7 +73,7 @@ std::map<std::uint64_t, fs::path> findSlices(const fs::path& pattern) {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// A name as texts and the runs of digits between them.
+/// A name, split into texts and the runs of digits between them.
 struct SplitName {
     std::vector<std::string> texts, digits;
 };
@@ -103,7 +103,7 @@ std::uint64_t numberOf(const std::string& digits, const fs::path& file) {
     return number;
 }
 
-/// Which run of digits tells the files apart: the one that differs.
+/// The run of digits that differs between the files.
 std::size_t findRun(const std::vector<fs::path>& files) {
     const SplitName first = split(files.front().filename().string());
     std::optional<std::size_t> run;
@@ -210,7 +210,7 @@ Slices readNumbered(const std::map<std::uint64_t, fs::path>& files, const fs::pa
     return slices;
 }
 
-/// Pages of a file; it is left at none of them. Bounded, as a file may say anything.
+/// The number of pages of a file. Bounded, as a damaged file may claim any number.
 std::uint64_t countPages(OpenImage& input) {
     constexpr int most = 1 << 20;
     int pages = 0;

@@ -29,8 +29,8 @@ Encoding encodingOf(ImageFormat format) {
         case ImageFormat::Tiff:
             return {"tiff", PixelType::UInt16, true, {{"Compression", std::string("zip")}}};
         case ImageFormat::WebP:
-            // OpenImageIO divides its bytes by alpha, whatever they are said to be; and it halves
-            // the resolution of colour even where it compresses without loss.
+            // OpenImageIO divides the bytes by alpha, whatever is said about them, and it halves
+            // the resolution of colour even in lossless compression.
             return {"webp", PixelType::UInt8, false, {{"Compression", std::string("webp:95")}}};
         default:
             return {"png", PixelType::UInt8, true, {{"CompressionQuality", 95}}};
@@ -42,7 +42,7 @@ struct ScenePixels {
     std::size_t raised = 0;   ///< pixels of more light than their alpha covers
 };
 
-/// Not multiplied by alpha where that is kept.
+/// Colours are not multiplied by alpha where alpha is kept.
 ScenePixels scenePixels(const Film& film, bool straight, const DisplayFileSettings& settings) {
     ScenePixels pixels;
     const Film::Window crop = film.crop();
@@ -80,7 +80,7 @@ double writeDisplay(const std::filesystem::path& file, const Film& film,
     ScenePixels pixels = scenePixels(film, alpha, settings);
     transform.apply(pixels.rgba);
 
-    // Pictures have no window in a larger image: the crop is all there is.
+    // These formats have no window in a larger image: the crop is the whole picture.
     const int width = film.crop().width(), height = film.crop().height();
     ImageHeader header{encoding.format, {0, 0, width, height}, width, height, {}, {}};
     for (const char* name : {"R", "G", "B"}) header.channels.push_back({name, encoding.type});

@@ -11,17 +11,16 @@ namespace woodcock {
 struct DisplayFileSettings {
     /// The picture keeps alpha, where its format has one; otherwise it is opaque, on black.
     bool withAlpha = false;
-    /// Light may come from where nothing covers: alpha is raised to what is seen, see below.
+    /// There may be emission that covers nothing: alpha is raised, see below.
     bool glows = false;
     double exposure = 0;  ///< stops that the transform applies
 };
 
-/// Writes the film's crop as a picture, by the extension: PNG, JPEG and WebP of 8 bits,
-/// TIFF of 16. Alpha is straight, as these formats want it. They cannot add light to what is
-/// behind, so a fire of alpha 0 would not be seen. With `glows`, alpha is at least the brightest
-/// channel after exposure, up to 1: the least with which the picture holds its light without
-/// clipping. Returns the share of pixels whose alpha was raised. Whole or not at all; throws
-/// Error{Failure}.
+/// Writes the film's crop as a picture, by the extension: PNG, JPEG and WebP of 8 bits, TIFF of 16.
+/// Alpha is straight, as these formats want it. They cannot add light to the background, so a fire
+/// of alpha 0 would be invisible. With `glows`, alpha is at least the brightest channel after
+/// exposure, up to 1: the least alpha with which the light is not clipped. Returns the share of
+/// pixels whose alpha was raised. Whole or not at all; throws Error{Failure}.
 double writeDisplay(const std::filesystem::path& file, const Film& film,
                     const DisplayTransform& transform, const DisplayFileSettings& settings = {});
 

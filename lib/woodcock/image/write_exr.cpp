@@ -45,7 +45,7 @@ std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& set
                       [&film, half](int x, int y, float* to) {
                           copy(film.radiance(x, y), to);
                           to[3] = film.alpha(x, y);
-                          // Beyond its range a half is infinite, which no later program repairs.
+                          // Beyond its range a half is infinite, which no later program can repair.
                           if (half)
                               for (int i = 0; i < 4; ++i)
                                   to[i] = std::clamp(to[i], -largestHalf, largestHalf);
@@ -104,8 +104,8 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
     set("woodcock/version", std::string(version()));
     set("woodcock/samples", metadata.endSample - metadata.firstSample);
     set("woodcock/sampleRange", fmt::format("{}:{}", metadata.firstSample, metadata.endSample));
-    // An interrupted pass leaves pixels with more, and an adaptive render is made of them: such a
-    // file does not merge by its range alone.
+    // After an interrupted pass, and in an adaptive render, pixels have different numbers of
+    // samples: such a file cannot be merged by its range only.
     if (const auto most = static_cast<int>(film.mostSamples());
         most > metadata.endSample - metadata.firstSample)
         set("woodcock/samplesAtMost", most);

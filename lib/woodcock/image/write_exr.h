@@ -14,14 +14,14 @@
 
 namespace woodcock {
 
-/// How an image was made; its header says it.
+/// How an image was rendered, for its header.
 struct RenderMetadata {
     int firstSample = 0, endSample = 0;
     std::uint64_t seed = 0;
     double renderSeconds = 0;
     std::string sceneDigest;
     std::string commandLine;  ///< empty: not written
-    bool adaptive = false;    ///< the sample range is the work of as many in every pixel
+    bool adaptive = false;    ///< as much work as the sample range in every pixel
 };
 
 /// Channels beyond R, G, B and A, always in float.
@@ -37,11 +37,11 @@ struct ExrLayers {
 
 /// The names that users write, as those of the members.
 std::vector<std::string> layerNames();
-/// From such names. Throws Error{Usage} on any other.
+/// The layers of these names. Throws Error{Usage} on any other name.
 ExrLayers layersFromNames(const std::vector<std::string>& names);
 
 struct ExrSettings {
-    bool half = false;  ///< R, G, B, A in half, at most its largest number; float otherwise
+    bool half = false;  ///< R, G, B, A in half, clamped to its largest number; else float
     ExrLayers layers;
     std::optional<Chromaticities> chromaticities;  ///< of the working space, where it is known
 };
