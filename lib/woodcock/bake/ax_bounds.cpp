@@ -13,7 +13,7 @@ namespace {
 namespace ast = openvdb::ax::ast;
 using ast::tokens::CoreType;
 
-/// Names with a space are no user's.
+/// Names with a space, which no user's code can have.
 constexpr const char* roundsLeft = "rounds left";
 
 ast::Expression* roundsLeftVariable() { return new ast::Local(roundsLeft); }
@@ -63,10 +63,10 @@ public:
 private:
     static std::string castName(std::size_t i) { return fmt::format("cast {}", i); }
 
-    /// Below the node. Its children first, as what replaces one is made of copies.
+    /// Replaces below the node. Children come first, as a replacement is made of copies.
     void change(ast::Node& node) {
         for (std::size_t i = 0; i < node.children(); ++i) {
-            // The tree is our own; AX hands out its children as constants.
+            // The tree is our own; AX returns its children as constants.
             auto* const child = const_cast<ast::Node*>(node.child(i));
             if (!child) continue;
             change(*child);

@@ -25,13 +25,14 @@ std::vector<fs::path> ownDirectories() {
     std::vector<fs::path> directories{fs::read_symlink("/proc/self/exe", ignored).parent_path()};
     Dl_info info{};
     dladdr(reinterpret_cast<const void*>(&axAvailable), &info);
-    // A name without a directory is what the program was called by, and may be any file here.
+    // A name without a directory is the name by which the program was called; here it may be any
+    // file.
     const fs::path file = info.dli_fname ? info.dli_fname : "";
     if (file.has_parent_path()) directories.push_back(file.parent_path());
     return directories;
 }
 
-/// In the same installation or build, or wherever the system looks for libraries.
+/// The library in the same installation or build, else wherever the system finds libraries.
 fs::path axLibrary() {
     const fs::path library = WOODCOCK_AX_LIBRARY;
     for (const fs::path& own : ownDirectories()) {

@@ -14,18 +14,18 @@ struct VdbGrids;
 bool axAvailable();
 
 /// Code in OpenVDB's expression language AX, compiled once and run over the voxels of grids:
-/// `@density *= 1 - v@Cd.y;`. A name stands for the grid of that name, whose type it must give
-/// (float where it gives none).
+/// `@density *= 1 - v@Cd.y;`. A name is that of a grid, with the grid's type (float if none is
+/// given).
 ///
-/// Only active values change, never which are active, and no grid is made. An active tile is taken
-/// for the voxels that it stands for, and becomes leaves where they come to differ. The same code
-/// and grids give the same bits on one machine, whatever the number of threads; AX compiles for the
-/// processor at hand, so the last bit may depend on that.
+/// Only active values change; active states stay, and no grid is made. An active tile counts as its
+/// voxels, and becomes leaves where their values differ. The same code and grids give the same bits
+/// on one machine, whatever the number of threads. AX compiles for the processor at hand, so the
+/// last bit may differ between machines.
 ///
-/// Refused is what AX itself would let end the program or depend on threads: integers divided by
-/// anything but a number other than 0; a component's index that is not a number or does not exist;
-/// rand() without a seed; text; print(), external() and $variables. Loops may go round a million
-/// times at a voxel.
+/// Code that could end the program, or whose result could depend on threads, is refused: integers
+/// divided by anything but a constant other than 0; a component's index that is not a constant or
+/// does not exist; rand() without a seed; text; print(), external() and $variables. Loops may run a
+/// million rounds at a voxel.
 class AxExpression {
 public:
     /// `name` is the position of the code, as "cumulus.toml:12:8"; messages begin with it, followed
@@ -34,10 +34,10 @@ public:
     /// Failure, where the library that holds it cannot be loaded.
     AxExpression(const std::string& code, const std::string& name);
 
-    /// Runs the code over the grids that it writes. `goesOn` is asked now and then, from one other
-    /// thread, whether it shall go on; returns false where it said no, and the grids are of no use
-    /// then. Errors: Input, where the code names a grid that does not exist or has another type
-    /// (the grids are untouched then), and where its loops go on for too long.
+    /// Runs the code over the grids that it writes. `goesOn` is called now and then, from one other
+    /// thread. If it returns false, so does run(), and the grids are void. Errors: Input, where the
+    /// code names a grid that does not exist or has another type (then the grids are unchanged),
+    /// and where its loops run for too long.
     bool run(VdbGrids& grids, const std::function<bool()>& goesOn = {}) const;
 
 private:

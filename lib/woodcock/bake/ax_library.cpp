@@ -32,7 +32,7 @@ namespace ax = openvdb::ax;
 using ax::ast::tokens::CoreType;
 using Streaming = ax::VolumeExecutable::Streaming;
 
-/// AX goes down the code's tree by recursion: this keeps it well inside a stack of 8 MiB.
+/// AX walks the code's tree by recursion: this limit keeps it well inside a stack of 8 MiB.
 constexpr std::size_t longestCode = 16384;
 
 /// AX's own messages, with line and column first: "AX 2:14: unexpected SEMICOLON".
@@ -82,7 +82,7 @@ private:
             return "AX: " + message;
         std::string what = message.substr(0, space);
         if (what.ends_with(':')) what.pop_back();
-        // What AX leaves of its parser's "memory exhausted" when it cuts off "syntax error, ".
+        // The rest of the parser's "memory exhausted", from which AX cuts off "syntax error, ".
         if (what == "ed") what = "nested too deeply";
         return fmt::format("AX {}: {}", place, what);
     }
@@ -90,7 +90,7 @@ private:
     std::vector<std::string> found_;
 };
 
-/// A name of the code that stands for a grid.
+/// A grid's name in the code.
 struct Access {
     std::string name;
     CoreType type;
@@ -134,10 +134,10 @@ void splitRootTiles(openvdb::GridBase& grid) {
     });
 }
 
-/// Looks every now and then, on a thread of its own, whether the code that runs shall go on.
+/// Checks now and then, on a thread of its own, whether the running code should go on.
 class Watch {
 public:
-    /// `look` says whether it shall; `stop` is called once where not.
+    /// `look` returns whether it should; if not, `stop` is called once.
     Watch(std::function<bool()> look, std::function<void()> stop)
         : thread_([this, look = std::move(look), stop = std::move(stop)](
                       const std::stop_token& ended) { watch(ended, look, stop); }) {}
@@ -205,8 +205,8 @@ public:
         }
         executable_->setCreateMissing(false);
         executable_->setValueIterator(ax::VolumeExecutable::IterType::ON);
-        // AX leaves a tile whole where it finds nothing in the code that differs from voxel to
-        // voxel. That is safe only where nothing is read but the tile itself.
+        // AX keeps a tile where nothing in the code differs from voxel to voxel. That is right only
+        // where the code reads nothing but the tile.
         if (accesses_.size() > 1 || executable_->getActiveTileStreaming() == Streaming::AUTO)
             executable_->setActiveTileStreaming(Streaming::ON);
     }
@@ -253,7 +253,7 @@ private:
         }
     }
 
-    // The code reads one of these numbers and writes the other, from several threads.
+    // The code reads one of these numbers and writes the other, on several threads.
     template <class T>
     T& control(const char* name) {
         return controls_->getOrInsertData<openvdb::TypedMetadata<T>>(name)->value();

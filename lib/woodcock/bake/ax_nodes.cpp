@@ -59,8 +59,8 @@ private:
     std::size_t result_;
 };
 
-/// The code changes `input`, which it knows as @density or by another `name`, where that is not
-/// zero. It may read, and change, the nodes of `with` there, by their keys.
+/// The code changes `input`, which is @density or has another `name`, where it is not zero. It may
+/// read and change the nodes of `with` there, by their keys.
 Graph::Entry ax(NodeReader& r) {
     std::vector<std::string> names{r.has("name") ? r.text("name", "name = \"density\"")
                                                  : "density"};

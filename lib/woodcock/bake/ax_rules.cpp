@@ -60,7 +60,7 @@ std::pair<std::uint64_t, std::uint64_t> components(CoreType type) {
     }
 }
 
-/// The value of a literal, such as 2; nothing for any other expression, such as 1 + 1.
+/// The value of a literal, such as 2; absent for other expressions, such as 1 + 1.
 std::optional<std::uint64_t> integerLiteral(const ast::Node& node) {
     switch (node.nodetype()) {
         case ast::Node::ValueInt16Node:
@@ -86,7 +86,7 @@ bool isSafeDivisor(const ast::Node& node) {
     return value && *value > 0 && *value <= INT32_MAX;
 }
 
-/// Compiling takes a time that grows with the square of the depth, or faster.
+/// The time to compile grows with the square of the depth, or faster.
 constexpr int mostBlocks = 32;
 
 const std::set<std::string> moduloFunctions{"euclideanmod", "floormod", "truncatemod"};
@@ -96,7 +96,8 @@ public:
     Rules(const ast::Tree& code,
           const std::function<void(const std::string&, const ast::Node&)>& report)
         : report_(report) {
-        // By name alone, whatever its scope: a variable may be of any type that it has anywhere.
+        // By name only, whatever the scope: a variable may have any type that a variable of its
+        // name has.
         ast::visitNodeType<ast::DeclareLocal>(code, [&](const ast::DeclareLocal& node) {
             types_[node.local()->name()].insert(node.type());
             return true;
@@ -166,7 +167,7 @@ private:
             node);
     }
 
-    /// What a shift by more bits than there are gives is left open by the processor and by LLVM.
+    /// Neither processors nor LLVM define a shift by more bits than the number has.
     void checkShift(ast::tokens::OperatorToken operation, const ast::Node& rhs,
                     const ast::Node& node) const {
         const bool shifts =
@@ -205,7 +206,7 @@ private:
         }
     }
 
-    /// Where it may be one or the other, an integer.
+    /// Where it may be either, it counts as an integer.
     bool mayBeInteger(const ast::Node& node) const {
         switch (node.nodetype()) {
             case ast::Node::ValueFloatNode:

@@ -15,10 +15,10 @@ namespace woodcock {
 /// The files that writeBake() writes.
 std::vector<std::filesystem::path> bakedFiles(const std::filesystem::path& file, int levels);
 
-/// Writes what was baked, and `levels` coarser versions beside it: smoke.vdb, smoke.lod1.vdb with
-/// voxels twice as large, and so on (full weighting of 27 voxels, as in multigrid methods, so that
-/// a coarse voxel sits on every second fine one and mass is kept). Returns the files. Errors:
-/// Failure, as of writeVdb().
+/// Writes the baked grids, and `levels` coarser versions beside them: smoke.vdb, smoke.lod1.vdb
+/// with voxels twice as large, and so on. Coarsening is the full weighting of 27 voxels, as in
+/// multigrid methods: a coarse voxel lies on every second fine one, and mass is kept. Returns the
+/// files. Errors: Failure, as of writeVdb().
 std::vector<std::filesystem::path> writeBake(const std::filesystem::path& file, const Bake& bake,
                                              const VdbWriteOptions& options, int levels);
 
@@ -27,7 +27,7 @@ VdbCompression compressionNamed(std::string_view name);  ///< "none", "zip" or "
 /// The transform of a file's grid, the first one that has voxels if `grid` is empty. Errors: Input.
 Affine3d transformOf(const std::filesystem::path& file, const std::string& grid);
 
-/// A recipe that makes the grids of a file again: each is a `grid` node and an output.
+/// The text of a recipe that copies the grids of a file: each is a `grid` node and an output.
 /// Errors: Input.
 RecipeText recipeOfGrids(const std::filesystem::path& file);
 

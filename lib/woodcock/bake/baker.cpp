@@ -27,13 +27,13 @@ void Baker::findIndexBox() {
                 "is {:.0f}. Choose larger voxels",
                 recipe_.boundsPlace, std::max(std::abs(box.lower[i]), std::abs(box.upper[i])),
                 "xyz"[i], most);
-        // Rounding shall not leave out a voxel that sits on the bounds.
+        // Rounding must not leave out a voxel that lies on the bounds.
         first_[i] = static_cast<int>(std::ceil(box.lower[i] - 1e-6));
         last_[i] = static_cast<int>(std::floor(box.upper[i] + 1e-6));
     }
 }
 
-/// Regions of one size, a power of two, that cover the box: at most eight.
+/// At most eight regions of one size, a power of two, that cover the box.
 std::vector<Region> Baker::rootRegions() const {
     int size = pieceSize;
     const auto fits = [&](int axis) { return std::int64_t{last_[axis]} - first_[axis] < size; };
@@ -84,7 +84,7 @@ std::vector<Status> Baker::inspect(const Region& region, Worker& worker,
     return status;
 }
 
-/// Adds what a region without varying outputs is filled with.
+/// Adds the constant values of a region without varying outputs.
 void Baker::fillRegion(const Region& region, const std::vector<Status>& status,
                        const std::vector<Bounds>& bounds, Worker& worker) const {
     for (std::size_t o = 0; o < status.size(); ++o) {
@@ -310,9 +310,8 @@ std::optional<Bake> Baker::run() {
 
 namespace {
 
-/// Runs the stages of a graph, in their order, and puts the nodes that they make in their places.
-/// Returns the number of voxels that were evaluated for them, or nothing when it was ended by
-/// `progress`.
+/// Runs the stages of a graph in their order, and replaces each by the node that it makes. Returns
+/// the number of voxels evaluated for them; absent where `progress` ended it.
 std::optional<std::uint64_t> runStages(Plan& plan, const BakeSettings& settings,
                                        const BakeProgress& progress) {
     std::uint64_t evaluated = 0;
@@ -357,7 +356,7 @@ std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& setting
     tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
     std::optional<Bake> bake;
     arena.execute([&] {
-        openVdbTransform(settings.worldFromIndex);  // throws before the work where it cannot be
+        openVdbTransform(settings.worldFromIndex);  // throws before the work if it is not possible
         Plan plan{recipe.graph, recipe.outputs, recipe.bounds, recipe.boundsPlace};
         const std::optional<std::uint64_t> evaluated = runStages(plan, settings, progress);
         if (!evaluated) return;

@@ -17,7 +17,7 @@ struct VdbGrids;
 
 struct BakeSettings {
     Affine3d worldFromIndex;  ///< of the grids that are made: voxels sit at integer positions
-    /// Refuses to evaluate more voxels than this.
+    /// The bake is refused if more voxels than this would be evaluated.
     double mostVoxels = 4e9;
     int threads = 0;  ///< 0: all; the result does not depend on it
 };
@@ -42,19 +42,19 @@ struct Bake {
     double seconds = 0;                             ///< for all of them
 };
 
-/// Progress, from 0 to 1; called now and then, and not from several threads at once. Returning
-/// false ends the bake.
+/// Called now and then with the progress, 0 to 1, by one thread at a time. Returning false ends the
+/// bake.
 using BakeProgress = std::function<bool(double done)>;
 
-/// Evaluates a recipe, leaf by leaf and only where its bounds say that there may be something.
-/// Returns nothing when it was ended by `progress`. Errors: Input, when there are too many voxels,
-/// when all grids come out empty, and for values that are not finite (with their number and the
-/// first one's place).
+/// Evaluates a recipe, leaf by leaf, and only where the bounds of its nodes allow values other than
+/// zero. Absent where `progress` ended it. Errors: Input, when there are too many voxels, when all
+/// grids are empty, and for values that are not finite (with their number and the position of the
+/// first).
 std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& settings,
                                const BakeProgress& progress = {});
 
-/// The values of an output at world positions, without any sparseness: what bakeRecipe() is held
-/// to.
+/// The values of an output at world positions, evaluated densely. bakeRecipe() must agree with
+/// them.
 std::vector<Vec3d> evaluateRecipe(const Recipe& recipe, std::size_t output,
                                   const std::vector<Vec3d>& positions);
 

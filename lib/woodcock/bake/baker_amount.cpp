@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much there is to bake, found before it is baked.
+// Estimates the amount of work of a bake beforehand.
 #include <cmath>
 #include <tuple>
 
@@ -8,7 +8,7 @@
 namespace woodcock {
 
 Error Baker::tooMuch(double voxels) const {
-    // What varies grows with surfaces: a factor of two in size is one of four in voxels.
+    // Varying voxels grow like surfaces: a factor of two in size is one of four in voxels.
     const double factor = std::max(std::sqrt(voxels / settings_.mostVoxels), 1.1);
     return inputError(
         "the recipe would be evaluated at about {:.2g} voxels; the limit is {:.2g}. Make voxels "
@@ -36,7 +36,7 @@ double Baker::guessVoxels() {
     }
 }
 
-/// Fills what is constant on a coarse scale, and notes what is not.
+/// Fills regions that are constant on a coarse scale, and lists the others.
 void Baker::findPieces() {
     constexpr std::size_t most = 300'000;
     std::atomic<std::size_t> count{0};

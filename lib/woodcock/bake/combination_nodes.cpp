@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made of the values of other nodes at the same place. A scalar beside vectors counts for
-// each of their channels.
+// Nodes that combine the values of other nodes at the same point. A scalar among vectors is used
+// for each of their channels.
 #include <cmath>
 
 #include "woodcock/bake/node_reader.h"
@@ -44,8 +44,8 @@ struct Most {
 Graph::Entry least(NodeReader& r) { return ofList(r, Least()); }
 Graph::Entry most(NodeReader& r) { return ofList(r, Most()); }
 
-/// The order of the inputs makes no difference: from the least, less the more the others are near.
-/// Two surfaces meet in a fillet `width` wide. `sign` -1 makes it the greatest.
+/// The least input, lowered where others are near it; the order of inputs does not matter. Two
+/// surfaces meet in a fillet `width` wide. `sign` -1 makes it the greatest.
 Graph::Entry smooth(NodeReader& r, double sign) {
     const double width = r.number("width", positive);
     const int channels = r.inputs("inputs");
@@ -98,7 +98,8 @@ Graph::Entry mix(NodeReader& r) {
 
 double smoothStep(double t) { return t * t * (3 - 2 * t); }
 
-/// From one range of values to another, straight or with soft ends, held beyond unless told not to.
+/// Maps one range of values to another, linearly or with soft ends; clamped outside unless told
+/// otherwise.
 Graph::Entry remap(NodeReader& r) {
     static const std::vector<std::string> profiles{"linear", "smooth", "extend"};
     const auto ends = [&r](std::string_view key, double a, double b) {
@@ -153,8 +154,8 @@ Graph::Entry displace(NodeReader& r) {
                 [=](Intervals in) { return in[0] - in[1] * amount; })};
 }
 
-/// Eats a density away where `by` is high: what is above amount x by is stretched to [0, 1]
-/// (Schneider 2015, "The real-time volumetric cloudscapes of Horizon Zero Dawn").
+/// Erodes a density where `by` is high: values above amount x by are stretched to [0, 1] (Schneider
+/// 2015, "The real-time volumetric cloudscapes of Horizon Zero Dawn").
 Graph::Entry erode(NodeReader& r) {
     const double amount = r.number("amount", {0, 0.999});
     r.input("input"), r.input("by");
@@ -182,7 +183,7 @@ Graph::Entry power(NodeReader& r) {
                 channels, [value](Numbers in) { return value(in[0]); },
                 [value](Intervals in) {
                     const Interval v = rising(in[0], value);
-                    // The library's pow need not rise in its last digit.
+                    // The library's pow may not be monotonic in its last digit.
                     return Interval{v.lower - 1e-15 * std::abs(v.lower),
                                     v.upper + 1e-15 * std::abs(v.upper)};
                 })};
@@ -246,7 +247,7 @@ Graph::Entry length(NodeReader& r) {
     return {.node = std::make_unique<LengthOf>()};
 }
 
-/// Colours between those at given values, in straight lines.
+/// Colours, interpolated linearly between those at given values.
 class ColourRamp : public Node {
 public:
     struct Stop {

@@ -9,7 +9,8 @@
 
 namespace woodcock {
 
-/// A field's trilinear interpolation as a node; at its own voxels' positions, their very values.
+/// A field's trilinear interpolation as a node. At the positions of its own voxels it gives exactly
+/// their values.
 std::shared_ptr<const Node> gridNode(Field field, const Affine3d& worldFromIndex);
 
 }  // namespace woodcock

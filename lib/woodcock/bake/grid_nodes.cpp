@@ -16,7 +16,8 @@ namespace woodcock {
 
 namespace {
 
-/// A grid's trilinear interpolation. At its own voxels' positions it gives their very values.
+/// A grid's trilinear interpolation. At the positions of its own voxels it gives exactly their
+/// values.
 class GridNode : public Node {
 public:
     GridNode(Field field, const Affine3d& worldFromIndex)
@@ -30,7 +31,7 @@ public:
                   std::span<double* const> out) const override {
         for (std::size_t i = 0; i < points.count; ++i) {
             Vec3d p = field_.nearSupport(indexFromWorld_.point(points[i]));
-            for (int a = 0; a < 3; ++a)  // the inverse transform's rounding is no interpolation
+            for (int a = 0; a < 3; ++a)  // rounding of the inverse transform must not interpolate
                 if (const double whole = std::round(p[a]); std::abs(p[a] - whole) < 1e-7)
                     p[a] = whole;
             for (std::size_t c = 0; c < out.size(); ++c)
@@ -100,7 +101,7 @@ Graph::Entry grid(NodeReader& r) {
     return {.node = gridNode(std::move(loaded.field), loaded.worldFromIndex)};
 }
 
-/// Signed distance to a mesh, found as a grid: true to `band` on both sides, then level.
+/// Signed distance to a mesh, from a grid: right up to `band` on both sides, then constant.
 Graph::Entry mesh(NodeReader& r) {
     const std::filesystem::path file = r.file();
     const TriangleMesh triangles = readMesh(file);

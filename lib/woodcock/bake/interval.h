@@ -7,7 +7,7 @@
 
 namespace woodcock {
 
-/// What a value lies in, ends included.
+/// An interval of values, both ends included.
 struct Interval {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
@@ -45,7 +45,7 @@ inline Interval max(Interval a, Interval b) {
 inline Interval clamp(Interval a, double lower, double upper) {
     return {std::clamp(a.lower, lower, upper), std::clamp(a.upper, lower, upper)};
 }
-/// Values that lie in both; a function's own range tightens what is known of it.
+/// The intersection: a function's own range tightens its bounds.
 inline Interval intersect(Interval a, Interval b) {
     return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};
 }
@@ -54,7 +54,7 @@ inline Interval abs(Interval a) {
     if (a.upper <= 0) return {-a.upper, -a.lower};
     return {0, std::max(-a.lower, a.upper)};
 }
-/// The image under a function that never falls.
+/// The image under a function that is nowhere decreasing.
 template <class F>
 Interval rising(Interval a, F f) {
     return {f(a.lower), f(a.upper)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What another node says at moved points.
+// Nodes that evaluate another node at moved points.
 #include <cmath>
 
 #include "woodcock/bake/node_reader.h"
@@ -9,7 +9,7 @@ namespace woodcock {
 
 namespace {
 
-/// Grown by what rounding may add.
+/// Enlarged by the possible rounding.
 Box3d padded(Box3d box) {
     for (int i = 0; i < 3; ++i) {
         const double slack = 1e-12 * (std::abs(box.lower[i]) + std::abs(box.upper[i]));
@@ -43,7 +43,7 @@ private:
     Vec3d amount_;
 };
 
-/// Places a thing: scaled, turned about x, y and z in this order, and moved.
+/// Transforms a node: scaled, rotated about x, y and z in this order, and moved.
 class Placement : public Mapping {
 public:
     explicit Placement(const Affine3d& worldFromThing)

@@ -29,22 +29,22 @@ struct Values {
 };
 using Bounds = std::array<Interval, 3>;
 
-/// A function of space: a piece of a recipe. Its inputs are the values of other nodes at the same
-/// points. Nodes are shared by threads and keep no state.
+/// A function of space, as a part of a recipe. Its inputs are the values of other nodes at the same
+/// points. Nodes are shared by threads and have no state.
 class Node {
 public:
     virtual ~Node() = default;
 
     virtual int channels() const { return 1; }  ///< 1 or 3
-    /// Fills out[c][i] for each channel and point. What is computed for a point must not depend on
-    /// the others of its batch: that makes sparse evaluation equal dense evaluation.
+    /// Fills out[c][i] for each channel and point. The values at a point must not depend on the
+    /// other points of a batch: so sparse evaluation equals dense evaluation.
     virtual void evaluate(const Points& points, std::span<const Values> inputs,
                           std::span<double* const> out) const = 0;
     /// Contains every value that evaluate() can give for points in the box.
     virtual Bounds bound(const Box3d& box, std::span<const Bounds> inputs) const = 0;
 };
 
-/// A node that hands on another node's values at moved points. Its inputs are taken at its own
+/// A node that returns another node's values at moved points. Its inputs are evaluated at its own
 /// points.
 class Mapping {
 public:
@@ -57,19 +57,19 @@ public:
 
 struct VdbGrids;
 
-/// A node whose inputs are made as grids before it can say anything: the first one where it is not
-/// zero, the others there too.
+/// A node that needs its inputs as grids before it can be evaluated: the first input where it is
+/// not zero, the others at the same voxels.
 class GridStage {
 public:
     virtual ~GridStage() = default;
     virtual std::vector<std::string> gridNames() const = 0;  ///< of the inputs
-    /// Asks `goesOn` now and then, from any thread but one at a time, and returns nothing where
-    /// that says no.
+    /// Calls `goesOn` now and then, by one thread at a time; returns null where it returns false.
     virtual std::shared_ptr<const Node> run(VdbGrids& inputs,
                                             const std::function<bool()>& goesOn) const = 0;
 };
 
-/// The pieces of a recipe; indices are those of `nodes`, and an input comes before its user.
+/// The nodes of a recipe. Indices are those of `nodes`; an input comes before the nodes that use
+/// it.
 struct Graph {
     struct Entry {
         std::shared_ptr<const Node> node = nullptr;        ///< either this

@@ -68,7 +68,7 @@ int NodeReader::integer(std::string_view key, int otherwise, int lower, int uppe
 }
 
 std::uint64_t NodeReader::seed() {
-    constexpr NumberRange whole{-0x1p53, 0x1p53};  // what a double counts without gaps
+    constexpr NumberRange whole{-0x1p53, 0x1p53};  // integers that a double holds exactly
     const double recipes = parameters_->at("seed"), own = number("seed", 0, whole);
     if (!whole.contains(recipes))
         throw table_.error("cannot use the recipe's seed, {}: it {}", recipes,

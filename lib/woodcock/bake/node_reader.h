@@ -18,12 +18,12 @@ namespace woodcock {
 
 class ParameterSet;
 
-/// One node's table in a recipe, as those read it who make nodes. Numbers may be expressions of the
-/// recipe's parameters. Every key that is asked for counts as known; finish() refuses the others.
+/// Reads one node's table of a recipe. Numbers may be expressions of the recipe's parameters. Every
+/// key that is read counts as known; finish() refuses the others.
 class NodeReader {
 public:
-    /// Adds what a key names to the graph (a node's name, a number, or a table that is a node of
-    /// its own) and returns its entry.
+    /// Adds the input of a key to the graph (a node's name, a number, or a table that is a node
+    /// itself), and returns its entry.
     using AddInput = std::function<int(const TomlValue&)>;
 
     NodeReader(TomlTable table, const ParameterSet& parameters, std::filesystem::path base,
@@ -85,8 +85,8 @@ Graph::Entry makeNode(NodeReader& reader);
 
 std::vector<std::string> nodeTypes();  ///< all that makeNode knows, sorted
 
-// Makers of the kinds of nodes, one for each type; makeNode() calls them. Each file of nodes offers
-// its own list.
+// The functions that make nodes, one for each type; makeNode() calls them. Each file of nodes
+// offers its own list.
 struct NodeType {
     const char* name;
     Graph::Entry (*make)(NodeReader&);

@@ -82,7 +82,7 @@ NoiseGradient gradientSlice(Vec3d p, std::uint64_t seed) {
     return sum;
 }
 
-/// Noises of two slices share their places of zero, so the seed of a slice is its own.
+/// Noises of two slices are zero at the same points, so each slice has a seed of its own.
 std::uint64_t sliceSeed(std::uint64_t seed, std::int64_t slice) {
     return hashOf(seed, static_cast<std::uint64_t>(slice));
 }
@@ -148,9 +148,9 @@ Vec3d cellPoint(std::int64_t x, std::int64_t y, std::int64_t z, const Lattice& t
     return blend > 0 ? now * (1 - blend) + place(time.cell + 1) * blend : now;
 }
 
-/// The nearest two of the points of the 27 cells around p, or the nearest alone (as both);
-/// `pointOf(i, j, k)` gives the one of the cell that is that far away. Cells that cannot hold one
-/// are passed over.
+/// The nearest two points of the 27 cells around p, or only the nearest (as both). `pointOf(i, j,
+/// k)` gives the point of the cell at that offset. Cells that cannot hold a nearer point are
+/// skipped.
 template <bool Two, class PointOf>
 CellDistances nearestPoints(const Lattice (&at)[3], const PointOf& pointOf) {
     double first = 1, second = 1;  // squared
@@ -159,7 +159,7 @@ CellDistances nearestPoints(const Lattice (&at)[3], const PointOf& pointOf) {
         gap[a][0] = at[a].t * at[a].t, gap[a][1] = 0;
         gap[a][2] = (1 - at[a].t) * (1 - at[a].t);
     }
-    constexpr int order[]{1, 0, 2};  // the own cell first
+    constexpr int order[]{1, 0, 2};  // its own cell first
     for (const int i : order)
         for (const int j : order)
             for (const int k : order) {

@@ -123,8 +123,8 @@ private:
 };
 
 /// The curl of three noises: a flow without divergence (Bridson et al. 2007), about 1 in length.
-/// Each octave is held to a length of 1.5 (and has divergence in those few places), so that what is
-/// warped by it has narrow bounds.
+/// Each octave is clamped to a length of 1.5 (where it has divergence, in few places), so that
+/// warps by it have narrow bounds.
 class CurlNode : public Node {
 public:
     explicit CurlNode(const Fractal& fractal) : f_(fractal) {}

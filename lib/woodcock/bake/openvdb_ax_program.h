@@ -8,17 +8,17 @@
 
 namespace woodcock {
 
-/// Compiled AX code. It lives in a library of its own, woodcock_ax, which is loaded when it is
-/// first needed: OpenVDB AX brings LLVM, which every start of the program would pay for otherwise.
+/// Compiled AX code. It is in a library of its own, woodcock_ax, which is loaded when it is first
+/// needed: OpenVDB AX loads LLVM, which would slow every start of the program.
 class AxProgram {
 public:
     virtual ~AxProgram() = default;
-    /// Asks `goesOn` now and then, from another thread, unless it is empty; returns false where
-    /// that said no, and the grids are of no use then.
+    /// Calls `goesOn`, unless it is empty, now and then from another thread. If that returns false,
+    /// so does run(), and the grids are void.
     virtual bool run(openvdb::GridPtrVec& grids, const std::function<bool()>& goesOn) const = 0;
 };
 
-/// What the library offers, as woodcockCompileAx; see AxExpression. The program is the caller's.
+/// The library's function woodcockCompileAx; see AxExpression. The caller owns the program.
 using CompileAx = AxProgram*(const std::string& code, const std::string& name);
 
 }  // namespace woodcock

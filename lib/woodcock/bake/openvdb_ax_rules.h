@@ -8,8 +8,8 @@
 
 namespace woodcock {
 
-/// Reports what AX compiles though it could end the program or make its result depend on threads;
-/// see AxExpression.
+/// Reports code that AX compiles although it could end the program, or make its result depend on
+/// threads; see AxExpression.
 void checkAxRules(
     const openvdb::ax::ast::Tree& code,
     const std::function<void(const std::string& message, const openvdb::ax::ast::Node&)>& report);

@@ -17,7 +17,7 @@
 
 namespace woodcock {
 
-// What the threads of a bake make, until it is put together.
+// The results of a bake's threads, until they are joined.
 
 /// A cube of voxels in index space.
 struct Region {
@@ -37,7 +37,7 @@ inline openvdb::Vec3s treeValue<openvdb::Vec3STree>(const std::array<float, 3>& 
     return {v[0], v[1], v[2]};
 }
 
-/// What one thread has made of one output.
+/// One thread's part of one output.
 template <class Tree>
 struct Parts {
     using Leaf = typename Tree::LeafNodeType;
@@ -97,7 +97,7 @@ struct OutputParts {
     }
 };
 
-/// One tree of what all threads have made.
+/// Joins the parts of all threads into one tree.
 template <class Grid, class P>
 openvdb::GridBase::Ptr makeGrid(const std::vector<P*>& parts, double tolerance) {
     auto grid = Grid::create();

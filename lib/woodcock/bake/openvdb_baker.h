@@ -14,10 +14,10 @@
 
 namespace woodcock {
 
-/// What is known of an output in a region.
+/// The bounds of an output in a region.
 enum class Status { Empty, Constant, Varying };
 
-/// What one thread holds.
+/// The state of one thread.
 struct Worker {
     Program::Workspace work;
     std::vector<OutputParts> outputs;
@@ -26,7 +26,7 @@ struct Worker {
     std::uint64_t evaluatedLeaves = 0;
 };
 
-/// What a bake takes of a recipe; stages have been run.
+/// A recipe, ready to be baked: its stages have been run.
 struct Plan {
     Graph graph;
     std::vector<RecipeOutput> outputs;
@@ -34,7 +34,7 @@ struct Plan {
     std::string boundsPlace;
 };
 
-/// Bakes one plan: finds the pieces where something varies, then bakes them leaf by leaf.
+/// Bakes one plan: finds the pieces where values vary, then bakes them leaf by leaf.
 class Baker {
 public:
     Baker(const Plan& recipe, const BakeSettings& settings, const BakeProgress& progress)

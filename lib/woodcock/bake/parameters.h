@@ -20,7 +20,7 @@ struct Parameter {
     bool integer = false;
 };
 
-/// A recipe's parameters and what it derives from them, and arithmetic with both.
+/// A recipe's parameters and derived numbers, and expressions of both.
 class ParameterSet {
 public:
     ParameterSet();
@@ -30,10 +30,10 @@ public:
 
     /// Errors: Input (of a default outside its range, say), with the place.
     void declare(const std::string& name, const TomlValue& value);
-    /// `origin` names where the value comes from, such as "--set size=3". Errors: Usage, when there
-    /// is no such parameter, or the value is outside its range.
+    /// `origin` is the source of the value, such as "--set size=3". Errors: Usage, when there is no
+    /// such parameter, or the value is outside its range.
     void set(const std::string& name, double value, std::string_view origin);
-    /// A number that follows from the others. Errors: Input, of expressions that need each other.
+    /// Adds a number that follows from others. Errors: Input, for expressions that need each other.
     void derive(const TomlTable& definitions);
 
     /// A number, or a string with an expression: + - * / ^, comparisons, c ? a : b, sin, cos, sqrt,

@@ -7,8 +7,8 @@
 
 namespace woodcock {
 
-/// A node that does the same to every point and channel: `value` takes a pointer to the inputs'
-/// values there, `range` one to their intervals.
+/// A node that applies one function to every point and channel. `value` takes a pointer to the
+/// values of the inputs, `range` one to their intervals.
 template <class Value, class Range>
 class Pointwise : public Node {
 public:
@@ -59,7 +59,7 @@ public:
     }
     Bounds bound(const Box3d& box, std::span<const Bounds>) const override {
         const Vec3d centre = box.centre();
-        // Rounding is on the safe side.
+        // Enlarged for rounding.
         const double reach = slope_ * length(box.size()) * 0.5,
                      slack = 1e-12 * (reach + length(centre));
         const Interval all = Interval::around(value_(centre), reach + slack);

@@ -26,7 +26,7 @@ int Program::add(const Graph& graph, int entry, int domain) {
     const auto d = static_cast<std::size_t>(domain), e = static_cast<std::size_t>(entry);
     if (stepOf_[d][e] >= 0) return stepOf_[d][e];
     const Graph::Entry& node = graph.entries[e];
-    // Nodes at moved points are steps anew for each move, and moves of moves multiply.
+    // A node at moved points is another step for each mapping, and nested mappings multiply.
     constexpr std::size_t mostSteps = 20000, mostNumbers = std::size_t{1} << 26;
     if (steps_.size() >= mostSteps || stepOf_.size() * graph.entries.size() > mostNumbers)
         throw inputError(

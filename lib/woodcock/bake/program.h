@@ -8,14 +8,14 @@
 
 namespace woodcock {
 
-/// A graph made ready to be evaluated: every node once for each set of points that it is asked at,
-/// in an order that has inputs before their users. Mappings open new sets of points.
+/// A graph, ready to be evaluated: each node is a step for each set of points at which it is
+/// needed. Inputs come before the steps that use them. Each mapping makes a new set of points.
 class Program {
 public:
     /// `roots` are entries of the graph, which must outlive the program.
     Program(const Graph& graph, std::span<const int> roots);
 
-    /// Room for one thread's values.
+    /// The memory for one thread's values.
     class Workspace {
         friend class Program;
         std::vector<double> numbers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clusters of spheres that melt into each other.
+// Clusters of spheres that blend into each other.
 #include <cmath>
 
 #include "woodcock/bake/node_reader.h"
@@ -18,14 +18,14 @@ struct Puff {
     double radius;
 };
 
-/// Signed distance to the nearest puff, less the more others are near: as smooth_min of them all.
+/// Signed distance to the nearest puff, lowered where others are near: the smooth_min of all puffs.
 class Puffs : public Node {
 public:
     Puffs(std::vector<Puff> puffs, double width) : puffs_(std::move(puffs)), width_(width) {}
 
     void evaluate(const Points& points, std::span<const Values>,
                   std::span<double* const> out) const override {
-        // Puffs too far from the whole box to be nearest or near add exactly nothing.
+        // Puffs that are too far from the whole box contribute exactly nothing.
         std::vector<Puff> close;
         const double farthest = distanceTo(points.box).upper + width_;
         for (const Puff& puff : puffs_)

@@ -178,7 +178,7 @@ private:
             throw mask.error("names an output that has a mask of its own");
     }
 
-    /// What a value stands for: a number, a node's name, or a node of its own.
+    /// The entry of a value: a number, a node's name, or a table that is a node.
     int addValue(const TomlValue& value) {
         if (value.isTable()) return addNode(value);
         if (!value.isText()) {

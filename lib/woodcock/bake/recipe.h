@@ -19,15 +19,16 @@ struct RecipeOutput {
     std::string name;
     int entry = 0;  ///< of the graph
     int channels = 1;
-    double tolerance = 0;     ///< values this near to zero are left out, and to each other, merged
-    std::optional<int> mask;  ///< made only where this other output is not empty
+    double tolerance =
+        0;  ///< values this close to zero are left out; values this close to each other are merged
+    std::optional<int> mask;  ///< computed only where this other output is not empty
     std::string place;        ///< in the recipe's file
 };
 
-/// What stands for the baked file in a recipe's preview.
+/// The placeholder of the baked file in a recipe's preview scene.
 inline constexpr const char* previewVolume = "${VOLUME}";
 
-/// Procedural media: functions of space, and what grids to make of them.
+/// A procedural medium: functions of space, and the grids to make of them.
 struct Recipe {
     std::string name, about;
     ParameterSet parameters;
@@ -36,19 +37,19 @@ struct Recipe {
     std::vector<RecipeOutput> outputs;
     std::string boundsPlace;
     std::vector<std::filesystem::path> files;  ///< that its nodes read
-    /// A scene that shows what was baked, whose file is "${VOLUME}" there; empty: none is given.
+    /// A scene that shows the baked file, which is "${VOLUME}" in it; empty: there is none.
     std::string preview;
     std::string previewPlace;
 };
 
-/// A recipe's text, and where it comes from.
+/// A recipe's text, and its source.
 struct RecipeText {
     std::string text;
     std::string name;                 ///< for messages: the file
     std::filesystem::path directory;  ///< that relative paths in it start from
 };
 
-/// "size=3": a parameter's new value, and the option that it was given by, for messages.
+/// "size=3": a parameter's new value, and the option that gave it, for messages.
 struct ParameterSetting {
     std::string name;
     double value = 0;

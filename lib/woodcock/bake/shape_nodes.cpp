@@ -83,8 +83,8 @@ Graph::Entry menger(NodeReader& r) {
             })};
 }
 
-/// Below a landscape: an image's first channel is its height, over x from left to right and z from
-/// top to bottom, bilinear between the pixels' centres and held beyond them.
+/// The inside below a height field. An image's first channel is the height, over x from left to
+/// right and z from top to bottom, bilinear between the pixels' centres and constant beyond them.
 Graph::Entry heightField(NodeReader& r) {
     const auto image = std::make_shared<Image>(readImage(r.file("image")));
     const Vec3d centre = r.vector("centre", {});
@@ -100,8 +100,8 @@ Graph::Entry heightField(NodeReader& r) {
             steepest = std::max(steepest, std::hypot((at(x + 1, y) - at(x, y)) / pixel.x,
                                                      (at(x, y + 1) - at(x, y)) / pixel.z) *
                                               size.y);
-    // Divided by its largest slope (of one axis in one cell, the other in the next) it is a lower
-    // bound of the distance.
+    // Divided by the largest slope (of one axis in one cell, of the other in the next), the height
+    // difference is a lower bound of the distance.
     const double scale = 1 / std::sqrt(1 + 2 * steepest * steepest);
     return {.node = ofPosition([=](Vec3d p) {
                 const double u = (p.x - centre.x + size.x / 2) / pixel.x - 0.5,

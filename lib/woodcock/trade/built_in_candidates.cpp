@@ -45,7 +45,7 @@ void addFieldChoices(std::vector<Candidate>& list, const SceneFacts& facts, Exte
                 fmt::format("render.storage={}", storageNames[i]));
     }
     if (extent == Extent::All) add(list, "nearest lookup", "render.lookup=nearest");
-    if (facts.cameraInside) return;  // whose surroundings no level of detail would coarsen
+    if (facts.cameraInside) return;  // no level of detail would be coarser around the camera
     for (const int pixels : strengths(extent, {1, 2, 4}))
         add(list, fmt::format("level of detail {}", pixels),
             fmt::format("render.level_of_detail={}", pixels));

@@ -13,7 +13,7 @@ namespace woodcock {
 namespace {
 
 /// Keys that a candidate may set beside volume[N].storage: those that concern how a picture is
-/// found, not what it shows.
+/// rendered, not what it shows.
 std::vector<std::string> allowedKeys() {
     std::vector<std::string> keys;
     for (const std::string& key : choiceKeys())
@@ -60,7 +60,7 @@ Candidate readCandidate(const TomlTable& table) {
     return candidate;
 }
 
-/// What a candidate renders, without where it was said.
+/// What a candidate renders, without its source.
 SceneDescription content(SceneDescription scene) {
     scene.places.clear();
     return scene;

@@ -17,13 +17,13 @@ struct Candidate {
     std::string quality;               ///< as of --quality; empty: what the scene says
     std::vector<std::string> choices;  ///< KEY=VALUE, as of --set
 
-    /// All of it as for --set.
+    /// All of its changes, as for --set.
     std::vector<std::string> overrides() const;
-    /// Where its choices come from; empty where nobody wrote it down.
+    /// The source of its choices; empty for built-in candidates.
     std::string papers() const;
 };
 
-/// What decides which choices mean something.
+/// Facts of a scene that decide which choices have an effect.
 struct SceneFacts {
     bool grids = false;  ///< media that are looked up
     bool scattering = false;
@@ -33,29 +33,31 @@ struct SceneFacts {
     bool cameraInside = false;  ///< the media's box
     double meanRadiance = 0;    ///< of the picture, roughly
 };
-/// All but the mean radiance, of a complete description and the scene that it gives.
+/// The facts, but for the mean radiance, of a complete description and its scene.
 SceneFacts sceneFacts(const SceneDescription& description, const Scene& scene);
 
-/// Every choice in a few strengths, or the most promising ones in one, where time is short.
+/// Every choice in a few strengths; or the most promising choices in one strength, for short
+/// budgets.
 enum class Extent { All, Few };
 /// The scene as it is, each choice by itself, and the qualities.
 std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent);
 
-/// Those of a TOML file: [[candidate]] name = "...", quality = "...", set = ["render.clamp=10"].
-/// Throws Error{Input} on what cannot be compared: a key that is no choice, two of one name, none.
+/// The candidates of a TOML file: [[candidate]] name = "...", quality = "...", set =
+/// ["render.clamp=10"]. Throws Error{Input} on a key that candidates may not set, on two candidates
+/// of one name, and on a file without candidates.
 std::vector<Candidate> readCandidates(const std::filesystem::path& file);
 
-/// The scene with so many more overrides.
+/// The scene with more overrides.
 using ParseScene = std::function<SceneDescription(const std::vector<std::string>& overrides)>;
 
-/// A candidate and the scene that it draws.
+/// A candidate and the scene that it renders.
 struct ResolvedCandidate {
     Candidate candidate;
     SceneDescription scene;
 };
 /// Applies each candidate to `complete` (see completeScene), which `parse` gives without overrides.
-/// `strict`, for those of a user: throws Error{Input} where a candidate contradicts itself or the
-/// scene, or two come to the same; otherwise these are left out.
+/// `strict`, for a user's candidates: throws Error{Input} where a candidate contradicts itself or
+/// the scene, or two are equal. Otherwise such candidates are left out.
 std::vector<ResolvedCandidate> resolveCandidates(const std::vector<Candidate>& candidates,
                                                  const SceneDescription& complete,
                                                  const ParseScene& parse, bool strict);

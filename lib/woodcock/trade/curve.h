@@ -13,10 +13,11 @@ struct CurvePoint {
     double x = 0, y = 0, se = 0;
 };
 
-/// The exponent of the power of x that runs nearest to the points: least squares of log y over log
-/// x, all points alike, as none of these curves is a power law throughout. Its error is what the
-/// scatter about that line says, or what the points' own errors do, whichever is the larger. Points
-/// that are not positive are left out; fewer than two places leave slope 0 with an infinite error.
+/// The exponent of the power of x that fits the points best: least squares of log y over log x,
+/// with equal weights, as none of these curves is a power law throughout. Its error follows from
+/// the scatter about that line, or from the points' own errors, whichever is larger. Points that
+/// are not positive are left out. With fewer than two different x the slope is 0 with an infinite
+/// error.
 Measured fitSlope(const std::vector<CurvePoint>& points);
 
 struct CurveSeries {
@@ -26,7 +27,7 @@ struct CurveSeries {
     Measured slope() const { return fitSlope(points); }
 };
 
-/// How something grows with something.
+/// A curve of measured costs.
 struct Curve {
     std::string name, xLabel, yLabel, note;
     std::vector<CurveSeries> series;

@@ -96,7 +96,7 @@ Measured relativeBias(const SeedMean& a, const SeedMean& reference) {
     const double size = static_cast<double>(a.mean.size());
     double variance = 0;
     for (std::size_t i = 0; i < a.mean.size(); i += 3) {
-        // A pixel's channels share their paths: as if they were fully correlated.
+        // The channels of a pixel share paths, so they are taken as fully correlated.
         const auto deviation = [i](const SeedMean& m) {
             return std::sqrt(m.variance[i]) + std::sqrt(m.variance[i + 1]) +
                    std::sqrt(m.variance[i + 2]);

@@ -9,13 +9,13 @@
 
 namespace woodcock {
 
-// What pictures of several seeds say of the error that they share. Errors are relative squares:
-// mean over pixels and channels of (difference)^2 / (reference^2 + eps^2), eps being a hundredth of
-// the reference's mean. Pixels are independent, so standard errors come from the scatter of their
-// terms; where these differ by more than noise, as a bias that varies over the picture does, that
-// overstates them.
+// Estimates of noise and bias from pictures of several seeds. Errors are relative squares: mean
+// over pixels and channels of (difference)^2 / (reference^2 + eps^2), where eps is a hundredth of
+// the reference's mean. Pixels are independent, so standard errors follow from the scatter of their
+// terms. Where the terms differ by more than noise, as with a bias that varies over the picture,
+// the standard errors are too large.
 
-/// Three channels a pixel.
+/// Three channels for each pixel.
 using Pixels = std::vector<float>;
 
 /// Mean over seeds, and the variance of that mean, of each number.
@@ -24,7 +24,7 @@ struct SeedMean {
     std::size_t seeds = 0;
     std::size_t pixels() const { return mean.size() / 3; }
 };
-/// Of two seeds or more, of one size.
+/// The mean of two seeds or more, of one size.
 SeedMean meanOfSeeds(std::span<const Pixels> seeds);
 
 /// 1 / (reference^2 + eps^2), divided by the number of numbers: relative squares are sums of these
@@ -36,7 +36,7 @@ std::vector<double> relativeWeights(const SeedMean& reference);
 /// where there is none, so it may be negative.
 Measured squaredBias(const SeedMean& a, const SeedMean& b, std::span<const double> weights);
 
-/// The error that noise leaves in a mean over seeds.
+/// The error by noise of a mean over seeds.
 Measured errorOfMean(const SeedMean& mean, std::span<const double> weights);
 
 /// The error of each seed's picture against the truth that `reference` estimates, whose own error
@@ -44,7 +44,7 @@ Measured errorOfMean(const SeedMean& mean, std::span<const double> weights);
 std::vector<double> errorsOfSeeds(std::span<const Pixels> seeds, const SeedMean& reference,
                                   std::span<const double> weights);
 
-/// What each seed tells of the variance of one picture: their mean is unbiased.
+/// Estimates, one from each seed, of the variance of one picture; their mean is unbiased.
 std::vector<double> variancesOfSeeds(std::span<const Pixels> seeds, const SeedMean& mean,
                                      std::span<const double> weights);
 

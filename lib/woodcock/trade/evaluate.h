@@ -7,7 +7,7 @@
 
 namespace woodcock {
 
-/// What was rendered.
+/// The rendered pictures.
 struct TradeMeasurements {
     struct OfCandidate {
         Candidate candidate;
@@ -20,12 +20,12 @@ struct TradeMeasurements {
     std::vector<OfCandidate> candidates;
     std::vector<Stage> reference;  ///< one for each seed
 
-    /// Takes out what round k, from 0, has rendered.
+    /// Removes the pictures of round k, from 0.
     void dropRound(int k);
 };
 
-/// What it says. FLIP is looked for as long as `flipSeconds` last. Throws Error{Usage} where the
-/// reference is noisier than what it is to judge.
+/// Evaluates the pictures. FLIP is computed as long as `flipSeconds` last. Throws Error{Usage}
+/// where the reference is noisier than the candidates.
 TradeResult evaluateTrade(const TradeMeasurements& measurements, double flipSeconds);
 
 }  // namespace woodcock

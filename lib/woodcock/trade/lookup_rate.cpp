@@ -22,8 +22,8 @@ Field fieldOfBricks(std::size_t bricks) {
 
 namespace {
 
-/// A loop for each kind: a choice within would be a conditional move, which waits for the value
-/// that it does not take, so that all looks would be dependent ones.
+/// A loop for each kind. A choice inside one loop would be a conditional move, which waits for both
+/// values; then all lookups would be dependent.
 template <bool dependent>
 double look(const Field& field, std::uint64_t count, std::uint64_t seed) {
     const Box3d& box = field.support();

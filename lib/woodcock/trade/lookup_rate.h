@@ -7,13 +7,13 @@
 
 namespace woodcock {
 
-/// A cube of so many bricks (about), each of which varies: a field that has nothing but values.
+/// A cube of about so many bricks, all of which vary: a field without empty space.
 Field fieldOfBricks(std::size_t bricks);
 
-/// Reads a field at `count` random places of its support, by one tap of stochastic interpolation as
-/// the trackers do, and returns the sum of what it found. `dependent`: each place is known once the
-/// value before it is, so that a look has to end before the next begins; else many may be under way
-/// at once. These are the limits of what a path tracer can ask of the machine.
+/// Reads a field at `count` random points of its support, by one tap of stochastic interpolation as
+/// the trackers do, and returns the sum of the values. `dependent`: each point depends on the value
+/// before it, so a lookup has to end before the next begins; else many may run at once. These are
+/// the machine's limits for a path tracer.
 double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std::uint64_t seed);
 
 }  // namespace woodcock

@@ -13,7 +13,8 @@
 namespace woodcock {
 namespace {
 
-/// What decides what is loaded and built. The size of the picture counts with levels of detail.
+/// The settings that decide what is loaded and built. With levels of detail the size of the picture
+/// matters.
 SceneDescription loadKey(SceneDescription scene) {
     const RenderDescription render = scene.render;
     scene.places.clear();
@@ -86,7 +87,7 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
     double seconds = 0, cpuSeconds = 0;
     int done = 0;
     for (const int count : samples) {
-        // Where adaptive samples go depends on those before: such a picture is rendered at once.
+        // Adaptive samples depend on those before them, so such a picture is rendered in one go.
         const bool atOnce = settings.adaptive;
         if (atOnce) film.reset(), seconds = cpuSeconds = 0;
         settings.firstSample = atOnce ? 0 : done;

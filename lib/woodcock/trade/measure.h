@@ -33,7 +33,7 @@ struct BuiltScene {
     std::size_t bytes = 0;   ///< held by fields and majorants
 };
 
-/// Loads each scene once: candidates that differ in what happens while rendering share theirs.
+/// Loads each scene once: candidates that differ only in rendering share it.
 class SceneStore {
 public:
     const BuiltScene& get(const SceneDescription& scene);
@@ -47,8 +47,8 @@ private:
     std::list<Entry> entries_;
 };
 
-/// What there is to render of a candidate, at the size at which it is measured. Levels of detail
-/// are those of the scene's own size, at which it was loaded.
+/// A candidate to render, at the size at which it is measured. Levels of detail are those of the
+/// scene's own size, at which it was loaded.
 struct Subject {
     const Scene* scene = nullptr;
     RenderDescription render;
@@ -59,10 +59,10 @@ struct Subject {
     }
 };
 
-/// Whether to go on; asked a few times a second.
+/// Returns whether to go on; called a few times a second.
 using GoOn = std::function<bool()>;
 
-/// A picture after some number of samples, and what all up to then took.
+/// A picture after some number of samples, and the cost of all samples so far.
 struct Stage {
     int samples = 0;  ///< per pixel, or as much work
     Pixels pixels;
@@ -70,7 +70,7 @@ struct Stage {
     double noise = 0;  ///< Film::noise()
 };
 /// Renders `samples` samples per pixel; the stages are at these counts, which rise. Absent where
-/// `goOn` said no.
+/// `goOn` returned false.
 std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint64_t seed,
                                                const std::vector<int>& samples, int threads,
                                                const GoOn& goOn);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double tieWidth = 2;  // standard errors of the difference
 
-/// The least of `value` (absent: out of the race), and those that `difference` from it does not
-/// tell apart.
+/// The candidate of least `value` (absent: it does not take part), and those whose `difference`
+/// from it is not significant.
 template <class Value, class Difference>
 std::optional<Winner> leastOf(const std::vector<TradeModel>& models, const Value& value,
                               const Difference& difference) {

@@ -10,7 +10,7 @@ namespace woodcock {
 
 // How the error of a picture falls with time: error(t) = bias^2 + variance x seconds per sample /
 // t. Errors are relative squares (relMSE), see estimate.h. Time is that of rendering, as
-// --time-limit counts it: what loading takes is the same for all, or nearly.
+// --time-limit counts it; loading takes nearly the same for all.
 
 struct TradeModel {
     double secondsPerSample = 0;  ///< of every pixel once
@@ -20,9 +20,10 @@ struct TradeModel {
     std::vector<double> costs;
 
     double cost() const { return meanOf(costs).value; }
-    /// What the bias adds to the error: estimates below zero are noise.
+    /// The bias's part of the error; estimates below zero are noise and count as 0.
     double biasError() const { return squaredBias.value > 0 ? squaredBias.value : 0; }
-    /// With as much bias as two standard errors leave possible: for who will not look twice.
+    /// The error with the bias raised by two standard errors: a safe choice without a second
+    /// measurement.
     TradeModel careful() const;
     /// Whole samples of every pixel within `seconds`; 0 where there is no time for one.
     double samplesIn(double seconds) const;
@@ -32,18 +33,18 @@ struct TradeModel {
     std::optional<Measured> secondsTo(double error) const;
 };
 
-/// Error of a less that of b after so many seconds, which both use for a sample at least.
+/// Error of a minus that of b after so many seconds, in which both render at least a sample.
 Measured errorDifference(const TradeModel& a, const TradeModel& b, double seconds);
 
-/// Who does best by some measure: an index, and those that two standard errors of the difference do
-/// not tell from it.
+/// The best candidate by some measure: its index, and those within two standard errors of the
+/// difference.
 struct Winner {
     std::size_t best = 0;
     std::vector<std::size_t> tied;
 };
-/// The least error after so many seconds; absent where nobody has time for a sample.
+/// The candidate of least error after so many seconds; absent where none has time for a sample.
 std::optional<Winner> bestAt(const std::vector<TradeModel>& models, double seconds);
-/// The least time to an error; absent where nobody reaches it.
+/// The candidate of least time to an error; absent where none reaches it.
 std::optional<Winner> fastestTo(const std::vector<TradeModel>& models, double error);
 
 /// The lower envelope of the candidates' errors over time, from the first sample of any to

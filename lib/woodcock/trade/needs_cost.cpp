@@ -17,7 +17,7 @@ constexpr std::array<bool Needs::*, needNames.size()> members{
     &Needs::lightSampling, &Needs::localLights, &Needs::surfaces};
 
 constexpr int fewestPairs = 3, usualPairs = 12;
-/// One run: long beside the clock's ticks, short beside what else the machine does.
+/// Seconds of one run: long beside the clock's ticks, short beside other work of the machine.
 constexpr double shortestRun = 0.01, longestRun = 0.3;
 constexpr int largestSide = 64;
 
@@ -84,14 +84,14 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
     run(forced, settings);
     while (true) {
         settings.seed = seed + static_cast<std::uint64_t>(cost.pairs);
-        // A B, B A, A B: what drifts, drifts for both.
+        // A B, B A, A B: a drift of the machine affects both.
         const bool swap = cost.pairs % 2;
         const Run first = run(swap ? forced : scene, settings);
         const Run second = run(swap ? scene : forced, settings);
         const Run &a = swap ? second : first, &b = swap ? first : second;
         without.push_back(a.seconds), with.push_back(b.seconds);
         ratios.push_back(b.seconds / a.seconds);
-        // A single sample's variance is unknown, and none at all bears no ratio.
+        // The variance of a single sample is unknown, and a variance of zero has no ratio.
         if (a.variance > 0 && std::isfinite(a.variance))
             variances.push_back(b.variance / a.variance);
         cost.sameBits &= sameBits(a.result.film, b.result.film);

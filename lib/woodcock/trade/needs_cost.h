@@ -11,7 +11,7 @@
 
 namespace woodcock {
 
-/// What a scene may need of the path loop: the members of Needs that its code tells apart.
+/// A need of the path loop: a member of Needs for which it has code of its own.
 enum class Need {
     Chromatic,
     Scattering,
@@ -26,21 +26,22 @@ inline const std::array<std::string, 6> needNames{
 
 bool has(const Needs& needs, Need need);
 
-/// The scene, to be drawn as if it had a need that it has not: the same picture up to noise, by the
-/// more general way. Grey media as three channels that agree, no surfaces as an empty set of them.
+/// The scene, rendered as if it had a need that it does not have: the same picture up to noise, by
+/// more general code. Grey media have three equal channels, and a scene without surfaces has an
+/// empty set of them.
 Scene forceNeed(Scene scene, Need need);
 
 /// Whether radiance and alpha of two films of equal size agree to the last bit.
 bool sameBits(const Film& a, const Film& b);
 
-/// What a feature costs a scene that does not need it.
+/// The cost of a feature for a scene that does not need it.
 struct NeedCost {
     Need need{};
     bool needed = false;  ///< then there is nothing to compare, and the rest is empty
-    /// Processor seconds of one sample of every pixel: with the need pretended, and as the scene
-    /// is; and the median of the ratios of runs beside each other.
+    /// Processor seconds of one sample of every pixel: with the need forced, and as the scene is;
+    /// and the median of the ratios of neighbouring runs.
     Measured with{}, without{}, ratio{};
-    /// Median of the ratios of the variances of a sample: some general ways are also noisier.
+    /// Median of the ratios of the variances of a sample: some general code is also noisier.
     Measured variance{};
     int pairs = 0;          ///< of runs
     bool sameBits = false;  ///< all pictures were the same to the last bit
@@ -48,7 +49,7 @@ struct NeedCost {
 
     /// Time x variance with the need over that without: the ratio of times to the same noise.
     Measured cost() const;
-    /// A specialisation earns its place where the general way costs a tenth more.
+    /// A specialisation is worth its code where the general code costs a tenth more.
     static constexpr double leastRatio = 1.1;
     bool earns() const { return cost().value >= leastRatio; }
 };
@@ -59,9 +60,9 @@ struct NeedsCostOptions {
     std::function<void(const NeedCost&)> onResult = {};
 };
 
-/// Of every need. The picture is drawn small, by one thread, in pairs of runs with and without the
-/// need, in turns and with the same random numbers. Throws Error{Usage} where the budget is too
-/// small for three pairs of each need.
+/// Measures every need. A small picture is rendered by one thread, in pairs of runs with and
+/// without the need, alternately and with the same random numbers. Throws Error{Usage} where the
+/// budget is too small for three pairs of each need.
 std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
                                 const NeedsCostOptions& options);
 

@@ -7,15 +7,15 @@
 namespace woodcock {
 namespace {
 
-/// One picture that takes part in the sharing.
+/// One picture among which the budget is shared.
 struct Share {
     double perSample = 0;  ///< seconds of one sample from all seeds
     double root = 0;       ///< of weight x variance x seconds
     int least = 1, samples = 0;
 };
 
-/// Gives each picture its part; those whose part is below the least get that, and the others share
-/// what remains.
+/// Gives each picture its part. Pictures whose part is below the least get the least, and the
+/// others share the rest.
 void share(std::vector<Share>& shares, double seconds) {
     std::vector<bool> fixed(shares.size(), false);
     for (bool again = true; again;) {
@@ -43,7 +43,8 @@ TradePlan planTrade(const std::vector<PilotCost>& candidates, const PilotCost& r
     std::vector<Share> shares;
     double weights = 0;
     const auto add = [&](const PilotCost& c, double weight, int seeds) {
-        // Seeds do not enter: twice of them at half the samples take and give the same.
+        // The number of seeds does not matter: twice as many with half the samples cost and tell
+        // the same.
         shares.push_back({c.secondsPerSample * seeds,
                           std::sqrt(weight * c.variance * c.secondsPerSample), least});
     };

@@ -6,10 +6,10 @@
 
 namespace woodcock {
 
-// How a budget of seconds is shared among pictures of which each is rendered from several seeds.
+// Shares a budget of seconds among pictures, each of which is rendered with several seeds.
 
 inline constexpr int tradeSeeds = 4;           ///< of each candidate
-inline constexpr int tradeReferenceSeeds = 8;  ///< of the reference, which all lean on
+inline constexpr int tradeReferenceSeeds = 8;  ///< of the reference, with which all are compared
 inline constexpr int mostTradeSeeds = 8;       ///< of each candidate, where there is time for more
 
 struct PilotCost {
@@ -26,10 +26,9 @@ struct TradePlan {
 };
 
 /// Errors of squared biases are proportional to variance / samples of candidate and reference
-/// together. The weighted sum of these is least where each gets time in proportion to the root of
-/// weight x variance x seconds per sample (Neyman 1934, allocation), the reference's weight being
-/// the sum of all. None gets less than `least` samples, so that the plan may take longer than
-/// `seconds` where these are too few.
+/// together. Their weighted sum is least where each gets time in proportion to the square root of
+/// weight x variance x seconds per sample (Neyman 1934, allocation); the reference's weight is the
+/// sum of all. None gets less than `least` samples, so the plan may take longer than `seconds`.
 TradePlan planTrade(const std::vector<PilotCost>& candidates, const PilotCost& reference,
                     double seconds, int least);
 
@@ -40,9 +39,9 @@ struct PictureSize {
 };
 PictureSize sizeOfPixels(PictureSize full, double pixels);
 
-/// What the least plan takes of samples per pixel, all pictures and the pilot together.
+/// Samples per pixel of the least plan, for all pictures and the pilot together.
 double leastSamplesPerPixel(std::size_t candidates);
-/// What a plan takes that tells candidates apart.
+/// Samples per pixel of a plan that can distinguish candidates.
 double goodSamplesPerPixel(std::size_t candidates);
 
 }  // namespace woodcock

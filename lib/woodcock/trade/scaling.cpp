@@ -94,7 +94,7 @@ private:
         report_.tables.push_back(table);
     }
 
-    /// Random looks by one thread, in turns over all fields.
+    /// Random lookups by one thread, alternately in all fields.
     void lookups() {
         tell("random lookups");
         Curve curve{"random lookups",
@@ -148,13 +148,13 @@ private:
         return line;
     }
 
-    /// Measures the lines of a curve in its share of the budget and files it.
+    /// Measures the lines of a curve in its share of the budget, and adds it to the results.
     std::vector<Line> curve(Curve curve, std::vector<Line> lines) {
         tell(curve.name);
         std::vector<TimedRender> all;
         for (Line& l : lines)
             std::move(l.renders.begin(), l.renders.end(), std::back_inserter(all));
-        // What overran before does not leave the last with nothing.
+        // Curves that took too long must not leave the last one without time.
         const double share = std::max(left(), 0.05 * options_.budget) / curvesLeft_--;
         timeRenders(all, share, report_.notes);
         auto next = all.begin();

@@ -13,7 +13,7 @@ namespace woodcock {
 struct ScalingReport {
     std::vector<Curve> curves;
     std::vector<CurveTable> tables;
-    std::vector<std::string> notes;  ///< what the budget was too small for
+    std::vector<std::string> notes;  ///< measurements for which the budget was too small
 };
 
 struct ScalingOptions {
@@ -22,13 +22,13 @@ struct ScalingOptions {
     std::function<void(const std::string&)> onProgress = {};
 };
 
-/// Below this no curve has more than noise.
+/// With less than this all curves are noise.
 inline constexpr double leastScalingBudget = 10;
 
 /// How the cost of a sample grows with voxels, optical depth, albedo, g, overlapping volumes, the
 /// size of majorant cells and threads; load time and memory beside OpenVDB's own; and the machine's
-/// limit, random lookups at a field, beside the collisions that a render achieves. The points of a
-/// curve are measured in turns, in processor time of one thread. Throws Error{Usage} where the
+/// limit, random lookups in a field, compared with the collisions of a render. The points of a
+/// curve are measured alternately, in processor time of one thread. Throws Error{Usage} where the
 /// budget is below the least.
 ScalingReport measureScaling(const ScalingOptions& options);
 

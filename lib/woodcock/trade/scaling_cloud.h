@@ -9,7 +9,7 @@
 
 namespace woodcock {
 
-/// A cumulus, baked at some resolution, and what loading it cost.
+/// A cumulus, baked at some resolution, and the cost of loading it.
 struct ScalingCloud {
     int side = 0;  ///< voxels along its longest side
     double boxVoxels = 0;
@@ -23,18 +23,18 @@ struct ScalingCloud {
     std::uint64_t fieldBytes = 0, majorantBytes = 0, peerBytes = 0;  ///< majorants: at depth 10
 };
 
-/// Bakes the preset `cumulus` through a file in `directory`, which is loaded `loads` times by us
-/// and by OpenVDB in turns, and removed.
+/// Bakes the preset `cumulus` through a file in `directory`, which is loaded `loads` times,
+/// alternately by us and by OpenVDB, and then removed.
 ScalingCloud bakeScalingCloud(int side, const std::filesystem::path& directory, int loads);
 
-/// What is varied of a picture of the cloud, under a sun and a sky.
+/// A variation of a picture of the cloud, under a sun and a sky.
 struct ScalingView {
     double opticalDepth = 10;  ///< mean over the picture, by exact integration
     double albedo = 0.9, g = 0.6;
     int majorantSmallestLog2 = 1;
-    /// So many volumes, either all in one place, each of its part of the optical depth; or one in
-    /// the picture and the others of the same depth a hundred sizes away, where hardly any light
-    /// comes by.
+    /// This many volumes. Either they overlap and share the optical depth; or one is in the
+    /// picture, and the others, of the same depth, are a hundred sizes away, where hardly any light
+    /// arrives.
     int volumes = 1;
     bool apart = false;
 };

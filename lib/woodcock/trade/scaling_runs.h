@@ -13,11 +13,11 @@ namespace woodcock {
 struct TimedRender {
     Scene scene;
     std::string name;  ///< for notes
-    double x = 0;      ///< where on its curve it is
+    double x = 0;      ///< its position on the curve
     int threads = 1;
     bool wallClock = false;  ///< else processor time
 
-    // What timeRenders() finds; microseconds stay 0 where the time did not suffice:
+    // Set by timeRenders(); microseconds stay 0 where there was not enough time:
     Measured microseconds = {};  ///< of one sample of one pixel
     RenderCounters counters = {};
     double seconds = 0;  ///< that all counted runs took, by its clock
@@ -30,8 +30,8 @@ struct TimedRender {
     }
 };
 
-/// Runs all of them in turns for about so many seconds of wall clock, each round with other random
-/// numbers. Notes tell which were left out, as they take too long.
+/// Runs all of them alternately for about so many seconds of wall clock, each round with other
+/// random numbers. Notes tell which were left out because they take too long.
 void timeRenders(std::vector<TimedRender>& renders, double seconds,
                  std::vector<std::string>& notes);
 

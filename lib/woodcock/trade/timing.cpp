@@ -34,8 +34,8 @@ Measured medianOf(std::vector<double> values) {
     const double middle = median(values);
     if (values.size() < 2) return {middle, std::numeric_limits<double>::infinity()};
     for (double& v : values) v = std::abs(v - middle);
-    // Of normal numbers: 1.4826 median deviations are sigma, and the median's error is
-    // sqrt(pi / 2) sigma / sqrt(n). Few values deviate less from their own median: n - 1.
+    // For normal numbers, sigma is 1.4826 median deviations, and the median's error is sqrt(pi / 2)
+    // sigma / sqrt(n). Few values deviate less from their own median, so n - 1.
     return {middle, 1.2533 * 1.4826 * median(values) / std::sqrt(n - 1)};
 }
 

@@ -10,15 +10,15 @@ struct Measured {
     double value = 0, se = 0;
 };
 
-/// Processor seconds that all threads of this process have taken so far. Unlike the wall clock's,
-/// they say the same beside other programs, but for what those do to caches and clock rates.
+/// Processor seconds that all threads of this process have taken so far. Unlike those of the wall
+/// clock, they do not depend on other programs, except through caches and clock rates.
 double processorSeconds();
 
-/// Wall clock, seconds since some moment.
+/// Seconds of the wall clock since an arbitrary moment.
 double wallSeconds();
 
-/// The median and its error, by the median deviation: a program that wakes up in the midst of one
-/// of the runs does not show. All zero for no values; of one value the error is unknown: infinite.
+/// The median and its error, by the median deviation: another program that runs during one of the
+/// runs has no effect. Zero for no values; for one value the error is infinite (unknown).
 Measured medianOf(std::vector<double> values);
 
 }  // namespace woodcock

@@ -15,7 +15,7 @@
 namespace woodcock {
 namespace {
 
-constexpr double mostPixels = 40000;  // more samples tell more than more pixels
+constexpr double mostPixels = 40000;  // more samples are worth more than more pixels
 constexpr double fewestPixels = 256;
 constexpr int leastSamples = 4;
 constexpr int pilotSeeds = 2, pilotSamples = 2;
@@ -23,13 +23,13 @@ constexpr int pilotSeeds = 2, pilotSamples = 2;
 constexpr double loadingShare = 0.25, renderingShare = 0.88, cropShare = 0.05, hardShare = 1.05;
 constexpr double unbiasedWeight = 0.25;  // whose squared bias decides nothing
 
-/// Seeds of their own for every use, so that what they tell is independent.
+/// Each use has seeds of its own, so that results are independent.
 enum class Use : std::uint64_t { Candidate = 1, Reference, Pilot, Probe };
 std::uint64_t seedOf(std::uint64_t seed, Use use, int index) {
     return seed + (static_cast<std::uint64_t>(use) << 20) + static_cast<std::uint64_t>(index);
 }
 
-/// Thrown where the callback said no, and caught by runTrade().
+/// Thrown where the callback returned false, and caught by runTrade().
 struct Interrupted {};
 /// Thrown where the time is up in the middle of a picture.
 struct TimeIsUp {};
@@ -41,7 +41,7 @@ double meanOfPixels(const Pixels& pixels) {
 }
 
 /// Half the mean square of the difference of two pictures, relative to their mean squared: rough,
-/// and enough to share time by.
+/// but enough to share time by.
 double pilotVariance(const Pixels& a, const Pixels& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - double{b[i]}, 2);
@@ -212,8 +212,8 @@ private:
                scene.render.maxBounces != reference_.render.maxBounces;
     }
 
-    /// Rounds of a seed each, in which everybody has a turn: what slows the machine for a while
-    /// meets all of them. What a last, incomplete round has is left out.
+    /// Rounds of a seed each, in which every candidate has a turn: if the machine is slow for a
+    /// while, all are affected. An incomplete last round is left out.
     void render(const TradePlan& plan) {
         TradeMeasurements& m = measurements_;
         m.full = full_, m.measured = size_;

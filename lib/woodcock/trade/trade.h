@@ -14,9 +14,9 @@
 
 namespace woodcock {
 
-// What candidates cost on one scene and what they bring, measured against the scene's own unbiased
-// reference. Pictures are rendered smaller than the scene says, where the budget demands it; all
-// seconds are those of the scene's own size, in proportion to pixels, and leave loading out.
+// Measures the cost and the error of candidates on one scene, against the scene's own unbiased
+// reference. Pictures are rendered smaller than the scene's where the budget demands it. All
+// seconds are scaled to the scene's own size, in proportion to pixels, and do not include loading.
 
 struct TradeSettings {
     double budget = 120;  ///< seconds for everything
@@ -24,7 +24,7 @@ struct TradeSettings {
     std::uint64_t seed = 0;
     Extent extent = Extent::All;  ///< of the built-in candidates
     bool crops = false;           ///< also render pictures of equal time to look at
-    /// Told the share that is done and what is at work; false stops.
+    /// Called with the fraction that is done, and what is being measured; returning false stops.
     std::function<bool(double fraction, const std::string& what)> onProgress = {};
 };
 
@@ -37,7 +37,7 @@ struct TradePoint {
 
 struct CandidateResult {
     Candidate candidate;
-    bool biased = false;  ///< by what it is, whatever was measured
+    bool biased = false;  ///< by construction, whatever was measured
     double loadSeconds = 0;
     std::size_t bytes = 0;      ///< fields and majorants
     Measured secondsPerSample;  ///< wall clock
@@ -68,11 +68,11 @@ struct TradeCrop {
     Pixels pixels;
 };
 
-/// Who is best at a time or an error.
+/// The best candidate at a time or an error.
 struct TradeReading {
     double target = 0;
     Winner winner;
-    /// The winner, or an unbiased candidate that is tied with it.
+    /// The best, or an unbiased candidate that is tied with it.
     std::size_t recommended = 0;
 };
 
@@ -91,8 +91,8 @@ struct TradeResult {
 };
 
 /// `given` are a user's candidates; without any, the built-in ones. `parse` gives `complete` before
-/// it was completed. Absent where onProgress said no. Throws Error{Usage} where the budget is too
-/// small, for anything or for the reference.
+/// it was completed. Absent where onProgress returned false. Throws Error{Usage} where the budget
+/// is too small, for anything or for the reference.
 std::optional<TradeResult> runTrade(const SceneDescription& complete, const ParseScene& parse,
                                     const std::vector<Candidate>& given,
                                     const TradeSettings& settings);
