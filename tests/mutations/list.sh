@@ -92,7 +92,7 @@ defect "sun's irradiance without the cosine" 'Sun.*' "sun" \
     'irradiance_ * static_cast<float>(1 / (pi * sinHalf_ * sinHalf_))' \
     'irradiance_ * static_cast<float>(1 / (2 * pi * oneMinusCos_))'
 
-defect "sphere's solid angle as if it were flat" 'SphereLight.*' "lamps" \
+defect "sphere's solid angle as if it were flat" 'SphereLight.*' "local lights" \
     lib/woodcock/light/light.cpp \
     's.weight = radiance * static_cast<float>(1 / s.pdf);' \
     's.weight = radiance * static_cast<float>(pi * sin2);'
@@ -123,11 +123,11 @@ defect "MIS forgets how a light was picked" 'Furnace*:LocalLights.*' "" \
     $light \
     'powerHeuristic(s.pdf * chosen->probability, phase)' 'powerHeuristic(s.pdf, phase)'
 
-defect "lamps counted by both samplings" 'PointLight.*:SphereLight.*' "airlight" \
+defect "local lights counted by both samplings" 'PointLight.*:SphereLight.*' "airlight" \
     $light \
     '(pdf + flight.density(e, t))' 'pdf'
 
-defect "shadow rays go on behind the lamp" 'PointLight.*:SphereLight.*' "" \
+defect "shadow rays go on behind the light" 'PointLight.*:SphereLight.*' "" \
     $light \
     'ray.tMax = s.distance;' 'ray.tMax = infinity;'
 
@@ -157,7 +157,7 @@ defect "refracted light stays in the medium it came from" 'SurfaceLayers*' "plat
     $surfaces \
     'if (b.transmitted) s.start.inside = crossing.beyond;' ''
 
-defect "lamps with a shape counted in full by both samplings" 'SurfaceLayers*' "emissive surfaces" \
+defect "emissive surfaces counted in full by both samplings" 'SurfaceLayers*' "emissive surfaces" \
     $surfaces \
     'static_cast<float>(hitWeight(p, pdf))' \
     'static_cast<float>(hitWeight(p, [&] { return 0 * pdf(); }))'

@@ -93,7 +93,7 @@ std::vector<Case> run(const Check& check, const Options& options) {
     try {
         check.run(lab);
     } catch (const Stopped&) {
-        // The cases so far are as good as any.
+        // The cases so far are valid.
     } catch (const std::exception& error) {
         failure = {.name = std::string(check.name) + ", to its end",
                    .expected = 1,

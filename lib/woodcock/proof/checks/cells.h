@@ -9,16 +9,16 @@
 
 namespace woodcock::proof {
 
-/// Samples counted in cells, for a chi-square test.
+/// Counts samples in cells, for a chi-square test.
 class Cells {
 public:
     /// `rows` x `columns` cells of even shares over [0, 1)^2.
     Cells(int rows, int columns);
-    /// The same with shares of their own, row by row.
+    /// The same with given shares, row by row.
     Cells(int rows, int columns, std::vector<double> shares);
 
     void add(double row, double column = 0);
-    /// The statistic as a normal deviate, of which 0 is expected.
+    /// The statistic as a normal deviate; 0 is expected.
     Case asCase(std::string name) const;
 
 private:
@@ -29,7 +29,7 @@ private:
 
 Case meanCase(std::string name, double expected, const Moments& samples, double largestError);
 
-/// What must be so but for `allowance`.
+/// A case without randomness: `measured` must be `expected`, up to `allowance`.
 Case exactCase(std::string name, double expected, double measured, double allowance,
                std::string note = "rounding");
 

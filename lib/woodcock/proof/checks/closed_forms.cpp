@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of straight light: transmittance that has a formula, as radiance, as alpha and as
-// the layer.
+// Unscattered light: transmittance that has a formula, as radiance, as alpha and as a layer.
 #include "woodcock/proof/oracles/closed_forms.h"
 
 #include <fmt/format.h>
@@ -27,21 +26,21 @@ struct Rays {
     Vec3d eye, direction;
 };
 
-/// What of three optical depths is not exact: relatively, and why.
+/// The relative error of three optical depths, and its reason.
 struct Slack {
     double relative = 0;
     std::string why{};
 };
 
-/// What pixels see that look along one line through an absorbing or scattering medium of these
-/// optical depths: light from behind it, alpha and the transmittance layer. Scattered light is left
-/// out. Where little comes through, few paths tell how much: left out too, but for media that are
-/// `homogeneous` and have no noise.
+/// Pixels that look along one line through an absorbing or scattering medium of these optical
+/// depths: light from behind it, alpha and the transmittance layer. Scattered light is left out.
+/// Where little light comes through, few paths measure it; such cases are left out too, except for
+/// `homogeneous` media, which have no noise.
 void addTransmittance(Lab& lab, const std::string& name, const std::string& volume,
                       const Rays& rays, const double (&depth)[3], const Slack& slack = {},
                       bool homogeneous = false) {
     const Precision precision{lab.pick(1e-2, 2e-3), lab.pick(3e-4, 1e-5)};
-    // The layers come from chance, hit or miss, while radiance comes from weights.
+    // The layers are random hits or misses, while radiance is weighted.
     const Precision rough{lab.pick(1e-2, 3e-3), lab.pick(4e-3, 1e-3)};
     const Scene scene =
         sceneIn(lab, volume + evenLight + test::pencilCamera(rays.eye, rays.direction));
@@ -241,7 +240,7 @@ void sphereDisc(Lab& lab) {
         const auto shadow = [&](double b2) {
             return -std::expm1(-2 * sigma * std::sqrt(std::max(0.0, r2 - b2)));
         };
-        // The blur's own effect on what the disc takes away, per area of the disc.
+        // The effect of the blur on the light that the disc absorbs, per area of the disc.
         const oracle::Quadrature radial = oracle::gaussLegendre(16);
         double darker = 0;
         for (int ring = 0; ring < radius + margin; ++ring)

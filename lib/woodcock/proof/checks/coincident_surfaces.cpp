@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces in one place: the same object twice, glass on a floor, blocks that touch, lamps on
+// Surfaces that coincide: the same object twice, glass on a floor, blocks that touch, emitters on
 // walls, and a camera on a face.
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ std::string layer(double bottom, double top, double width = 1e6) {
                        width);
 }
 
-/// Where all of a scene stands, and how large it is.
+/// The transform of a whole scene.
 struct Setting {
     double scale = 1;
     Vec3d place = {};
@@ -68,7 +68,7 @@ void even(Lab& lab, const std::string& name, const std::string& scene, double ex
     lab.add(std::move(c));
 }
 
-/// What absorbs nothing is invisible, however often it is there.
+/// An object that absorbs nothing is invisible, however many copies there are.
 void furnaces(Lab& lab) {
     const Vec3d turn{10, 20, 30};
     const std::string ball = "sphere = {}";
@@ -110,7 +110,7 @@ void furnaces(Lab& lab) {
              1);
 }
 
-/// The order of files and rounding decide nothing but which of two colours is seen.
+/// The order in the file and rounding decide only which of two colours is seen.
 void opaque(Lab& lab) {
     const std::string ball = "sphere = {}", box = "box = { min = [-1, -1, -1], max = [1, 1, 1] }";
     for (const Setting& s : settings) {
@@ -150,8 +150,8 @@ oracle::PlateAnswer diffusely(const oracle::Plate& plate) {
     return sum;
 }
 
-/// A plate on a diffuse floor is what it is a hair above it: light goes to and fro between the
-/// two, and the plate's own face reflects on that side as well.
+/// A plate on a diffuse floor looks as it does a hair above it: light is reflected between the two,
+/// and the plate's lower face reflects as well.
 void glassOnFloors(Lab& lab) {
     const double depth = 0.3, albedo = 0.6;
     const auto all = diffusely({1.5, depth});
@@ -172,7 +172,7 @@ void glassOnFloors(Lab& lab) {
         }
 }
 
-/// Glass that touches glass is one body, or as many as there are indices.
+/// Pieces of glass that touch are one body for each index of refraction.
 void touchingPlates(Lab& lab) {
     writeTwoColouredSky(lab);
     const Precision precision = dearPrecision(lab);
@@ -199,7 +199,8 @@ void touchingPlates(Lab& lab) {
             surface("glass", layer(-0.3, 0), absorbing(0.5)) +
                 surface("glass", layer(-1, -0.3), absorbing(0.5)),
             {{1.5, 0.5}}, mu);
-        // The same plane by other numbers: 0.3 is no float, and a rotation's no number at all.
+        // The same plane by other numbers: 0.3 is not a float, and the numbers of a rotation are
+        // irrational.
         add(fmt::format("two plates that touch by other transforms, mu {}", mu),
             surface("glass", layer(0, 0.3, 1e3),
                     "transform = { translate = [0, -0.3, 0] }\n" + absorbing(0.5)) +
@@ -235,7 +236,7 @@ void touchingPlates(Lab& lab) {
     }
 }
 
-/// Who stands on a face is where it looks.
+/// A camera on a face is on the side to which it looks.
 void camerasOnFaces(Lab& lab) {
     const std::string plates =
         glass + heavy + surface("glass", layer(-0.3, 0)) + surface("heavy", layer(-1, -0.3));
@@ -257,10 +258,11 @@ void camerasOnFaces(Lab& lab) {
             r.index * r.index, "index^2");
 }
 
-/// A lamp on a wall shines, whichever comes first in the file, and only once.
-void lampsOnWalls(Lab& lab) {
+/// An emitter on a wall emits, whichever comes first in the file, and only once.
+void emittersOnWalls(Lab& lab) {
     const Precision precision = dearPrecision(lab);
-    const std::string lamp = "[[material]]\nname = \"lamp\"\ntype = \"emissive\"\nradiance = 2\n";
+    const std::string emitter =
+        "[[material]]\nname = \"lamp\"\ntype = \"emissive\"\nradiance = 2\n";
     const std::string ground =
         diffuse("ground", 0.5) + diffuse("black", 0) + surface("ground", "plane = {}");
     // On a wall at z = -1 that faces +z; its own box stands behind it.
@@ -277,11 +279,11 @@ void lampsOnWalls(Lab& lab) {
         std::string surfaces;
     };
     for (const Row& r :
-         {Row{"a lamp on a wall", lamp + ground + wall + panel},
-          {"a lamp before its wall in the file", lamp + ground + panel + wall},
-          {"a lamp twice on a wall", lamp + ground + panel + wall + panel},
-          {"a lamp on a wall as two instances",
-           lamp + ground + wall +
+         {Row{"an emitter on a wall", emitter + ground + wall + panel},
+          {"an emitter before its wall in the file", emitter + ground + panel + wall},
+          {"an emitter twice on a wall", emitter + ground + panel + wall + panel},
+          {"an emitter on a wall as two instances",
+           emitter + ground + wall +
                surface("lamp", "plane = { size = [2, 1] }",
                        "instances = [{}, {}]\n"
                        "transform = { rotate = [90, 0, 0], translate = [0, 1.5, -1] }")}})
@@ -289,14 +291,14 @@ void lampsOnWalls(Lab& lab) {
             caseOf(r.what, 2 * 0.5 / pi * irradiance,
                    evenPicture(lab, r.what, sceneIn(lab, r.surfaces + camera), precision, {0})[0],
                    precision));
-    even(lab, "a lamp behind the paint of its wall",
-         lamp + ground + panel +
+    even(lab, "an emitter behind the paint of its wall",
+         emitter + ground + panel +
              surface("black", "box = { min = [-5, -1, -2], max = [5, 5, -1] }", "priority = 1") +
              surface("lamp", "sphere = { centre = [0, 2.5, 1], radius = 0.5 }") + camera,
          2 * 0.5 / pi *
              oracle::sphereIrradiance(0.5, std::hypot(2.5, 0.4), 2.5 / std::hypot(2.5, 0.4)),
-         "the other lamp alone");
-    // Walls whose planes no number holds: a wall must not light itself.
+         "the other emitter alone");
+    // Walls whose planes are not exact in floats: a wall must not light itself.
     even(lab, "a shining room, turned",
          "[[material]]\nname = \"shine\"\ntype = \"emissive\"\nradiance = 1\nboth_sides = true\n" +
              diffuse("grey", 0.8) +
@@ -306,7 +308,7 @@ void lampsOnWalls(Lab& lab) {
                      "transform = { rotate = [10, 20, 30] }") +
              test::pencilCamera({0.1, 0.1, 0.1}, {1, 0.4, -0.2}),
          oracle::cavityRadiance(0.25, 0.75 * 0.8), "as in any other place");
-    // Every wall of the room twice, one of them by other numbers: an even radiance all the same.
+    // Every wall of the room twice, once by other numbers: the radiance is uniform all the same.
     const std::string room =
         "[[material]]\nname = \"shine\"\ntype = \"emissive\"\nradiance = 1\nboth_sides = true\n" +
         diffuse("grey", 0.8) +
@@ -327,7 +329,7 @@ std::vector<Check> surfacesTogether() {
             {Kind::Surface, "glass on floors", glassOnFloors},
             {Kind::Surface, "plates that touch", touchingPlates},
             {Kind::Surface, "cameras on faces", camerasOnFaces},
-            {Kind::Surface, "lamps on walls", lampsOnWalls}};
+            {Kind::Surface, "emitters on walls", emittersOnWalls}};
 }
 
 }  // namespace woodcock::proof

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Media that glow: straight lines through them, what a half-space of even warmth sends out, and
-// thermal equilibrium, in which nothing at all can be seen.
+// Media that emit: along straight lines, from a half-space of uniform temperature, and in thermal
+// equilibrium, where nothing can be seen.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -61,8 +61,8 @@ void addColours(Lab& lab, const std::string& name, const std::array<double, 3>& 
     }
 }
 
-/// What surfaces hold glows as the same would without them: along chords of a ball, and where a
-/// surface cuts a volume in two, of which what is outside is not there.
+/// Media inside surfaces emit as the same media without them: along chords of a ball, and where a
+/// surface cuts a volume in two (the part outside is left out).
 void insideSurfaces(Lab& lab) {
     slab::write(lab);
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
@@ -99,7 +99,7 @@ void insideSurfaces(Lab& lab) {
                         precision);
         addColours(lab, name, glow(0.5 / mu), e, precision);
     }
-    // In glass as well, whose surface radiance squeezes through: n^2 B inside is B outside.
+    // In glass as well, where radiance changes at the surface: n^2 B inside is B outside.
     const RgbEstimate e = evenPicture(
         lab, "thermal equilibrium in glass",
         sceneIn(lab, std::string(materials) +
@@ -111,7 +111,7 @@ void insideSurfaces(Lab& lab) {
     addColours(lab, "thermal equilibrium in glass", {1, 1, 1}, e, precision);
 }
 
-/// A box that scatters, absorbs and glows is the same inside an interface as alone.
+/// A box that scatters, absorbs and emits is the same inside an interface as without it.
 void insideAndAlone(Lab& lab) {
     const Precision precision = usualPrecision(lab);
     const std::string lights =
@@ -144,7 +144,8 @@ void insideAndAlone(Lab& lab) {
     }
 }
 
-/// Kirchhoff: a half-space as warm as a black body of radiance 1 sends out sqrt(1 - albedo) H(mu).
+/// Kirchhoff: a half-space at the temperature of a black body of radiance 1 emits sqrt(1 - albedo)
+/// H(mu).
 void warmHalfSpace(Lab& lab) {
     slab::write(lab);
     const Precision precision = usualPrecision(lab);
@@ -164,7 +165,7 @@ void warmHalfSpace(Lab& lab) {
     }
 }
 
-/// j = sigma_a B in an environment of B: every ray sees B, whatever scatters how.
+/// j = sigma_a B in an environment of B: every ray sees B, whatever the scattering.
 void equilibrium(Lab& lab) {
     slab::write(lab);
     const Precision precision{lab.pick(1e-2, 2e-3), 0};

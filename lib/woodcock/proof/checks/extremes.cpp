@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where numbers are as large, small, near or many as they get: finite, right, and without a hang.
+// Extreme numbers: results must be finite and right, and come without a hang.
 #include "woodcock/proof/checks/extremes.h"
 
 #include <fmt/format.h>
@@ -21,14 +21,14 @@ std::string digits(double value) { return fmt::format("{:.17g}", value); }
 
 RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const Precision& precision,
                   const Watch& how) {
-    // Of few pixels the pilot's variance is a rough guess.
+    // With few pixels the pilot's variance is a rough guess.
     const double margin = how.side < 32 ? 4 : 2;
     constexpr double mostSamples = 1 << 20;
     constexpr int mostRounds = 4;
     Picture picture{how.side, how.side, std::max(4, 512 / (how.side * how.side)), 0,
                     how.maxScatterings};
     std::optional<RenderResult> result;
-    // Films that are too noisy tell how many samples it takes, and are thrown away, as the pilot
+    // A film that is too noisy tells how many samples are needed, and is discarded, as the pilot
     // is.
     for (int round = 0; round <= mostRounds; ++round) {
         picture.seed = hashOf(lab.seed(name), round);

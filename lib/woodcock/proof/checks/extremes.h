@@ -18,7 +18,7 @@ std::vector<Check> extremeContrasts();
 /// Two digits quickly, more in full: extremes are many.
 Precision extremePrecision(const Lab& lab);
 
-/// How a picture is taken whose pixels all expect the same, and what it may cost.
+/// How to render a picture whose pixels all have one expectation, and its largest cost.
 struct Watch {
     std::vector<int> channels{0};
     int side = 32;
@@ -28,7 +28,7 @@ struct Watch {
     double mostSteps = 200;
 };
 
-/// Like evenPicture(), and adds a case that tells of hangs: the steps per flight.
+/// Like evenPicture(), and adds a case that detects hangs: the steps per flight.
 test::RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene,
                         const Precision& precision, const Watch& how = {});
 
@@ -47,8 +47,8 @@ struct KnownGrid {
     double opticalDepth(Vec3d origin, Vec3d direction) const;
 };
 
-/// Adds the transmittance of `scene`'s medium (grey, one part) along a line in index space: as the
-/// estimator finds it, and the optical depth as the exact integrator does.
+/// Adds cases of `scene`'s medium (grey, one part) along a line in index space: transmittance by
+/// the estimator, and optical depth by the exact integrator.
 void addTransmittance(Lab& lab, const std::string& name, const std::string& volume,
                       const KnownGrid& grid, Vec3d origin, Vec3d direction);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Media that are deep here and thin there: what a tracker that is not careful hangs on.
+// Media that are deep in some places and thin in others, on which a careless tracker hangs.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -29,8 +29,8 @@ GridSpec threeChannels(const char* name, Vec3d largest, double unit = 1) {
     return spec;
 }
 
-/// Twelve decades between the channels. The deepest dies at once where it absorbs, and then must
-/// not set the pace of the others.
+/// Twelve decades between the channels. Where the deepest absorbs, it ends at once, and then must
+/// not set the rate of collisions.
 void channels(Lab& lab) {
     writeVdb(lab.file("rgb.vdb"), {threeChannels("rgb", {1e12, 1, 1e-6}, 1.0 / 16)});
     const Precision precision = extremePrecision(lab);
@@ -132,7 +132,7 @@ void unequalParts(Lab& lab) {
                                evenLight + camera),
               precision, {.side = 8})[0],
         precision));
-    // Black behind a thin box: depth 0.5 in front, then nothing comes.
+    // A thin box, then black: depth 0.5 in front, and no light behind it.
     const std::string black =
         "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nsigma_a = [1e12, 1, 1e-12]\n"
         "sigma_s = 0\n[[volume]]\nbox = { min = [-1, -1, -1], max = [2, 2, 2] }\nsigma_a = 0.5\n"

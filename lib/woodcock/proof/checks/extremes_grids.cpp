@@ -116,7 +116,7 @@ void singleVoxel(Lab& lab) {
                                   spec.worldFromIndex.vector({1, 0, 0})));
 }
 
-/// Nothing but tiles, of every size.
+/// Tiles only, of every size.
 void onlyTiles(Lab& lab) {
     GridSpec spec;
     spec.tiles = {{{0, 0, 0}, 8, {1}}, {{128, 0, 0}, 128, {0.125}}, {{4096, 0, 0}, 4096, {0.001}}};
@@ -142,7 +142,7 @@ void onlyTiles(Lab& lab) {
                test::pencilCamera({-5, 1, 1}, {1, 0.01, 0.02}));
 }
 
-/// A background that never ends: a lamp shines through it.
+/// A background without end, and a sphere light behind it.
 void background(Lab& lab) {
     GridSpec spec;
     spec.background = {0.25};
@@ -150,7 +150,7 @@ void background(Lab& lab) {
     writeVdb(lab.file("haze.vdb"), {spec});
     const Precision precision = extremePrecision(lab);
     for (const double sigma : {1.0, 0.05}) {
-        // The lamp is a sphere of radius 1 at 10 / sigma.
+        // The light is a sphere of radius 1 at 10 / sigma.
         const double end = 10 / sigma - 1;
         for (const double offset : {0.0, 0.4}) {
             const auto above = [](Vec3i v) {
@@ -160,7 +160,7 @@ void background(Lab& lab) {
                                                     {1, 0, 0}, 0, 100);
             const double depth = 0.1 * sigma * (extra + 0.25 * (end + 5));
             const std::string name =
-                fmt::format("a background of {:g} up to a lamp, offset {}", 0.025 * sigma, offset);
+                fmt::format("a background of {:g} up to a light, offset {}", 0.025 * sigma, offset);
             const Scene scene = sceneIn(
                 lab, volumeOf("haze.vdb", 0.1 * sigma, "background = \"endless\"\n") +
                          fmt::format("[[light]]\ntype = \"sphere\"\nradius = 1\nradiance = 1\n"
@@ -179,8 +179,7 @@ void background(Lab& lab) {
                    precision));
 }
 
-/// A background that ends one voxel around the active ones: ever fainter ones make no difference in
-/// the end.
+/// A background that ends one voxel around the active voxels; these become ever fainter.
 void backgroundWithin(Lab& lab) {
     for (const double haze : {0.25, 1e-6, 1e-38}) {
         GridSpec spec;
@@ -241,7 +240,7 @@ void decades(Lab& lab) {
     spec.box = {{0, 0, 0}, {7, 7, 7}};
     spec.value = value;
     writeVdb(lab.file("decades.vdb"), {spec});
-    // The last one all but misses it, between voxels of 1e6.
+    // The last line almost misses it, between voxels of 1e6.
     for (const double sigma : {1e-6, 1e-2})
         for (const Vec3d from : {Vec3d{-3, 2.3, 4.6}, {-3, 2, 5}, {-3, -0.99999, 3.3}}) {
             const KnownGrid grid{value, spec.box, {}, sigma};

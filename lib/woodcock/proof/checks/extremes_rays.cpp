@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that run along what voxels are made of; cameras, lights and volumes in odd places.
+// Rays along faces, edges and corners of voxels; cameras, lights and volumes in unusual positions.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -170,7 +170,7 @@ void nearLight(Lab& lab) {
         }
 }
 
-/// A thousand parts in the place of one.
+/// A thousand overlapping parts instead of one.
 void crowd(Lab& lab) {
     writeSlab(lab, "slab.vdb", {1, 1, 1, 1});
     std::string volumes;

@@ -56,7 +56,7 @@ GridSpec farApart() {
     return g;
 }
 
-/// Cells have minima worth taking out, and neighbours that differ.
+/// Cells have minima that make good controls, and neighbours that differ.
 GridSpec nowhereEmpty() {
     GridSpec g;
     g.box = {{-16, 0, 0}, {16, 23, 23}};
@@ -65,7 +65,7 @@ GridSpec nowhereEmpty() {
     return g;
 }
 
-/// Fog without end, with voxels above and below it, and holes.
+/// Fog without end, with voxels above and below its density, and holes.
 GridSpec endless() {
     GridSpec g;
     g.background = {0.1};

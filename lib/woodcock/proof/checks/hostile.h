@@ -7,7 +7,7 @@
 
 namespace woodcock::proof {
 
-/// A grid that is legal and as unkind as such grids get.
+/// A grid that is valid, and as difficult as possible.
 struct HostileGrid {
     const char* name;
     test::GridSpec grid;

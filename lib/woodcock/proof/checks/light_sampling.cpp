@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light is drawn in proportion to the density that it is said to follow, and brings the irradiance
-// that it must. Constant environments are drawn by the phase function.
+// Lights are sampled in proportion to their stated density, and give the right irradiance. Constant
+// environments are sampled by the phase function.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -74,7 +74,7 @@ void sun(Lab& lab) {
         exactCase("irradiance of parallel rays", 3, s.weight[0] * dot(s.direction, axis), 1e-6));
 }
 
-void lamps(Lab& lab) {
+void localLights(Lab& lab) {
     for (const double distance : {1.0001, 1.01, 1.5, 10.0, 1e4, 1e7}) {
         const double radius = 2.5, sine = 1 / distance;
         const Vec3d from{5, -3, 2};
@@ -190,7 +190,7 @@ void environments(Lab& lab) {
 
 std::vector<Check> lightSampling() {
     return {{Kind::Sampling, "sun", sun},
-            {Kind::Sampling, "lamps", lamps},
+            {Kind::Sampling, "local lights", localLights},
             {Kind::Sampling, "environment images", environments}};
 }
 

@@ -27,7 +27,7 @@ Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, 
 Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, Picture picture,
               const std::function<double(const Film&)>& excess) {
     constexpr int side = 32, mostRounds = 4;
-    constexpr double most = 1 << 20, margin = 1.3;  // a variance that is measured is a guess, too
+    constexpr double most = 1 << 20, margin = 1.3;  // a measured variance is a guess, too
     picture.width = picture.height = side;
     picture.samples = lab.pick(4, 16);
     for (int round = 0;; ++round) {

@@ -12,26 +12,27 @@
 
 namespace woodcock::proof {
 
-/// Errors of a mean that are worth reaching: relative to it, but not below `floor`.
+/// The wanted standard error of a mean: relative to it, but not below `floor`.
 struct Precision {
     double relative, floor;
     double of(double value) const;
 };
 /// Two digits quickly. In full three, of numbers below 0.001 one in 200 000 of the whole.
 Precision usualPrecision(const Lab& lab);
-/// A quarter of that in full, for what would take hours.
+/// A quarter of that effort in full, for cases that would take hours.
 Precision dearPrecision(const Lab& lab);
 
-/// The scene of a text whose files lie in the lab.
+/// The scene of a text, with files in the lab's directory.
 Scene sceneIn(const Lab& lab, const std::string& text);
 
-/// A picture of a scene all of whose pixels expect the same (see pencilCamera), with as many
-/// samples as it takes: `excess` says how many times larger than wanted a film's error is. Films
-/// that are too noisy tell how many, and are thrown away: no answer is part of its own plan.
+/// A picture of a scene whose pixels all have one expectation (see pencilCamera), with as many
+/// samples as needed. `excess` returns how many times larger than wanted a film's error is. A film
+/// that is too noisy tells the number of samples and is discarded, so that no result decides its
+/// own number of samples.
 Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, test::Picture picture,
               const std::function<double(const Film&)>& excess);
 
-/// The radiance of such a picture, per channel, to the precision asked for of the channels in use.
+/// The radiance of such a picture, per channel, to the wanted precision of the channels in use.
 test::RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
                               const Precision& precision, std::vector<int> channels = {0, 1, 2},
                               std::optional<int> maxScatterings = {});

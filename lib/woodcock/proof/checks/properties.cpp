@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold of any volume, whatever is in it: no picture of it needs to be known.
+// Properties of every volume, whatever is in it, that need no reference picture.
 //
 // One that oracles know is missing: thermal equilibrium (a medium that emits what it absorbs is
 // invisible in light of its own colour), as media do not emit yet.

@@ -5,7 +5,7 @@
 
 namespace woodcock::proof {
 
-// What properties() is made of, one file each.
+// The parts of properties(), one file each.
 std::vector<Check> propertiesOfRays();
 std::vector<Check> propertiesOfPaths();
 std::vector<Check> propertiesOfPictures();

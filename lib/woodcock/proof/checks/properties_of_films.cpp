@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What no film may show: threads, ranges of samples, the unit of length.
+// Films must not depend on threads, ranges of samples, or the unit of length.
 #include <cmath>
 #include <cstring>
 
@@ -11,17 +11,17 @@ namespace woodcock::proof {
 
 namespace {
 
-/// Sun, sky and a lamp in the volume; all lengths in units of 1 / k.
+/// Sun, sky and a point light in the volume; all lengths in units of 1 / k.
 Scene sceneOf(const Volume& v, double k) {
     MediumPart::Description d = v.part({0.01f, 0.1f, 0.5f}, {1, 0.8f, 0.2f}, 0.4).description();
     d.worldFromIndex = Affine3d::scale({k, k, k}) * d.worldFromIndex;
     d.absorption *= static_cast<float>(1 / k), d.scattering *= static_cast<float>(1 / k);
     const double r = v.radius() * k;
     const Vec3d centre = v.centre() * k;
-    const auto lamp = static_cast<float>(r * r);
+    const auto intensity = static_cast<float>(r * r);
     return {{{MediumPart(d)}},
             LightSet({Sun({1, -2, 0.5}, Rgb(4.0f), 5, false), Environment(Rgb(0.5f), true),
-                      PointLight{v.matter[2] * k, Rgb(lamp)}}),
+                      PointLight{v.matter[2] * k, Rgb(intensity)}}),
             Camera::perspective(centre + Vec3d{1, 0.5, 2} * r, centre, {0, 1, 0}, 50)};
 }
 
@@ -34,7 +34,7 @@ RenderSettings settings(const Lab& lab) {
     return s;
 }
 
-/// Pixels of which `differs`.
+/// The number of pixels for which `differs` is true.
 int countPixels(const Film& a, const Film& b,
                 const std::function<bool(const Film::Pixel&, const Film::Pixel&)>& differs) {
     int count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free flights and phase functions together: lengths and counts that do not depend on what is in
-// the volume, or that an infinite medium is known to have.
+// Free flights and phase functions together: lengths and counts that do not depend on the volume,
+// or that are known for an infinite medium.
 #include <fmt/format.h>
 
 #include "woodcock/proof/oracles/closed_forms.h"
@@ -110,8 +110,8 @@ private:
     Vec3d area_;
 };
 
-/// Diffuse light goes as far through a convex body that does not absorb as if it were empty: 4V/S,
-/// whatever scatters inside (Blanco and Fournier 2003).
+/// The mean path of diffuse light through a convex body that does not absorb is as long as if it
+/// were empty: 4V/S, whatever scatters inside (Blanco and Fournier 2003).
 void pathLength(Lab& lab) {
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
     for (const Volume& v : volumes(lab, Endless::Too)) {
@@ -200,8 +200,9 @@ void distances(Lab& lab) {
             }
 }
 
-/// Absorption is a weight that Russian roulette plays for: the sum of a path's weights counts its
-/// collisions. Where voxels differ but the albedo does not, as in any other infinite medium.
+/// Absorption is a weight on which Russian roulette acts, and the sum of a path's weights counts
+/// its collisions. That holds where voxels differ but the albedo does not, as in any infinite
+/// medium.
 void collisions(Lab& lab) {
     std::vector<InfiniteMedium> media = infiniteMedia(lab);
     for (const Volume& v : volumes(lab, Endless::Too))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of which theory knows every pixel, or that two scenes must share.
+// Pictures whose every pixel is known by theory, or that two scenes must share.
 #include <fmt/format.h>
 
 #include "woodcock/proof/checks/measure.h"
@@ -13,7 +13,7 @@ namespace {
 using test::Estimate;
 using test::RgbEstimate;
 
-/// From where all of the volume is seen.
+/// A camera that sees the whole volume.
 Camera framing(const Volume& v) {
     const Vec3d direction = normalize(Vec3d{1, 0.7, 1.3});
     return Camera::perspective(v.centre() + direction * (3 * v.radius()), v.centre(), {0, 1, 0},
@@ -26,7 +26,7 @@ Environment imageOfOnes() {
     return {EnvironmentMap(8, 4, std::vector<float>(8 * 4 * 3, 1)), Rgb(1.0f), {}, true};
 }
 
-/// Nothing that scatters without loss shows in even light.
+/// A volume that scatters without loss is invisible in uniform light.
 void furnace(Lab& lab) {
     const Precision precision{lab.pick(1e-2, 1e-3), 0};
     const Environment constant(Rgb(1.0f), true), image = imageOfOnes();
@@ -66,8 +66,8 @@ void furnace(Lab& lab) {
 
 // ---- equal scenes ---------------------------------------------------------------------------
 
-/// A volume in sun and even light, seen along one line through its matter: everything that two
-/// scenes may tell in different ways.
+/// A volume in sun and uniform light, seen along one line through its matter: two scenes can
+/// describe it in different ways.
 struct Setting {
     Vec3d through, view, up{0, 1, 0}, sun;
     double distance;
@@ -160,8 +160,8 @@ void equalScenes(Lab& lab) {
 
 // ---- reciprocity ----------------------------------------------------------------------------
 
-/// What leaves along `out` of parallel light that comes along `in`: radiance over all of the area
-/// that shows, in units of the square that is looked at.
+/// The light that leaves along `out`, of parallel light that comes along `in`: radiance over the
+/// whole visible area, in units of the pictured square.
 RgbEstimate turnedAside(const Lab& lab, const std::string& name, const Volume& v,
                         const MediumPart& part, Vec3d in, Vec3d out, double relative) {
     const double size = 2.001 * v.radius();
@@ -182,11 +182,11 @@ RgbEstimate turnedAside(const Lab& lab, const std::string& name, const Volume& v
     return test::meanOverSeeds(scene, picture, seeds);
 }
 
-/// Light finds its way back: sun and view change places.
+/// Reciprocity: sun and view change places.
 void reciprocity(Lab& lab) {
     const Precision precision{lab.pick(3e-2, 5e-3), 0};
     for (const Volume& v : volumes(lab, Endless::Not)) {
-        if (v.name == "far apart") continue;  // hardly a pixel shows it
+        if (v.name == "far apart") continue;  // it covers hardly a pixel
         const MediumPart part = v.part({0.01f, 0.1f, 0.3f}, {1, 0.8f, 0.5f}, 0.6);
         RandomStream random(lab.seed("reciprocity, " + v.name));
         for (int i = 0; i < lab.pick(1, 3); ++i) {

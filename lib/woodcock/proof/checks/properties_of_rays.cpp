@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray meets: the intervals of the walk, and the estimators of transmittance.
+// Rays: the intervals of the walk, and the estimators of transmittance.
 #include <fmt/format.h>
 
 #include <set>
@@ -133,9 +133,9 @@ Medium looser(const Medium& medium) {
     return {{MediumPart(d)}};
 }
 
-/// The mean over rays, each estimated as often. Estimates lie in [0, 1], so that none of mean T has
-/// a variance above T (1 - T) (Bhatia and Davis 2000): that is the error, as samples tell little of
-/// theirs where something rare happens.
+/// The mean over rays, each estimated equally often. Estimates lie in [0, 1], so with mean T their
+/// variance is at most T (1 - T) (Bhatia and Davis 2000). The error follows from that bound: where
+/// events are rare, the samples' own variance is unreliable.
 void addTransmittance(Lab& lab, const std::string& name, const Medium& medium,
                       const std::vector<Ray>& rays, const std::vector<double>& exact,
                       const Estimator& estimator) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rough metal and glass lose nothing between their facets: in even light of radiance 1 they are
-// invisible, whether light is found by what is drawn at them, or looked for.
+// Rough metal and glass lose no energy between their facets: in uniform light of radiance 1 they
+// are invisible, both by sampling the BSDF and by next-event estimation.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ void even(Lab& lab, const std::string& name, const std::string& scene, double ex
     Case c = caseOf(name, expected, evenPicture(lab, name, sceneIn(lab, scene), precision, {0})[0],
                     precision);
     c.note = note;
-    c.allowance = 5e-4 * expected;  // tables of what is hidden, where light is looked for
+    c.allowance = 5e-4 * expected;  // tables of the losses, with next-event estimation
     lab.add(std::move(c));
 }
 
@@ -35,7 +35,8 @@ std::string metal(double roughness) {
 
 void roughFacets(Lab& lab) {
     const std::string ball = "[[surface]]\nmaterial = \"rough\"\nsphere = {}\n";
-    // All light comes from walls that shine and reflect nothing: half of it is looked for.
+    // All light comes from walls that emit and do not reflect, so next-event estimation has a
+    // share.
     const std::string room =
         "[[material]]\nname = \"wall\"\ntype = \"emissive\"\nradiance = 1\nboth_sides = true\n"
         "[[surface]]\nmaterial = \"wall\"\nbox = { min = [-3, -3, -3], max = [3, 3, 3] }\n"

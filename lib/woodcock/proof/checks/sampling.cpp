@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions, distances and numbers follow the densities that they are said to follow.
+// Directions, distances and numbers follow their stated densities.
 //
 // Cells of every chi-square test are made by an exact distribution, so that all are equally likely
 // wherever that can be had. Where no density is known (flights), the exact optical depth is.
@@ -82,8 +82,8 @@ double noise(Vec3i v) {
     return u < 0.4 ? 0 : u;
 }
 
-/// The chance to come as far as an event is even between that to escape and 1. Optical depths are
-/// those of the voxels, by an integral that knows no cells or bounds.
+/// The transmittance to an event is uniform between that of the whole ray and 1. Optical depths are
+/// integrated over voxels, without cells or bounds.
 void flights(Lab& lab) {
     const int n = lab.pick(10000, 200000);
     test::GridSpec grid;
@@ -140,10 +140,10 @@ void equiangular(Lab& lab) {
     const Vec3d axis = normalize(Vec3d{0.3, 0.8, -0.4});
     struct Set {
         const char* name;
-        double offset, along, t0, t1;  // of the lamp; of the ray
+        double offset, along, t0, t1;  // of the light; of the ray
     };
-    for (const Set& s : {Set{"lamp beside", 1, 3, 0, 10}, Set{"lamp close", 1e-3, 3, 0, 10},
-                         Set{"lamp behind", 2, -3, 0, 10}, Set{"lamp beyond", 0.5, 30, 1, 10},
+    for (const Set& s : {Set{"light beside", 1, 3, 0, 10}, Set{"light close", 1e-3, 3, 0, 10},
+                         Set{"light behind", 2, -3, 0, 10}, Set{"light beyond", 0.5, 30, 1, 10},
                          Set{"endless ray", 1, 3, 0, infinity}}) {
         const std::string name = fmt::format("equiangular, {}", s.name);
         Vec3d side, other;
@@ -163,7 +163,7 @@ void equiangular(Lab& lab) {
             worst = std::max(worst, std::abs(e.pdf(t) / expected - 1));
         }
         lab.add(cells.asCase(name));
-        // The lamp's place is known to 1e-15.
+        // The light's position is known to 1e-15.
         lab.add(exactCase("largest relative error of the density, " + name, 0, worst,
                           1e-14 + 2e-14 / s.offset));
     }

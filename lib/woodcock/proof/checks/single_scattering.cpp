@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that is scattered once, and the half-space under a sun, where all orders have a formula.
+// Light that is scattered once, and the half-space under a sun, for which all orders have a
+// formula.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -93,7 +94,7 @@ std::string halfSpace(const char* slab, double albedo) {
     return fmt::format("[[volume]]\n{}\nscale = 2000\nalbedo = {}\ng = 0\n", slab, albedo);
 }
 
-/// By reciprocity the radiance seen under an even sky is the part of a beam that comes back.
+/// By reciprocity, the radiance seen under a uniform sky is the part of a beam that is reflected.
 Estimate firstOrder(const Lab& lab, const char* slab, double albedo, double mu,
                     const Precision& precision) {
     const std::string name = fmt::format("first order {} {} {}", slab, albedo, mu);
@@ -189,13 +190,14 @@ void airlight(Lab& lab) {
                                           ? "file = \"fog.vdb\""
                                           : "box = { min = [-60, -60, -60], max = [60, 60, 60] }";
                     const bool ball = voxels && offset < 3;
-                    const Vec3d lamp{0, offset, 0};
+                    const Vec3d lightPosition{0, offset, 0};
                     const std::string name = fmt::format(
                         "airlight of a {} in fog ({}), g {}, offset {}, eye at {}",
                         ball ? "small sphere" : "point", voxels ? "voxels" : "box", g, offset, eye);
-                    const Scene scene =
-                        sceneIn(lab, fogIn(fog, g) + (ball ? sphere(lamp, radius) : point(lamp)) +
-                                         test::pencilCamera({eye, 0, 0}, {1, 0, 0}));
+                    const Scene scene = sceneIn(
+                        lab, fogIn(fog, g) +
+                                 (ball ? sphere(lightPosition, radius) : point(lightPosition)) +
+                                 test::pencilCamera({eye, 0, 0}, {1, 0, 0}));
                     const double expected =
                         oracle::airlight({sigmaA, sigmaS, g, 1, offset}, eye, eye, infinity);
                     Case c = caseOf(name, expected,
@@ -208,7 +210,7 @@ void airlight(Lab& lab) {
 
 constexpr double half = 2;  // of the edge of a box of fog around the origin
 
-/// How much of the straight line between two points lies in that box.
+/// The length of the straight line between two points inside of that box.
 double inFog(Vec3d a, Vec3d b) {
     double t0 = 0, t1 = 1;
     for (int i = 0; i < 3; ++i) {
@@ -221,34 +223,35 @@ double inFog(Vec3d a, Vec3d b) {
 }
 
 /// Scattered once into a view along -z that enters the box at its face.
-double airlightInBox(Vec3d lamp, double g) {
+double airlightInBox(Vec3d lightPosition, double g) {
     const oracle::Quadrature rule = oracle::gaussLegendre(8);
     constexpr int panels = 1000;
     double sum = 0;
     for (int panel = 0; panel < panels; ++panel)
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double z = half * (2 * (panel + rule.nodes[i]) / panels - 1);
-            const Vec3d at{0, 0, z}, toLamp = lamp - at;
-            const double distance = length(toLamp);
+            const Vec3d at{0, 0, z}, toLight = lightPosition - at;
+            const double distance = length(toLight);
             sum += rule.weights[i] * 2 * half / panels * sigmaS *
-                   oracle::henyeyGreenstein(-toLamp.z / distance, g) / (distance * distance) *
-                   std::exp(-sigmaT * (half - z + inFog(at, lamp)));
+                   oracle::henyeyGreenstein(-toLight.z / distance, g) / (distance * distance) *
+                   std::exp(-sigmaT * (half - z + inFog(at, lightPosition)));
         }
     return sum;
 }
 
-/// The eye outside a box of fog, and the light inside, or outside on any side.
+/// The eye outside of a box of fog; the light inside, or outside on any side.
 void airlightOfABox(Lab& lab) {
     const Precision precision = oncePrecision(lab);
     const std::string fog = "box = { min = [-2, -2, -2], max = [2, 2, 2] }";
-    for (const Vec3d lamp : {Vec3d{0.3, 0.2, 0.5}, Vec3d{0.05, 0, -1}, Vec3d{3, 0.5, 1},
-                             Vec3d{0.5, -1, 6}, Vec3d{1, 2.5, -4}})
+    for (const Vec3d lightPosition : {Vec3d{0.3, 0.2, 0.5}, Vec3d{0.05, 0, -1}, Vec3d{3, 0.5, 1},
+                                      Vec3d{0.5, -1, 6}, Vec3d{1, 2.5, -4}})
         for (const double g : {0.0, 0.8, -0.5}) {
-            const std::string name = fmt::format(
-                "airlight of a box of fog, light at {}/{}/{}, g {}", lamp.x, lamp.y, lamp.z, g);
-            const Scene scene = sceneIn(lab, fogIn(fog.c_str(), g) + point(lamp) +
+            const std::string name =
+                fmt::format("airlight of a box of fog, light at {}/{}/{}, g {}", lightPosition.x,
+                            lightPosition.y, lightPosition.z, g);
+            const Scene scene = sceneIn(lab, fogIn(fog.c_str(), g) + point(lightPosition) +
                                                  test::pencilCamera({0, 0, 10}, {0, 0, -1}));
-            Case c = caseOf(name, airlightInBox(lamp, g),
+            Case c = caseOf(name, airlightInBox(lightPosition, g),
                             evenPicture(lab, name, scene, precision, {0}, 1)[0], precision);
             c.allowance += 1e-5 * c.expected;
             c.note = "quadrature to 1e-5, as panels hold the kinks of corners";

@@ -5,7 +5,7 @@
 
 namespace woodcock::proof::slab {
 
-// Slabs of vertical depth 1 where the scale is 1, as what a [[volume]] begins with.
+// Slabs of vertical depth 1 where the scale is 1: the first lines of a [[volume]].
 
 inline constexpr const char* box = "box = { min = [-1e7, 0, -1e7], max = [1e7, 1, 1e7] }\n";
 inline constexpr const char* even = "file = \"even.vdb\"\n";

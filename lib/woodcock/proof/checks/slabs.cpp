@@ -17,7 +17,8 @@ namespace {
 
 using test::RgbEstimate;
 
-/// How optical depth lies over the height of a slab: its answer does not depend on it.
+/// The distribution of optical depth over the height of a slab, on which its answer does not
+/// depend.
 struct Profile {
     const char* name;
     std::vector<double> weights;
@@ -45,8 +46,8 @@ std::string slabVolume(const Parameters& p) {
                        p.profile.name, p.depth, p.albedo, p.g);
 }
 
-/// Who tells light from above from light from below: a sky of two colours, which next-event
-/// estimation samples, or black boxes in even light, which cost less in deep slabs.
+/// How light from above is told from light from below: by a sky of two colours, which next-event
+/// estimation samples, or by black boxes in uniform light, which cost less in deep slabs.
 enum class Divide { Sky, Boxes };
 constexpr const char* evenLight = "[[light]]\ntype = \"environment\"\nradiance = 1\n";
 std::string blackBox(double bottom, double top) {
@@ -66,7 +67,7 @@ test::Estimate measure(const Lab& lab, const Parameters& p, const Precision& pre
                        {0})[0];
 }
 
-/// By reciprocity the radiance seen at mu is what the slab does with a beam at mu.
+/// By reciprocity, the radiance seen at mu is the slab's answer to a beam at mu.
 struct Measured {
     test::Estimate reflected, transmitted;
 };
@@ -109,7 +110,7 @@ void table(Lab& lab) {
     }
 }
 
-/// Where the tables end: oblique, strongly forward, backward, thick, nearly conservative.
+/// Beyond the tables: oblique, strongly forward, backward, thick, nearly conservative.
 void beyondTheTables(Lab& lab) {
     writeProfiles(lab);
     std::vector<Parameters> list{
@@ -129,7 +130,7 @@ void beyondTheTables(Lab& lab) {
     }
 }
 
-/// Each channel has a depth, an albedo and an asymmetry of its own grid's making.
+/// Each channel has a depth, an albedo and an asymmetry of its own, by its grids.
 void chromatic(Lab& lab) {
     writeProfiles(lab);
     const Precision precision = dearPrecision(lab);
@@ -208,7 +209,7 @@ void stacks(Lab& lab) {
     }
 }
 
-/// A finite grid stands for an infinite slab: what a wider one answers.
+/// A finite grid is used for an infinite slab: the effect of its width.
 void width(Lab& lab) {
     writeTwoColouredSky(lab);
     const Precision precision = usualPrecision(lab);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glass, mirrors of total reflection, lamps and walls, and media inside them.
+// Glass, total reflection, emitters and walls, and media inside of surfaces.
 #include "woodcock/proof/oracles/surfaces.h"
 
 #include <fmt/format.h>
@@ -37,8 +37,8 @@ std::string medium(double sigmaA, double sigmaS, double g) {
     return fmt::format("medium = {{ sigma_a = {}, sigma_s = {}, g = {} }}", sigmaA, sigmaS, g);
 }
 
-/// What the two-coloured sky shows of something across y: reflected light is red, what came through
-/// is blue.
+/// How the two-coloured sky shows a layer across y: reflected light is red, transmitted light is
+/// blue.
 void addFaces(Lab& lab, const std::string& name, const std::string& scene, double reflectance,
               double transmittance, const Precision& precision, const std::string& source) {
     const RgbEstimate e = evenPicture(lab, name, sceneIn(lab, scene), precision, {0, 2});
@@ -53,8 +53,7 @@ void addFaces(Lab& lab, const std::string& name, const std::string& scene, doubl
     }
 }
 
-/// A plate of absorbing glass, at some size and place in the world: all lengths scale, and so does
-/// what is far away.
+/// A plate of absorbing glass, at several sizes and positions in the world.
 void plates(Lab& lab) {
     writeTwoColouredSky(lab);
     const Precision precision = dearPrecision(lab);
@@ -83,8 +82,8 @@ void plates(Lab& lab) {
     }
 }
 
-/// Water that reaches into glass: priorities make one boundary of it, and the pile answers as if
-/// plates touched.
+/// Water that reaches into glass: priorities make it one boundary, and the pile acts like plates
+/// that touch.
 void nested(Lab& lab) {
     writeTwoColouredSky(lab);
     const Precision precision = dearPrecision(lab);
@@ -182,7 +181,7 @@ void mediaInside(Lab& lab) {
                      twoColouredSky + cameraAbove(r.mu),
                  face.reflectance[0], face.transmittance[0], precision, "adding-doubling");
     }
-    // The same coloured fog in an interface and in none, under a sun and beside a lamp.
+    // The same coloured fog in an interface and without one, under a sun and beside a sphere light.
     const std::string lights =
         "[[light]]\ntype = \"sun\"\ndirection = [1, -2, 0.5]\nirradiance = 3\n"
         "[[light]]\ntype = \"sphere\"\nposition = [0.2, 0.1, 0]\nradius = 0.1\nradiance = 30\n";
@@ -211,7 +210,7 @@ void mediaInside(Lab& lab) {
     }
 }
 
-/// Whatever absorbs nothing is invisible in an even environment.
+/// An object that absorbs nothing is invisible in a uniform environment.
 void furnaces(Lab& lab) {
     const Precision precision = dearPrecision(lab);
     const auto furnace = [&](const std::string& name, const std::string& scene,
@@ -259,10 +258,10 @@ void furnaces(Lab& lab) {
                 test::pencilCamera({0, 1e-3, 0}, {std::sqrt((1 - mu) * (1 + mu)), -mu, 0}));
 }
 
-/// Lamps with a shape, and rooms that they fill.
-void lamps(Lab& lab) {
+/// Emissive surfaces, and rooms that they light.
+void emissiveSurfaces(Lab& lab) {
     const Precision precision = dearPrecision(lab);
-    const std::string lamp =
+    const std::string emitter =
         "[[material]]\nname = \"lamp\"\ntype = \"emissive\"\nradiance = [3, 2, 1]\n";
     const std::string ground =
         "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\ncolour = 0.5\n"
@@ -285,7 +284,7 @@ void lamps(Lab& lab) {
         lab.add(caseOf(
             name, 3 * 0.5 / pi * irradiance,
             evenPicture(lab, name,
-                        sceneIn(lab, lamp + ground +
+                        sceneIn(lab, emitter + ground +
                                          "[[surface]]\nmaterial = \"lamp\"\nbox = { min "
                                          "= [-1, 2, -0.5], max = [1, 4, 0.5] }\n" +
                                          test::pencilCamera(point + Vec3d{0, 1, 2}, {0, -1, -2})),
@@ -298,7 +297,7 @@ void lamps(Lab& lab) {
         Case c = caseOf(
             name, 3 * 0.5 / pi * oracle::sphereIrradiance(1, distance, cosine),
             evenPicture(lab, name,
-                        sceneIn(lab, lamp + ground +
+                        sceneIn(lab, emitter + ground +
                                          fmt::format("[[surface]]\nmaterial = \"lamp\"\nsphere = "
                                                      "{{ centre = [{}, {}, 0], radius = 1 }}\n",
                                                      distance * sine, distance * cosine) +
@@ -351,7 +350,7 @@ std::vector<Check> surfaces() {
             {Kind::Surface, "total reflection", totalReflection},
             {Kind::Surface, "media inside surfaces", mediaInside},
             {Kind::Surface, "furnaces with surfaces", furnaces},
-            {Kind::Surface, "emissive surfaces", lamps}};
+            {Kind::Surface, "emissive surfaces", emissiveSurfaces}};
 }
 
 }  // namespace woodcock::proof

@@ -12,8 +12,7 @@
 
 namespace woodcock::proof {
 
-/// A volume to hold the properties of any volume against: as the renderer sees it, and as OpenVDB
-/// does.
+/// A volume for the checks of properties: in the renderer's own form, and in OpenVDB's.
 struct Volume {
     std::string name;
     std::shared_ptr<const Field> field;
@@ -27,7 +26,7 @@ struct Volume {
     double radius() const;  ///< of a sphere around the support
     /// With these coefficients in units of sigma.
     MediumPart part(Rgb absorption, Rgb scattering, double g) const;
-    /// For sigma, by brute force through OpenVDB's own lookups.
+    /// Optical depth for sigma, by brute force through OpenVDB's own lookups.
     double opticalDepth(Vec3d origin, Vec3d direction, double t0, double t1) const;
 };
 

@@ -40,8 +40,9 @@ Directions directions(const Values& asked, std::size_t nodes, const Slab& slab) 
     double depth = 0;
     for (const Layer& l : slab.layers) depth += l.opticalDepth;
     Directions all;
-    // Light that can escape is sampled evenly outside, where Fresnel's terms are smooth. A slab as
-    // good as clear traps none, and where nothing ends it its amount would be undefined.
+    // Light that can escape is sampled uniformly outside, where Fresnel's terms are smooth. An
+    // almost clear slab traps no light; without absorption the amount of trapped light would be
+    // undefined.
     const std::size_t escaping = index == 1 || depth < 1e-12 ? nodes : nodes / 2;
     const Quadrature outside = gaussLegendre(escaping);
     for (std::size_t i = 0; i < escaping; ++i) {
@@ -61,7 +62,7 @@ Directions directions(const Values& asked, std::size_t nodes, const Slab& slab) 
 /// The phase function between the directions of a hemisphere.
 struct Redistribution {
     Matrix forward, backward;  ///< to the same hemisphere and to the opposite one
-    /// What the quadrature lacks (or has too much) of all scattered light from each direction. It
+    /// The scattered light from each direction that the quadrature misses (or counts too much). It
     /// is the tip of the peak, and counts as light that goes straight on.
     Values unresolved;
 };
@@ -81,8 +82,8 @@ Redistribution redistribution(const Directions& d, double g) {
     return r;
 }
 
-/// A homogeneous layer. Radiance out = (R flux) in, or (straight + T flux) in. Keeping apart what
-/// goes straight on keeps the relative accuracy of T in thin layers.
+/// A homogeneous layer. Radiance out = (R flux) in, or (straight + T flux) in. The straight part is
+/// kept separate, for the relative accuracy of T in thin layers.
 struct Uniform {
     Values straight;
     Matrix R, T;
