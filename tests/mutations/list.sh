@@ -210,7 +210,7 @@ defect "facets hidden from one side alone" 'Bsdf*:Ggx*' "" \
     lib/woodcock/surface/microfacet.h \
     'z * (out.z + o) / (z * o + out.z * slope(in))' '1 + 0 * (z + o + slope(in))'
 
-defect "surfaces in one place met one by one" 'Together*:*SameBody*' "surfaces in one place" \
+defect "surfaces in one place met one by one" 'CoincidentSurfaces*:*SameBody*' "surfaces in one place" \
     lib/woodcock/surface/geometry.cpp \
     'slack, coincident || point.coincident, i, point}' 'slack, false, i, point}'
 

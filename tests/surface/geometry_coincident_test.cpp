@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Anywhere, SameBody,
                                          std::pair(1.0, Vec3d{1e6, -1e6, 1e6}),
                                          std::pair(1e-2, Vec3d{0, 30, 0})));
 
-TEST(Together, AGapThatFloatsCanTellIsAGap) {
+TEST(CoincidentSurfaces, AGapThatFloatsCanTellIsAGap) {
     const Geometry geometry({box({-0.7, 0, -0.7}, {0.7, 1, 0.7}), InfinitePlane{}},
                             {{0, 0, Affine3d::translate({0, 1e-6, 0})}, {1, 1, Affine3d{}}});
     SurfaceHit hit, next;
@@ -92,7 +92,7 @@ TEST(Together, AGapThatFloatsCanTellIsAGap) {
     EXPECT_NEAR(next.t, 1e-6, 1e-12);
 }
 
-TEST(Together, OnlyWhereBothAre) {
+TEST(CoincidentSurfaces, OnlyWhereBothAre) {
     const Geometry geometry({box({-1, 0, -1}, {0.25, 1, 1}), box({-0.25, 0, -1}, {1, 0.5, 1})},
                             {{0, 0, Affine3d{}}, {1, 1, Affine3d{}}});
     for (const double x : {-0.5, 0.1, 0.5}) {
@@ -103,7 +103,7 @@ TEST(Together, OnlyWhereBothAre) {
     }
 }
 
-TEST(Together, FacesKnowWhichWayTheyLook) {
+TEST(CoincidentSurfaces, FacesKnowWhichWayTheyLook) {
     const Geometry geometry({box({0, 0, 0}, {1, 1, 1})},
                             {{0, 0, Affine3d{}}, {0, 1, Affine3d::translate({1, 0, 0})}});
     SurfaceHit hit;

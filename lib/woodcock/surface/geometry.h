@@ -39,7 +39,7 @@ struct SurfaceHit {
     std::uint32_t object = 0, instance = 0, primitive = 0;
     /// About surfaces that coincide at the hit. Geometry sets the first two members; the others are
     /// the caller's.
-    struct Together {
+    struct Coincidence {
         /// How far rounding (floats in meshes, doubles in transforms) may have moved the point off
         /// its surface, in world units.
         double reach = 0;
