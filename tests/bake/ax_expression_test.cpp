@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 #include <tbb/global_control.h>
 
@@ -15,6 +14,7 @@
 
 #include "tests/support/expect_error.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include "tests/bake/recipe_text.h"
 #include "woodcock/bake/ax_expression.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
 namespace {

@@ -2,7 +2,6 @@
 #include "woodcock/bake/baker.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 
@@ -13,6 +12,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
 namespace {

@@ -6,7 +6,6 @@
 // the recipe (see data/recipes/README.md) and of OpenVDB's own command-line tool upon a grid of the
 // same active voxels, file input and output and start-up included.
 #include <fmt/core.h>
-#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/bake/baker.h"
 #include "woodcock/bake/program.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace {
 

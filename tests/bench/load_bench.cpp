@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long loading a grid takes, beside OpenVDB's own reading of it.
 // usage: load_bench FILE.vdb GRID [REPEATS]
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +10,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace {
 

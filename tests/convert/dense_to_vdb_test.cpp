@@ -2,7 +2,6 @@
 #include "woodcock/convert/dense_to_vdb.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "tests/support/expect_error.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
 namespace {

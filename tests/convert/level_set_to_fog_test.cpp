@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include "tests/support/expect_error.h"
 #include "woodcock/convert/level_set_to_fog.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
 namespace {

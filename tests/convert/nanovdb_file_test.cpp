@@ -2,12 +2,12 @@
 #include "woodcock/convert/formats/nanovdb.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <bit>
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"

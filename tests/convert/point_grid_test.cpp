@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/random.h"
 #include "woodcock/convert/point_grid_read.h"

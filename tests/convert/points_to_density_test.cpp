@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/random.h"
 #include "woodcock/convert/points_to_density.h"

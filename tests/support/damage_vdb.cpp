@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/damage_vdb.h"
 
-#include <openvdb/openvdb.h>
-
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include <random>
 
 #include "tests/support/paths.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/vdb/check_grid_head.h"
 #include "woodcock/grid/vdb/check_header.h"

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <signal.h>
 
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include "woodcock/bake/ax_expression.h"
 #include "woodcock/bake/recipe.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/image/read_image.h"
 
 namespace woodcock::test {

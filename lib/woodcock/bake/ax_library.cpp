@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/ranges.h>
-#include <openvdb/openvdb.h>
 #include <openvdb_ax/ast/AST.h>
 #include <openvdb_ax/ast/Parse.h>
 #include <openvdb_ax/ast/Scanners.h>
@@ -24,6 +23,7 @@
 #include "woodcock/bake/openvdb_ax_program.h"
 #include "woodcock/bake/openvdb_ax_rules.h"
 #include "woodcock/base/error.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 namespace {

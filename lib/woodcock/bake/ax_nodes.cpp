@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenVDB AX as a node: code that runs over the voxels of other nodes' grids.
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 
@@ -10,6 +9,7 @@
 #include "woodcock/bake/openvdb_field.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/voxel_scan.h"
 
 namespace woodcock {

@@ -2,7 +2,6 @@
 #include "woodcock/bake/bake_file.h"
 
 #include <fmt/ranges.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/MultiResGrid.h>
 
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "woodcock/grid/grid_info.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "woodcock/bake/baker.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/voxel_scan.h"
 
 namespace woodcock {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/bake/openvdb_field.h"
 
-#include <openvdb/openvdb.h>
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

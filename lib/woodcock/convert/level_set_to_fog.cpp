@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/convert/level_set_to_fog.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +8,7 @@
 #include "woodcock/convert/openvdb_fog.h"
 #include "woodcock/grid/vdb/openvdb_exact_copy.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

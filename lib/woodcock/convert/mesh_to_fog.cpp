@@ -2,7 +2,6 @@
 #include "woodcock/convert/mesh_to_fog.h"
 
 #include <openvdb/math/Proximity.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
@@ -21,6 +20,7 @@
 #include "woodcock/convert/openvdb_lattice.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/convert/points_to_density.h"
 
-#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
@@ -15,6 +14,7 @@
 #include "woodcock/convert/limits.h"
 #include "woodcock/convert/openvdb_lattice.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/mesh/triangle_mesh.h"
 
 namespace woodcock {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/vdb/read_grids.h"
 #include "woodcock/mesh/surface_mesh.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include "tests/support/damage_vdb.h"
 #include "tests/support/expect_error.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"

@@ -24,7 +24,6 @@ bool isNanoVdb(FileBytes& file) {
 
 #ifdef WOODCOCK_WITH_NANOVDB
 #include <nanovdb/NanoVDB.h>
-#include <openvdb/openvdb.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -38,6 +37,7 @@ bool isNanoVdb(FileBytes& file) {
 #include "woodcock/base/printable.h"
 #include "woodcock/grid/nanovdb/segments.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

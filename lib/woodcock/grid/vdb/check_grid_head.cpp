@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/grid/vdb/check_grid_head.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <istream>
 #include <map>
 
 #include "woodcock/base/printable.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/grid/vdb/file.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,6 +10,7 @@
 #include "woodcock/grid/vdb/check_grid_head.h"
 #include "woodcock/grid/vdb/check_header.h"
 #include "woodcock/grid/vdb/check_tree.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <istream>
 #include <span>
 #include <string>
@@ -10,12 +8,9 @@
 #include "woodcock/grid/vdb/file_bytes.h"
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/check_tree.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
-
-/// The tree of OpenVDB 13's grids of half values. Older versions can hold such a tree, although
-/// they do not know such grids.
-using HalfTree = openvdb::tree::Tree4<openvdb::math::half, 5, 4, 3>::Type;
 
 /// The bytes of a tree in memory, and what is needed to read them. They have been checked: OpenVDB
 /// can read them within bounds.

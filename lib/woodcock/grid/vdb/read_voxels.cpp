@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/grid/vdb/read_voxels.h"
 
-#include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
@@ -18,6 +17,7 @@
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_stored_tree.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

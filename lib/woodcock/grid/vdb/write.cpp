@@ -2,7 +2,6 @@
 #include "woodcock/grid/vdb/write.h"
 
 #include <openvdb/io/Archive.h>
-#include <openvdb/openvdb.h>
 
 #include <cerrno>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include "woodcock/base/random.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 

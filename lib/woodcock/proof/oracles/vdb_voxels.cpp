@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/proof/oracles/vdb_voxels.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "woodcock/base/random.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
 

@@ -2,7 +2,6 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
 #include <algorithm>
@@ -10,13 +9,12 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 namespace {
-
-using HalfTree = openvdb::tree::Tree4<openvdb::math::half, 5, 4, 3>::Type;
 
 template <class V>
 V as(const VdbValue& v) {

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/grid/vdb/openvdb_trees.h"
+
+namespace openvdb {
+OPENVDB_USE_VERSION_NAMESPACE
+namespace OPENVDB_VERSION_NAME {
+
+template class tree::Tree<woodcock::HalfTree::RootNodeType>;
+template class Grid<woodcock::HalfTree>;
+
+}  // namespace OPENVDB_VERSION_NAME
+}  // namespace openvdb
