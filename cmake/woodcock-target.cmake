@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# How our own code is compiled: woodcock_target(name) for every target of this project.
+# How our own code is compiled: woodcock_target(name) for every target of this project, and
+# woodcock_cold(name) after it for those that take no time when they run.
 
 if(PROJECT_IS_TOP_LEVEL)
     find_program(CCACHE ccache)
@@ -46,4 +47,9 @@ function(woodcock_target name)
             $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
         target_link_options(${name} PUBLIC ${sanitizers})
     endif()
+endfunction()
+
+# Optimised less in release builds: that takes a third less time to compile.
+function(woodcock_cold name)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 native=$PWD/build/demo/tools/woodcock
 
 cmake --preset demo
-cmake --build --preset demo --target woodcock_program \
+cmake --build --preset demo --target woodcock_program woodcock_verify_program \
     --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
 "$native" verify --quick
 exec tests/same_bits.sh "$plain" "$native" "$digest"

@@ -13,7 +13,11 @@ CLI::App& addBakeCommand(CLI::App& app);
 CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine);
 CLI::App& addConvertCommand(CLI::App& app);
 CLI::App& addInfoCommand(CLI::App& app);
+// Of the proof; in `woodcock`, of what calls the program that holds it (see verify_launcher.cpp).
 CLI::App& addVerifyCommand(CLI::App& app);
+inline const std::string verifyPurpose =
+    "Hold this build on this machine against closed forms, published tables and properties that "
+    "any volume has";
 // `commandLine` goes into the images' headers.
 CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine);
 CLI::App& addRenderCommand(CLI::App& app, const std::string& commandLine);

@@ -10,7 +10,7 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/render/view_depth.h"
 #include "woodcock/scene/build_medium.h"
-#include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/seen_light.h"
 
 namespace woodcock::tool {
 
@@ -20,20 +20,6 @@ Rgb brightnessOf(const SunDescription& sun) { return sun.irradiance; }
 Rgb brightnessOf(const EnvironmentDescription& environment) { return environment.radiance; }
 Rgb brightnessOf(const PointDescription& point) { return point.intensity; }
 Rgb brightnessOf(const SphereDescription& sphere) { return sphere.radiance; }
-
-bool glows(const VolumeDescription& volume) {
-    return (volume.emission && volume.emission->scale.maximum() > 0) ||
-           (volume.blackbody && volume.blackbody->intensity > 0);
-}
-
-bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {
-    const auto interior = [](const SurfaceDescription& surface) {
-        return surface.interior && surface.interior->emission.maximum() > 0;
-    };
-    return std::any_of(scene.volumes.begin(), scene.volumes.end(), glows) ||
-           std::any_of(scene.surfaces.begin(), scene.surfaces.end(), interior) ||
-           anySurfaceEmits(scene);
-}
 
 bool anyLightShines(const SceneDescription& scene) {
     return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& light) {
@@ -57,17 +43,6 @@ Brightest brightestOf(const Film& film) {
 }
 
 }  // namespace
-
-bool anythingGlows(const SceneDescription& scene) {
-    const auto isSeen = [](const LightDescription& light) {
-        if (const auto* sun = std::get_if<SunDescription>(&light.light)) return sun->visible;
-        if (const auto* sphere = std::get_if<SphereDescription>(&light.light))
-            return sphere->visible;
-        return false;
-    };
-    return anyVolumeOrSurfaceGlows(scene) ||
-           std::any_of(scene.lights.begin(), scene.lights.end(), isSeen);
-}
 
 PictureWarnings::PictureWarnings(const SceneDescription& description, const LoadedScene& loaded)
     : description_(description), volumesOfParts_(volumesOfParts(description, loaded, "")) {}

@@ -11,9 +11,6 @@
 
 namespace woodcock::tool {
 
-/// Whether light may come from where nothing covers: what glows, and lights that are seen.
-bool anythingGlows(const SceneDescription& scene);
-
 /// Why a picture shows nothing, before it is drawn and after.
 class PictureWarnings {
 public:

@@ -28,8 +28,8 @@
 #include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/light_changes.h"
 #include "woodcock/scene/scene_files.h"
+#include "woodcock/scene/seen_light.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::tool {
@@ -73,14 +73,6 @@ SceneDescription describeScene(const RenderOptions& options) {
         scene.places["ocio"] = "--ocio";
     }
     return scene;
-}
-
-bool environmentIsHidden(const SceneDescription& scene) {
-    bool hidden = true;
-    for (const LightDescription& light : foreseenLights(scene))
-        if (const auto* environment = std::get_if<EnvironmentDescription>(&light.light))
-            hidden &= !environment->visible;
-    return hidden;
 }
 
 bool isStdout(const std::filesystem::path& file) { return file == "-"; }

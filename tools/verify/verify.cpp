@@ -164,10 +164,7 @@ void runVerify(const VerifyOptions& o) {
 }  // namespace
 
 CLI::App& addVerifyCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "verify",
-        "Hold this build on this machine against closed forms, published tables and properties "
-        "that any volume has");
+    CLI::App* command = app.add_subcommand("verify", verifyPurpose);
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick,
                       "Prove two digits, in about a minute (the default)");

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace woodcock {
+
+/// Who can mend it: the caller's words, the data they named, or the machine at work.
+/// The program's main() turns the kind into its exit code; the library itself never exits.
+enum class ErrorKind {
+    Usage,   ///< contradictory or unknown options (exit 2)
+    Input,   ///< a file or scene that cannot be used (exit 3)
+    Failure  ///< something broke while working, such as a full disk (exit 1)
+};
+
+/// The one exception that the library throws on purpose. The message names the file, the place,
+/// what was found, what was expected and what exists, in one sentence that a user can act on.
+class Error : public std::runtime_error {
+public:
+    Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+    ErrorKind kind() const { return kind_; }
+
+private:
+    ErrorKind kind_;
+};
+
+}  // namespace woodcock
