@@ -45,7 +45,7 @@ std::string sectionOf(const LatticeVolume& volume, const std::string& name) {
 }
 
 ArrayVolume arrayVolume(const LatticeVolume& volume, const std::string& name) {
-    auto lattice = std::make_shared<Lattice>();
+    auto lattice = std::make_shared<LatticeValues>();
     lattice->size = {volume.size[0], volume.size[1], volume.size[2]};
     lattice->values.assign(volume.density.begin(), volume.density.end());
     ArrayVolume array{latticeSource(std::move(lattice)), {}, sectionOf(volume, name)};

@@ -45,7 +45,7 @@ struct LatticeVolume {
     std::array<double, 3> origin{};  ///< of point (0, 0, 0), world space
     /// sigma_t = scale * density, per world unit. Absent: chosen, so that a typical ray through the
     /// volume has an optical depth of about 10.
-    std::optional<double> scale;
+    std::optional<double> scale = {};
     std::array<double, 3> albedo{1, 1, 1};  ///< sigma_s / sigma_t of red, green and blue, 0 to 1
     double g = 0;  ///< mean cosine of the Henyey-Greenstein phase function, between -1 and 1
 };

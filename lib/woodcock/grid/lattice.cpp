@@ -9,7 +9,7 @@ namespace woodcock {
 namespace {
 
 /// The 512 values of the leaf at `origin`, x slowest; 0 outside of the lattice.
-void copyLeafOf(const Lattice& lattice, Vec3i origin, std::span<float> leaf) {
+void copyLeafOf(const LatticeValues& lattice, Vec3i origin, std::span<float> leaf) {
     std::fill(leaf.begin(), leaf.end(), 0.0f);
     const Vec3i n = lattice.size;
     const auto end = [&](int axis) { return std::min(8, n[axis] - origin[axis]); };
@@ -33,7 +33,7 @@ std::array<std::uint64_t, 8> activeMask(std::span<const float> leaf) {
 
 }  // namespace
 
-LatticeSource latticeSource(std::shared_ptr<const Lattice> lattice) {
+LatticeSource latticeSource(std::shared_ptr<const LatticeValues> lattice) {
     const Vec3i n = lattice->size;
     if (n.x < 1 || n.y < 1 || n.z < 1 ||
         lattice->values.size() != std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z))

@@ -11,7 +11,7 @@
 namespace woodcock {
 
 /// One float for each point of a regular lattice.
-struct Lattice {
+struct LatticeValues {
     Vec3i size;                 ///< points along x, y and z, each at least 1
     std::vector<float> values;  ///< x fastest: point (x, y, z) is [x + size.x (y + size.y z)]
 };
@@ -23,6 +23,6 @@ struct LatticeSource {
 
 /// The lattice as a source for buildField(), as a VDB grid of the same voxels would give it.
 /// Throws Error{Usage} where `values` are not as many as `size` says.
-LatticeSource latticeSource(std::shared_ptr<const Lattice> lattice);
+LatticeSource latticeSource(std::shared_ptr<const LatticeValues> lattice);
 
 }  // namespace woodcock
