@@ -6,8 +6,8 @@
 
 namespace woodcock {
 
-/// Who can mend it: the caller's words, the data they named, or the machine at work.
-/// The program's main() turns the kind into its exit code; the library itself never exits.
+/// Where the fault lies: in the options, in the data that they name, or in the machine. The
+/// program's main() turns the kind into its exit code; the library itself never exits.
 enum class ErrorKind {
     Usage,   ///< contradictory or unknown options (exit 2)
     Input,   ///< a file or scene that cannot be used (exit 3)

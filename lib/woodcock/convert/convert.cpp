@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/convert/convert.h"
 
-#include <openvdb/openvdb.h>
-
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/convert/format_table.h"
 #include "woodcock/convert/openvdb_convert_source.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 
