@@ -1,32 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's head and its recommendation.
 
-const badge = c => `<span class="badge ${c.biased ? "biased" : "unbiased"}">${c.biased ? "biased" : "unbiased"}</span>`;
-const nameOf = c => `<span class="who"><b class="key c${c.index % colourCount}">${c.key}</b> ${escape(c.name)}</span>`;
+const badge = (c) =>
+    `<span class="badge ${c.biased ? "biased" : "unbiased"}">${c.biased ? "biased" : "unbiased"}</span>`;
+const nameOf = (c) =>
+    `<span class="who"><b class="key c${c.index % colourCount}">${c.key}</b> ${escape(c.name)}</span>`;
 const relmseText = (v, se) => `${withError(v, se)}`;
 
-const sizeText = size => size ? `${size.join(" × ")} pixels` : "–";
+const sizeText = (size) => (size ? `${size.join(" × ")} pixels` : "–");
 
 function head() {
     const r = report.reference || {};
     const facts = {
-        "Budget": `${seconds(report.budget)}, of which ${seconds(report.seconds)} were used`,
-        "Reference": `unbiased, ${plural(r.samples ?? 0, "sample")} per pixel of ${plural(r.seeds ?? 1, "seed")}, ${seconds(r.seconds)}; its own relMSE is ${withError(r.relmse, r.relmse_se)}
+        Budget: `${seconds(report.budget)}, of which ${seconds(report.seconds)} were used`,
+        Reference: `unbiased, ${plural(r.samples ?? 0, "sample")} per pixel of ${plural(r.seeds ?? 1, "seed")}, ${seconds(r.seconds)}; its own relMSE is ${withError(r.relmse, r.relmse_se)}
             (${rms(r.relmse)} rms)`,
-        "Image": `${sizeText(report.resolution)}${sizeText(report.measured_resolution ?? report.resolution) === sizeText(report.resolution) ? "" : `, measured at ${sizeText(report.measured_resolution)}`},
+        Image: `${sizeText(report.resolution)}${sizeText(report.measured_resolution ?? report.resolution) === sizeText(report.resolution) ? "" : `, measured at ${sizeText(report.measured_resolution)}`},
             ${plural(report.threads ?? 1, "thread")}`,
         "Made by": `woodcock ${escape(report.woodcock?.version ?? "")}: <code>${escape(report.command ?? "")}</code>`,
     };
     const notes = report.notes || [];
-    return `<h1>What each choice costs in ${escape(report.scene)}</h1>
-        <dl class="facts">${Object.entries(facts).map(([k, v]) => `<dt>${k}</dt><dd>${v}</dd>`).join("")}</dl>` +
-        (notes.length ? `<div class="notes" role="note"><h2>Notes</h2><ul>${notes.map(n => `<li>${escape(n)}</li>`).join("")}</ul></div>` : "");
+    return (
+        `<h1>What each choice costs in ${escape(report.scene)}</h1>
+        <dl class="facts">${Object.entries(facts)
+            .map(([k, v]) => `<dt>${k}</dt><dd>${v}</dd>`)
+            .join("")}</dl>` +
+        (notes.length
+            ? `<div class="notes" role="note"><h2>Notes</h2><ul>${notes.map((n) => `<li>${escape(n)}</li>`).join("")}</ul></div>`
+            : "")
+    );
 }
 
 // ---- the command line to copy
 
 // Lines break between words only.
-const commandBox = command => `<div class="command"><code tabindex="0">${command.split(" ").map(word => `<span>${escape(word)}</span>`).join(" ")}</code><button type="button" class="copy">Copy</button></div>`;
+const commandBox = (command) =>
+    `<div class="command"><code tabindex="0">${command
+        .split(" ")
+        .map((word) => `<span>${escape(word)}</span>`)
+        .join(" ")}</code><button type="button" class="copy">Copy</button></div>`;
 
 async function copy(button) {
     const code = button.previousElementSibling;
@@ -38,68 +50,130 @@ async function copy(button) {
         document.execCommand("copy");
     }
     button.textContent = "Copied";
-    setTimeout(() => { button.textContent = "Copy"; }, 1500);
+    setTimeout(() => {
+        button.textContent = "Copy";
+    }, 1500);
 }
 
 // ---- the answer to a time or an error
 
 const target = () => settings[settings.kind];
-const rangeText = (kind, a, b) => kind === "time" ? `${seconds(a)} to ${seconds(b)}` : `${number(a, 2)} to ${number(b, 2)} (${rms(a)} to ${rms(b)} rms)`;
-const targetText = (kind, v) => kind === "time" ? seconds(v) : `relMSE ${number(v, 2)} (${rms(v)} rms)`;
+const rangeText = (kind, a, b) =>
+    kind === "time"
+        ? `${seconds(a)} to ${seconds(b)}`
+        : `${number(a, 2)} to ${number(b, 2)} (${rms(a)} to ${rms(b)} rms)`;
+const targetText = (kind, v) =>
+    kind === "time" ? seconds(v) : `relMSE ${number(v, 2)} (${rms(v)} rms)`;
 
 function expectation(kind, r) {
-    return kind === "time" ? `${plural(r.samples, "sample")} per pixel, expected relMSE ${relmseText(r.relmse, r.se)} (${rms(r.relmse)} rms)`
+    return kind === "time"
+        ? `${plural(r.samples, "sample")} per pixel, expected relMSE ${relmseText(r.relmse, r.se)} (${rms(r.relmse)} rms)`
         : `${plural(r.samples, "sample")} per pixel, ${seconds(r.seconds)}${r.se > 0 ? ` ± ${seconds(r.se)}` : ""}`;
 }
 
 function answer() {
-    const kind = settings.kind, list = ranking(kind, target()), best = recommended(list), first = list[0];
-    if (!best) return `<p class="answer">For ${targetText(kind, target())}: <b>none${settings.unbiasedOnly ? " of the unbiased ones" : ""}</b>: ${kind === "time" ? "it is too short for one sample of every pixel." : "every one's bias alone exceeds it."}</p>`;
-    const tied = list.filter(r => r !== best && (r.tied || r === first)), without = best.c.biased && list.find(r => !r.c.biased);
-    const longest = Math.max(...(best.c.points || []).map(p => p.samples), 0);
-    return `<p class="answer">For ${targetText(kind, target())}: ${nameOf(best.c)} ${badge(best.c)}</p><p>${expectation(kind, best)}.
+    const kind = settings.kind,
+        list = ranking(kind, target()),
+        best = recommended(list),
+        first = list[0];
+    if (!best)
+        return `<p class="answer">For ${targetText(kind, target())}: <b>none${settings.unbiasedOnly ? " of the unbiased ones" : ""}</b>: ${kind === "time" ? "it is too short for one sample of every pixel." : "every one's bias alone exceeds it."}</p>`;
+    const tied = list.filter((r) => r !== best && (r.tied || r === first)),
+        without = best.c.biased && list.find((r) => !r.c.biased);
+    const longest = Math.max(...(best.c.points || []).map((p) => p.samples), 0);
+    return (
+        `<p class="answer">For ${targetText(kind, target())}: ${nameOf(best.c)} ${badge(best.c)}</p><p>${expectation(kind, best)}.
         ${longest && best.samples > 4 * longest ? `<span class="soft">Measured up to ${plural(longest, "sample")}; beyond that, it is the model that says so.</span>` : ""}</p>
         ${commandBox(commandFor(kind, target(), best))}` +
-        (tied.length ? `<p>Cannot be told from it: ${tied.map(r => `${nameOf(r.c)} ${badge(r.c)}`).join(", ")}.</p>` : "") +
-        (without && !without.tied ? `<p>Best without bias: ${nameOf(without.c)}, ${expectation(kind, without)}.</p>` : "");
+        (tied.length
+            ? `<p>Cannot be told from it: ${tied.map((r) => `${nameOf(r.c)} ${badge(r.c)}`).join(", ")}.</p>`
+            : "") +
+        (without && !without.tied
+            ? `<p>Best without bias: ${nameOf(without.c)}, ${expectation(kind, without)}.</p>`
+            : "")
+    );
 }
 
 function rankingTable() {
-    const kind = settings.kind, list = ranking(kind, target()), unable = allowed().filter(c => !list.some(r => r.c === c)), best = list[0];
-    const figure = r => kind === "time" ? r.relmse : r.seconds, most = list.length ? figure(list[list.length - 1]) : 1;
-    const share = r => Math.max(0.02, 1 - Math.log(most / figure(r)) / Math.max(1e-9, Math.log(most / figure(best)) * 1.15));
-    return `<table class="ranking"><caption>All of them ${kind === "time" ? "after" : "at"} ${targetText(kind, target())}</caption><thead><tr><th scope="col">Choice</th>
+    const kind = settings.kind,
+        list = ranking(kind, target()),
+        unable = allowed().filter((c) => !list.some((r) => r.c === c)),
+        best = list[0];
+    const figure = (r) => (kind === "time" ? r.relmse : r.seconds),
+        most = list.length ? figure(list[list.length - 1]) : 1;
+    const share = (r) =>
+        Math.max(
+            0.02,
+            1 - Math.log(most / figure(r)) / Math.max(1e-9, Math.log(most / figure(best)) * 1.15),
+        );
+    return (
+        `<table class="ranking"><caption>All of them ${kind === "time" ? "after" : "at"} ${targetText(kind, target())}</caption><thead><tr><th scope="col">Choice</th>
         <th scope="col">${kind === "time" ? "relMSE" : "time"}</th><th scope="col"></th></tr></thead><tbody>` +
-        list.map(r => `<tr><td>${nameOf(r.c)}</td><td>${kind === "time" ? relmseText(r.relmse, r.se) : seconds(r.seconds)}</td>
+        list
+            .map(
+                (
+                    r,
+                ) => `<tr><td>${nameOf(r.c)}</td><td>${kind === "time" ? relmseText(r.relmse, r.se) : seconds(r.seconds)}</td>
             <td>${r === best ? "<b>best</b>" : r.tied ? "tied" : `× ${number(figure(r) / figure(best), 3)}`}</td></tr>
-            <tr class="share" aria-hidden="true"><td colspan="3"><i class="c${r.c.index % colourCount}" style="width:${(100 * share(r)).toFixed(1)}%"></i></td></tr>`).join("") +
-        unable.map(c => `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${!isNumber(noiseOf(c).value) ? "not measured" : kind === "time" ? "too slow" : "never: its bias"}</td></tr>`).join("") + `</tbody></table>`;
+            <tr class="share" aria-hidden="true"><td colspan="3"><i class="c${r.c.index % colourCount}" style="width:${(100 * share(r)).toFixed(1)}%"></i></td></tr>`,
+            )
+            .join("") +
+        unable
+            .map(
+                (c) =>
+                    `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${!isNumber(noiseOf(c).value) ? "not measured" : kind === "time" ? "too slow" : "never: its bias"}</td></tr>`,
+            )
+            .join("") +
+        `</tbody></table>`
+    );
 }
 
 // ---- which to take when
 
 const steps = 1000;
-const toSlider = (kind, v) => { const [a, b] = domain[kind].map(Math.log); return b > a ? steps * (Math.log(v) - a) / (b - a) : 0; };
-const fromSlider = (kind, p) => { const [a, b] = domain[kind].map(Math.log); return Number(Math.exp(a + (b - a) * p / steps).toPrecision(2)); };
+const toSlider = (kind, v) => {
+    const [a, b] = domain[kind].map(Math.log);
+    return b > a ? (steps * (Math.log(v) - a)) / (b - a) : 0;
+};
+const fromSlider = (kind, p) => {
+    const [a, b] = domain[kind].map(Math.log);
+    return Number(Math.exp(a + ((b - a) * p) / steps).toPrecision(2));
+};
 
 function strip(list, kind) {
-    return list.map(s => {
-        const from = toSlider(kind, s.from) / steps, to = toSlider(kind, s.to) / steps;
-        const text = s.c ? `${s.c.key} ${s.c.name}` : "none", title = `${text}: ${rangeText(kind, s.from, s.to)}`;
-        return `<span class="${s.c ? `c${s.c.index % colourCount}${s.c.biased ? " biased" : ""}` : "nobody"}" style="flex:${Math.max(0, to - from).toFixed(4)} 1 0" title="${escape(title)}">${to - from > 0.04 ? s.c ? s.c.key : "–" : ""}</span>`;
-    }).join("");
+    return list
+        .map((s) => {
+            const from = toSlider(kind, s.from) / steps,
+                to = toSlider(kind, s.to) / steps;
+            const text = s.c ? `${s.c.key} ${s.c.name}` : "none",
+                title = `${text}: ${rangeText(kind, s.from, s.to)}`;
+            return `<span class="${s.c ? `c${s.c.index % colourCount}${s.c.biased ? " biased" : ""}` : "nobody"}" style="flex:${Math.max(0, to - from).toFixed(4)} 1 0" title="${escape(title)}">${to - from > 0.04 ? (s.c ? s.c.key : "–") : ""}</span>`;
+        })
+        .join("");
 }
 
 function whichToTake(list, kind) {
-    const items = list.filter(s => s.to > s.from).map(s => `<li><span class="range">${rangeText(kind, s.from, s.to)}</span><span>${s.c ? `${nameOf(s.c)} ${badge(s.c)}` : "none"}</span></li>`);
+    const items = list
+        .filter((s) => s.to > s.from)
+        .map(
+            (s) =>
+                `<li><span class="range">${rangeText(kind, s.from, s.to)}</span><span>${s.c ? `${nameOf(s.c)} ${badge(s.c)}` : "none"}</span></li>`,
+        );
     return `<h3>Which to take when</h3><ul class="when">${items.join("")}</ul>`;
 }
 
 function ownRecommendations() {
-    const list = (report.recommendations || []).filter(r => candidates[r.candidate]);
+    const list = (report.recommendations || []).filter((r) => candidates[r.candidate]);
     if (!list.length) return "";
-    return `<h3>Recommendations at a glance</h3><ul class="glance">${list.map((r, i) => `<li><p><button type="button" class="link" data-recommendation="${i}">${escape(targetText(r.kind, r.target))}</button>
-        ${nameOf(candidates[r.candidate])} ${badge(candidates[r.candidate])} <span class="soft">${isNumber(r.samples) ? plural(r.samples, "sample") + ", " : ""}relMSE ${number(r.expected_relmse, 2)}</span></p>${commandBox(r.command)}</li>`).join("")}</ul>`;
+    return `<h3>Recommendations at a glance</h3><ul class="glance">${list
+        .map(
+            (
+                r,
+                i,
+            ) => `<li><p><button type="button" class="link" data-recommendation="${i}">${escape(targetText(r.kind, r.target))}</button>
+        ${nameOf(candidates[r.candidate])} ${badge(candidates[r.candidate])} <span class="soft">${isNumber(r.samples) ? plural(r.samples, "sample") + ", " : ""}relMSE ${number(r.expected_relmse, 2)}</span></p>${commandBox(r.command)}</li>`,
+        )
+        .join("")}</ul>`;
 }
 
 /** Fills the section; changed() is called after every change, with true when the chart's points move. */
@@ -110,10 +184,14 @@ function choose(section, changed) {
         <label class="check"><input type="checkbox" id="unbiasedOnly"> unbiased ones only</label><label class="check"><input type="checkbox" id="loading"> count loading, too</label></div>
         <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip" aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: which to take there; striped: biased</span><span></span></div>
         <div class="columns"><div><div id="answer" aria-live="polite"></div><div id="when"></div></div><div id="ranking" class="wide"></div></div></div><div id="own">${ownRecommendations()}</div>`;
-    const find = id => section.querySelector("#" + id), slider = find("slider"), field = find("target");
-    const draw = moved => {
-        const kind = settings.kind, list = segments(kind);
-        for (const button of section.querySelectorAll("[data-kind]")) button.setAttribute("aria-pressed", button.dataset.kind === kind);
+    const find = (id) => section.querySelector("#" + id),
+        slider = find("slider"),
+        field = find("target");
+    const draw = (moved) => {
+        const kind = settings.kind,
+            list = segments(kind);
+        for (const button of section.querySelectorAll("[data-kind]"))
+            button.setAttribute("aria-pressed", button.dataset.kind === kind);
         find("unit").textContent = kind === "time" ? "seconds" : "relMSE";
         slider.setAttribute("aria-label", kind === "time" ? "time" : "error");
         slider.setAttribute("aria-valuetext", targetText(kind, target()));
@@ -121,23 +199,31 @@ function choose(section, changed) {
         if (document.activeElement !== field) field.value = Number(target().toPrecision(3));
         section.querySelector(".strip").innerHTML = strip(list, kind);
         const ends = section.querySelectorAll(".ends span");
-        ends[0].textContent = kind === "time" ? seconds(domain.time[0]) : number(domain.error[0], 2), ends[2].textContent = kind === "time" ? seconds(domain.time[1]) : number(domain.error[1], 2);
-        find("answer").innerHTML = answer(), find("when").innerHTML = whichToTake(list, kind), find("ranking").innerHTML = rankingTable();
+        ((ends[0].textContent =
+            kind === "time" ? seconds(domain.time[0]) : number(domain.error[0], 2)),
+            (ends[2].textContent =
+                kind === "time" ? seconds(domain.time[1]) : number(domain.error[1], 2)));
+        ((find("answer").innerHTML = answer()),
+            (find("when").innerHTML = whichToTake(list, kind)),
+            (find("ranking").innerHTML = rankingTable()));
         changed(moved);
     };
-    section.addEventListener("input", event => {
-        const {id} = event.target;
-        if (event.target === slider) settings[settings.kind] = fromSlider(settings.kind, Number(slider.value));
-        else if (event.target === field) { if (!(Number(field.value) > 0)) return; settings[settings.kind] = Number(field.value); }
-        else settings[id] = event.target.checked;
+    section.addEventListener("input", (event) => {
+        const { id } = event.target;
+        if (event.target === slider)
+            settings[settings.kind] = fromSlider(settings.kind, Number(slider.value));
+        else if (event.target === field) {
+            if (!(Number(field.value) > 0)) return;
+            settings[settings.kind] = Number(field.value);
+        } else settings[id] = event.target.checked;
         draw(id === "loading");
     });
-    section.addEventListener("click", event => {
-        const {kind, recommendation} = event.target.dataset;
+    section.addEventListener("click", (event) => {
+        const { kind, recommendation } = event.target.dataset;
         if (kind) settings.kind = kind;
         if (recommendation) {
-            const r = report.recommendations.filter(x => candidates[x.candidate])[recommendation];
-            settings.kind = r.kind, settings[r.kind] = r.target;
+            const r = report.recommendations.filter((x) => candidates[x.candidate])[recommendation];
+            ((settings.kind = r.kind), (settings[r.kind] = r.target));
         }
         if (event.target.matches(".copy")) copy(event.target);
         if (kind || recommendation) draw();
