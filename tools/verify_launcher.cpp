@@ -7,7 +7,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "tools/commands.h"
+#include "tools/common/command.h"
+#include "tools/verify/purpose.h"
 #include "woodcock/base/error.h"
 
 namespace woodcock::tool {
@@ -33,9 +34,7 @@ std::filesystem::path verifyProgram() {
     throw failure("cannot start {}: {}", program, std::strerror(errno));
 }
 
-}  // namespace
-
-CLI::App& addVerifyCommand(CLI::App& app) {
+CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App& command = *app.add_subcommand("verify", verifyPurpose);
     command.set_help_flag();  // all words are for the other program
     command.prefix_command();
@@ -45,5 +44,10 @@ CLI::App& addVerifyCommand(CLI::App& app) {
     command.callback([&command] { launch(command.remaining()); });
     return command;
 }
+
+}  // namespace
+
+extern const Command verifyCommand;
+const Command verifyCommand{addTo};
 
 }  // namespace woodcock::tool

@@ -9,13 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/bake/frames.h"
+#include "tools/bake/preview.h"
+#include "tools/bake/preview_sheet.h"
 #include "tools/bake/report.h"
-#include "tools/commands.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
-#include "tools/bake/preview.h"
-#include "tools/bake/preview_sheet.h"
 #include "tools/common/print.h"
 #include "tools/common/progress.h"
 #include "tools/common/report_options.h"
@@ -32,8 +33,6 @@ namespace woodcock::tool {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int interruptedCode = 130;
-
 struct BakeOptions {
     std::string input;
     fs::path output, like, preview, writeRecipe, sheet;
@@ -119,7 +118,8 @@ void writeRecipe(const fs::path& file, const RecipeText& text) {
 void checkFiles(const Recipe& recipe, const BakeOptions& options, const BakeFrame& frame) {
     std::vector<fs::path> read = recipe.files;
     read.insert(read.end(), {options.input, options.like});
-    std::vector<fs::path> written = bakedFiles(frameFile(options.output, frame), options.levels.value_or(0));
+    std::vector<fs::path> written =
+        bakedFiles(frameFile(options.output, frame), options.levels.value_or(0));
     written.push_back(frameFile(options.preview, frame));
     refuseOverwriting(written, read);
 }
@@ -200,7 +200,7 @@ std::optional<nlohmann::ordered_json> bakeFrame(const RecipeText& text, const Ba
     if (!preview.empty()) {
         if (!writePreview(recipe, *bake, volume, preview, {.threads = how.threads}, style)) {
             spdlog::warn("interrupted in the preview: {} is whole", volume.string());
-            throw CLI::RuntimeError(interruptedCode);
+            endWith(exitInterrupted);
         }
         json["preview"] = preview.string();
     }
@@ -240,7 +240,7 @@ void makeSheet(const BakeOptions& options, ProgressStyle style) {
         return;
     }
     spdlog::warn("interrupted: nothing is written");
-    throw CLI::RuntimeError(interruptedCode);
+    endWith(exitInterrupted);
 }
 
 void run(const BakeOptions& options) {
@@ -274,7 +274,7 @@ void run(const BakeOptions& options) {
             else
                 spdlog::warn("interrupted in frame {}: the {} before it are written", *frame.number,
                              written);
-            throw CLI::RuntimeError(interruptedCode);
+            endWith(exitInterrupted);
         }
         all.push_back(std::move(*json));
     }
@@ -284,9 +284,7 @@ void run(const BakeOptions& options) {
                   .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-}  // namespace
-
-CLI::App& addBakeCommand(CLI::App& app) {
+CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App& command = *app.add_subcommand(
         "bake", "Make a VDB file from a recipe: clouds, smoke and other procedural media");
     const auto o = std::make_shared<BakeOptions>();
@@ -358,5 +356,9 @@ CLI::App& addBakeCommand(CLI::App& app) {
     command.callback([o] { run(*o); });
     return command;
 }
+
+}  // namespace
+
+extern const Command bakeCommand{&addTo};
 
 }  // namespace woodcock::tool

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/common/interrupt.h"
 #include "tools/bake/preview.h"
+#include "tools/common/interrupt.h"
 #include "tools/common/scratch_directory.h"
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/base/error.h"
@@ -98,9 +98,9 @@ bool writeSheet(const std::filesystem::path& picture, const SheetSettings& setti
         });
         if (!bake) return false;
         writeBake(volume, *bake, {}, 0);
-        const std::optional<Film> film =
-            renderPreview(recipe, *bake, volume, {cellWidth, cellHeight, cellSeconds, settings.threads},
-                          ProgressStyle::None);
+        const std::optional<Film> film = renderPreview(
+            recipe, *bake, volume, {cellWidth, cellHeight, cellSeconds, settings.threads},
+            ProgressStyle::None);
         if (!film || interrupted()) return false;
         sheet.put(index, *film);
         spdlog::debug("{}: {} voxels", name, bake->statistics.front().activeVoxels);

@@ -6,6 +6,8 @@
 
 #include <atomic>
 
+#include "tools/common/exit_codes.h"
+
 namespace woodcock::tool {
 
 namespace {
@@ -14,7 +16,7 @@ std::atomic<bool> requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch nothing else");
 
 extern "C" void onInterrupt(int) {
-    if (requested.exchange(true)) _exit(130);
+    if (requested.exchange(true)) _exit(exitInterrupted);
 }
 
 }  // namespace
@@ -33,5 +35,9 @@ void catchInterrupts() {
 }
 
 bool interrupted() { return requested; }
+
+void endIfInterrupted() {
+    if (interrupted()) endWith(exitInterrupted);
+}
 
 }  // namespace woodcock::tool

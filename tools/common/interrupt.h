@@ -4,9 +4,12 @@
 namespace woodcock::tool {
 
 /// From now on the first SIGINT, SIGTERM or SIGHUP (where it was not ignored) is remembered, and a
-/// second one ends the program at once with exit code 130.
+/// second one ends the program at once with exit code exitInterrupted.
 void catchInterrupts();
 
 bool interrupted();
+
+/// Ends the command with exitInterrupted where interrupted().
+void endIfInterrupted();
 
 }  // namespace woodcock::tool

@@ -46,8 +46,6 @@ ProgressStyle ReportOptions::start() const {
     return style;
 }
 
-void printJson(const std::string& document) {
-    printData(document + "\n");
-}
+void printJson(const std::string& document) { printData(document + "\n"); }
 
 }  // namespace woodcock::tool

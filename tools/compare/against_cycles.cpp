@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/compare/against_cycles.h"
+#include "tools/common/exit_codes.h"
 
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 
-#include "tools/cycles/render.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress.h"
+#include "tools/cycles/render.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/session.h"
@@ -18,11 +19,11 @@ namespace woodcock::tool {
 
 namespace {
 
-constexpr int interruptedCode = 130, fewestSeeds = 2;
+constexpr int fewestSeeds = 2;
 
 [[noreturn]] void stop() {
     spdlog::warn("interrupted: nothing is compared");
-    throw CLI::RuntimeError(interruptedCode);
+    endWith(exitInterrupted);
 }
 
 double renderOurs(const Scene& scene, const SceneDescription& description,

@@ -9,13 +9,14 @@
 #include <limits>
 #include <memory>
 
-#include "tools/commands.h"
-#include "tools/compare/command.h"
-#include "tools/compare/against_cycles.h"
-#include "tools/compare/report.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/print.h"
 #include "tools/common/scratch_directory.h"
+#include "tools/compare/against_cycles.h"
+#include "tools/compare/command.h"
+#include "tools/compare/report.h"
 #include "woodcock/base/whole_file.h"
 
 namespace woodcock::tool {
@@ -237,7 +238,9 @@ int runCompare(const CompareOptions& o) {
     return exceeds(comparison, o.failAbove) ? 1 : 0;
 }
 
-CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
+namespace {
+
+CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
     CLI::App* command = app.add_subcommand(
         "compare",
         "Hold images against the first of them: metrics, tests against noise, a page to look at");
@@ -321,5 +324,9 @@ CLI::App& addCompareCommand(CLI::App& app, const std::string& commandLine) {
     });
     return *command;
 }
+
+}  // namespace
+
+extern const Command compareCommand{&addTo};
 
 }  // namespace woodcock::tool

@@ -11,13 +11,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/commands.h"
-#include "tools/info/report.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/progress.h"
 #include "tools/common/report_options.h"
+#include "tools/info/report.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
 #include "woodcock/base/parse.h"
@@ -26,7 +27,6 @@ namespace woodcock::tool {
 
 namespace {
 
-constexpr int interruptedCode = 130;
 constexpr double largest = std::numeric_limits<double>::max();
 
 /// What the command line says, as it is written.
@@ -213,10 +213,6 @@ private:
     std::optional<WorkProgress> now_;
 };
 
-void stopWhereInterrupted() {
-    if (interrupted()) throw CLI::RuntimeError(interruptedCode);
-}
-
 /// What was read and written.
 nlohmann::ordered_json resultJson(const ConvertWords& words, const std::vector<std::string>& notes,
                                   const std::vector<std::string>& warnings, double seconds) {
@@ -241,7 +237,7 @@ void run(const ConvertWords& words) {
     Stages bar(style);
     std::vector<std::string> notes, warnings;
     options.info = [&](const std::string& text) {
-        stopWhereInterrupted();
+        endIfInterrupted();
         bar.clear();
         spdlog::info("{}", text);
         notes.push_back(text);
@@ -252,7 +248,7 @@ void run(const ConvertWords& words) {
         warnings.push_back(text);
     };
     options.progress = [&](std::string_view stage, double fraction) {
-        stopWhereInterrupted();
+        endIfInterrupted();
         bar.show(stage, fraction);
     };
     if (words.files.size() < 2)
@@ -274,9 +270,7 @@ void run(const ConvertWords& words) {
                   .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-}  // namespace
-
-CLI::App& addConvertCommand(CLI::App& app) {
+CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App& command = *app.add_subcommand("convert", "Convert other volumes to VDB, and back");
     const auto words = std::make_shared<ConvertWords>();
     command
@@ -339,5 +333,9 @@ CLI::App& addConvertCommand(CLI::App& app) {
     command.callback([words] { run(*words); });
     return command;
 }
+
+}  // namespace
+
+extern const Command convertCommand{&addTo};
 
 }  // namespace woodcock::tool

@@ -5,8 +5,8 @@
 #include <climits>
 #include <nlohmann/json.hpp>
 
-#include "tools/commands.h"
-#include "tools/cycles/render.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/frames.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/option_kinds.h"
@@ -14,13 +14,12 @@
 #include "tools/common/progress.h"
 #include "tools/common/report_options.h"
 #include "tools/common/scene_input.h"
+#include "tools/cycles/render.h"
 #include "woodcock/base/whole_file.h"
 
 namespace woodcock::tool {
 
 namespace {
-
-constexpr int interruptedCode = 130;
 
 struct Options {
     SceneInput input;
@@ -84,7 +83,7 @@ void run(const Options& options, const std::string& commandLine) {
     }
     if (result.stopped) {
         spdlog::warn("interrupted: nothing is written");
-        throw CLI::RuntimeError(interruptedCode);
+        endWith(exitInterrupted);
     }
     if (!options.image.empty()) {
         if (result.mode == "biased" && options.mode != "biased")
@@ -109,9 +108,7 @@ void run(const Options& options, const std::string& commandLine) {
     printJson(about.dump(2));
 }
 
-}  // namespace
-
-CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
+CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
     CLI::App& command =
         *app.add_subcommand("cycles", "Render a scene with Blender's Cycles, to compare");
     const auto o = std::make_shared<Options>();
@@ -159,5 +156,9 @@ CLI::App& addCyclesCommand(CLI::App& app, const std::string& commandLine) {
     command.callback([o, commandLine] { run(*o, commandLine); });
     return command;
 }
+
+}  // namespace
+
+extern const Command cyclesCommand{&addTo};
 
 }  // namespace woodcock::tool

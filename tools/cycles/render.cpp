@@ -8,10 +8,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tools/cycles/blender.h"
 #include "tools/common/child_process.h"
-#include "tools/cycles/surfaces.h"
 #include "tools/common/scratch_directory.h"
+#include "tools/cycles/blender.h"
+#include "tools/cycles/surfaces.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"

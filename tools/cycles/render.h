@@ -20,11 +20,11 @@ struct CyclesOptions {
 };
 
 struct CyclesResult {
-    bool stopped = false;  ///< nothing was written
-    std::string version;   ///< Blender's, such as "5.0.1"
-    std::string mode;      ///< null or biased
+    bool stopped = false;       ///< nothing was written
+    std::string version;        ///< Blender's, such as "5.0.1"
+    std::string mode;           ///< null or biased
     std::string interpolation;  ///< of grids: stochastic or trilinear
-    double seconds = 0;    ///< of the render alone
+    double seconds = 0;         ///< of the render alone
 };
 
 /// Draws a complete scene (see completeScene) with Blender's Cycles; the image's header says by

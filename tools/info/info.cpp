@@ -6,19 +6,18 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/commands.h"
-#include "tools/info/report.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/option_kinds.h"
-#include "tools/common/report_options.h"
 #include "tools/common/print.h"
+#include "tools/common/report_options.h"
+#include "tools/info/report.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/grid_roles.h"
 
 namespace woodcock::tool {
 
 namespace {
-
-constexpr int exitBadInput = 3;
 
 struct InfoOptions {
     std::vector<std::filesystem::path> files;
@@ -73,12 +72,10 @@ void runInfo(const InfoOptions& options) {
         printJson(infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     const bool sound =
         std::all_of(files.begin(), files.end(), [](const FileInfo& file) { return file.sound(); });
-    if (!sound) throw CLI::RuntimeError(exitBadInput);
+    if (!sound) endWith(exitBadInput);
 }
 
-}  // namespace
-
-CLI::App& addInfoCommand(CLI::App& app) {
+CLI::App& addTo(CLI::App& app, const std::string&) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App& command = *app.add_subcommand(
         "info", "Tell what volumes hold: types, bounds, values, memory, and what looks wrong");
@@ -92,5 +89,9 @@ CLI::App& addInfoCommand(CLI::App& app) {
     command.callback([options] { runInfo(*options); });
     return command;
 }
+
+}  // namespace
+
+extern const Command infoCommand{&addTo};
 
 }  // namespace woodcock::tool

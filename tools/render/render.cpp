@@ -7,18 +7,19 @@
 #include <cmath>
 #include <thread>
 
-#include "tools/render/choices_text.h"
-#include "tools/commands.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/frames.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/output_folders.h"
-#include "tools/render/picture_warnings.h"
 #include "tools/common/print.h"
 #include "tools/common/progress.h"
-#include "tools/render/quality_auto.h"
-#include "tools/render/options.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/stats.h"
+#include "tools/render/choices_text.h"
+#include "tools/render/options.h"
+#include "tools/render/picture_warnings.h"
+#include "tools/render/quality_auto.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/whole_file.h"
@@ -35,8 +36,6 @@
 namespace woodcock::tool {
 
 namespace {
-
-constexpr int interruptedCode = 130;
 
 SceneDescription describeScene(const RenderOptions& options) {
     SceneDescription scene = parseInput(options.sceneInput());
@@ -280,8 +279,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     if (!options.rendersImages()) return;
     if (options.choosesQuality()) {
         const SceneDescription before = description;
-        if (!chooseQuality(description, options, commandLine))
-            throw CLI::RuntimeError(interruptedCode);
+        if (!chooseQuality(description, options, commandLine)) endWith(exitInterrupted);
         if (!haveSameFields(before, description)) loaded = loadScene(description);
         settings = renderSettings(description, options);
     }
@@ -290,7 +288,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
     const Scene scene = buildScene(description, std::move(loaded), &notes);
     for (const std::string& note : notes) spdlog::info("{}", note);
     const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart;
-    if (interrupted()) throw CLI::RuntimeError(interruptedCode);
+    endIfInterrupted();
     for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);
     warnUnlessEmpty(warnings.ofCamera(scene));
 
@@ -312,7 +310,7 @@ void run(const RenderOptions& options, const std::string& commandLine) {
                   result.film.mostSamples() > 0 ? files : std::vector<std::filesystem::path>());
     if (!options.stats.empty()) writeTextFile(options.stats, stats);
     if (options.reports.json) writeTextFile("-", stats);
-    if (result.reason == StopReason::Interrupted) throw CLI::RuntimeError(interruptedCode);
+    if (result.reason == StopReason::Interrupted) endWith(exitInterrupted);
     if (result.film.mostSamples() == 0)
         throw failure(
             "nothing was rendered within twice the time limit of {}: nothing is written. Paths may "
@@ -321,14 +319,16 @@ void run(const RenderOptions& options, const std::string& commandLine) {
             formatDuration(settings.timeLimit));
 }
 
-}  // namespace
-
-CLI::App& addRenderCommand(CLI::App& app, const std::string& commandLine) {
+CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
     CLI::App& command = *app.add_subcommand("render", "Render a scene or a volume to images");
     const auto options = std::make_shared<RenderOptions>();
     options->addTo(command);
     command.callback([options, commandLine] { run(*options, commandLine); });
     return command;
 }
+
+}  // namespace
+
+extern const Command renderCommand{&addTo};
 
 }  // namespace woodcock::tool

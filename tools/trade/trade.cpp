@@ -6,16 +6,17 @@
 #include <memory>
 #include <thread>
 
-#include "tools/commands.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/print.h"
 #include "tools/common/progress.h"
 #include "tools/common/report_options.h"
 #include "tools/common/scene_input.h"
-#include "tools/trade/report.h"
 #include "tools/trade/parts.h"
 #include "tools/trade/pictures.h"
+#include "tools/trade/report.h"
 #include "tools/trade/report_html.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/scene/write.h"
@@ -24,7 +25,6 @@ namespace woodcock::tool {
 
 namespace {
 
-constexpr int interruptedCode = 130;
 constexpr double defaultBudget = 120;
 
 struct TradeOptions {
@@ -77,7 +77,7 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine, Prog
     loadAndComplete(complete);
 
     std::optional<TradeResult> result = measure(o, complete, given, style);
-    if (!result) throw CLI::RuntimeError(interruptedCode);
+    if (!result) endWith(exitInterrupted);
     TradeReport report{commandLine, joinedFiles(o.input.files), sceneDigest(complete),
                        RenderCommand(o.input, complete.output.files.empty())};
     report.threads = o.threads.value_or(0) > 0
@@ -127,9 +127,7 @@ void run(const TradeOptions& o, const std::string& commandLine) {
         weighCandidates(o, commandLine, style);
 }
 
-}  // namespace
-
-CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
+CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
     CLI::App* command = app.add_subcommand(
         "trade", "Measure what each choice costs and brings on a scene, and tell which to take");
     const auto o = std::make_shared<TradeOptions>();
@@ -170,5 +168,9 @@ CLI::App& addTradeCommand(CLI::App& app, const std::string& commandLine) {
     command->callback([o, commandLine] { run(*o, commandLine); });
     return *command;
 }
+
+}  // namespace
+
+extern const Command tradeCommand{&addTo};
 
 }  // namespace woodcock::tool

@@ -7,26 +7,26 @@
 #include <chrono>
 #include <memory>
 
-#include "tools/commands.h"
+#include "tools/common/command.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/print.h"
 #include "tools/common/report_options.h"
-#include "woodcock/proof/proof.h"
+#include "tools/verify/purpose.h"
 #include "tools/verify/report.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/grid/vdb/file.h"
+#include "woodcock/proof/proof.h"
 
 namespace woodcock::tool {
 
 namespace {
 
 using namespace proof;
-
-constexpr int exitFailed = 1, exitInterrupted = 130;
 
 struct VerifyOptions {
     bool quick = false, full = false;
@@ -153,17 +153,15 @@ void runVerify(const VerifyOptions& o) {
         write(o.htmlFile(), reportHtml(report));
         spdlog::info("wrote {} and {}", o.jsonFile().string(), o.htmlFile().string());
     }
-    if (!report.complete) throw CLI::RuntimeError(exitInterrupted);
+    if (!report.complete) endWith(exitInterrupted);
     const auto failed = std::count_if(report.cases.begin(), report.cases.end(),
                                       [](const Case& c) { return c.verdict() != Verdict::Pass; });
     if (failed == 0) return;
     if (o.reports.quiet) spdlog::error("{} of {} cases fail", failed, report.cases.size());
-    throw CLI::RuntimeError(exitFailed);
+    endWith(exitFailed);
 }
 
-}  // namespace
-
-CLI::App& addVerifyCommand(CLI::App& app) {
+CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App* command = app.add_subcommand("verify", verifyPurpose);
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick,
@@ -195,5 +193,9 @@ CLI::App& addVerifyCommand(CLI::App& app) {
     command->callback([options] { runVerify(*options); });
     return *command;
 }
+
+}  // namespace
+
+extern const Command verifyCommand{&addTo};
 
 }  // namespace woodcock::tool
