@@ -15,6 +15,7 @@
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
@@ -235,8 +236,7 @@ void makeSheet(const BakeOptions& options, ProgressStyle style) {
     if (writeSheet(options.sheet, settings, style)) {
         if (options.reports.json)
             printJson(nlohmann::ordered_json{{"sheet", options.sheet.string()},
-                                             {"presets", presetNames()}}
-                          .dump(2));
+                                             {"presets", presetNames()}});
         return;
     }
     spdlog::warn("interrupted: nothing is written");
@@ -280,13 +280,12 @@ void run(const BakeOptions& options) {
     }
     if (!options.reports.json) return;
     const bool sequence = frames.front().number.has_value();
-    printJson((sequence ? nlohmann::ordered_json{{"frames", all}} : all[0])
-                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    printJson(sequence ? nlohmann::ordered_json{{"frames", all}} : all[0]);
 }
 
 CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App& command = *app.add_subcommand(
-        "bake", "Make a VDB file from a recipe: clouds, smoke and other procedural media");
+        "bake", "Make a VDB file from a recipe: clouds, smoke, fire and other procedural volumes");
     const auto o = std::make_shared<BakeOptions>();
     const auto number = [&](const char* name, std::optional<double>& value, double lowest,
                             double highest, const char* help) {
@@ -297,59 +296,64 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
     };
     command
         .add_option("INPUT", o->input,
-                    "A preset's name, a recipe (.toml), or a volume (.vdb) to be sampled anew")
+                    "A preset's name, a recipe (.toml), or a volume (.vdb) to resample")
         ->type_name("RECIPE");
     command.add_option("-o,--output", o->output, "The volume to write")->type_name("FILE.vdb");
     addMkdir(command, o->mkdir);
     command.add_flag("--list", o->list, "List the presets");
     command.add_flag("--describe", o->describe, "List the recipe's parameters");
     command
-        .add_option("--write-recipe", o->writeRecipe,
-                    "Save the recipe's text, to be edited; bakes only with -o; - is stdout")
+        .add_option(
+            "--write-recipe", o->writeRecipe,
+            "Save the recipe's text for you to edit. Bakes only if you give -o, too. - is stdout")
         ->type_name("FILE.toml");
-    command.add_option("--set", o->settings, "A parameter of the recipe; may be repeated")
+    command.add_option("--set", o->settings, "Set a parameter of the recipe; may be repeated")
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE");
     number("--seed", o->seed, -9e15, 9e15,
-           "Short for --set seed=NUMBER: another seed gives another shape");
+           "Short for --set seed=NUMBER. Another seed gives another shape");
     command
         .add_option("--time", o->frames.time,
-                    "Short for --set time=SECONDS; FROM:TO:STEP makes a frame at each of these "
+                    "Short for --set time=SECONDS. FROM:TO:STEP makes a frame for each of these "
                     "times, numbered from 1")
         ->type_name("SECONDS");
     command
         .add_option("--frames", o->frames.frames,
-                    "Make these frames; their numbers go where -o has ####")
+                    "Make these frames. Their numbers replace the #### in -o")
         ->type_name("FIRST-LAST");
     number("--fps", o->frames.rate, 1e-3, 1e6,
-           "Frames a second, of --frames (24); frame 1 is at time 0");
-    number("--voxel", o->voxel, 1e-12, 1e12, "Size of a voxel, world units");
+           "Frames per second of --frames (24). Frame 1 is at time 0");
+    number("--voxel", o->voxel, 1e-12, 1e12, "Side of a voxel, in world units");
     addCount(command, "--resolution", o->resolution, 1, 1000000,
              "Voxels along the longest side of the recipe's bounds (256)");
-    command.add_option("--like", o->like, "Take this volume's voxels: its grid's transform")
+    command
+        .add_option("--like", o->like,
+                    "Put the voxels where this volume has them: its grid's transform is taken")
         ->type_name("FILE.vdb");
-    command.add_option("--grid", o->likeGrid, "The grid of --like; the first if not given")
+    command.add_option("--grid", o->likeGrid, "The grid of --like. Without it: the first")
         ->type_name("NAME");
-    number("--tolerance", o->tolerance, 0, 1e30,
-           "Leave out values this near to zero and merge equal ones, instead of the recipe's own");
-    addCount(command, "--lod", o->levels, 0, 16,
-             "Write as many coarser files too, FILE.lod1.vdb with voxels twice as large and so on");
+    number(
+        "--tolerance", o->tolerance, 0, 1e30,
+        "Leave out values this near to zero, and merge equal ones. Without it: the recipe's own");
+    addCount(
+        command, "--lod", o->levels, 0, 16,
+        "Write this many coarser files, too: FILE.lod1.vdb has voxels twice as large, and so on");
     CLI::Option* half = command.add_flag("--half", o->half, "Save values in half precision");
     command.add_flag("--float", o->full, "Save values in single precision (the default)")
         ->excludes(half);
     addChoice(command, "--compression", o->compression, {"none", "zip", "blosc"},
-              "Compress the file:")
+              "How to compress the file:")
         ->type_name("WORD");
     command
         .add_option("--preview", o->preview,
-                    "Render a small picture of it at once, in a second or two: PNG, JPEG, EXR")
+                    "Render a small picture of it, too, in a second or two: PNG, JPEG or EXR")
         ->type_name("FILE");
-    command.add_option("--sheet", o->sheet, "Only make a picture of all presets: PNG, JPEG")
+    command.add_option("--sheet", o->sheet, "Only make a picture of all presets: PNG or JPEG")
         ->type_name("FILE");
     number("--max-voxels", o->mostVoxels, 1, 1e15,
-           "Refuse to evaluate more voxels; as many as fit into memory if not given");
+           "Refuse to evaluate more voxels than this. Without it: as many as fit into memory");
     addCount(command, "--threads", o->threads, 1, 1024,
-             "Threads to bake with; as many as the machine has if not given");
+             "How many processor threads to use. Without it: all cores");
     o->reports.addTo(command, "Print a JSON object about the files that are written, on stdout");
     command.footer(examplesText({"woodcock bake cumulus -o cumulus.vdb --preview cumulus.png",
                                  "woodcock bake explosion -o explosion.####.vdb --frames 1-48"}));

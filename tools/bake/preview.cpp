@@ -155,13 +155,7 @@ std::optional<Film> renderPreview(const Recipe& recipe, const Bake& bake,
     settings.endSample = 256;
     settings.timeLimit = previewSettings.seconds;
     settings.threads = previewSettings.threads;
-    Progress progress(style);
-    progress.start(settings);
-    RenderResult result = render(scene, settings, [&](const RenderProgress& now) {
-        progress.update(now);
-        return !interrupted();
-    });
-    progress.finish(result);
+    RenderResult result = renderWithProgress(scene, settings, style);
     if (result.film.mostSamples() == 0) return std::nullopt;
     spdlog::debug("preview: {} samples a pixel in {:.2f} s", result.endSample, result.seconds);
     return std::move(result.film);

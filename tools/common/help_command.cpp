@@ -25,9 +25,10 @@ void addVersionFlags(CLI::App& app) {
 void addHelpCommands(CLI::App& app, const std::string& programHelp) {
     app.add_subcommand("version", "Print the versions of the program and of its libraries")
         ->callback([] { print("{}\n", aboutProgram()); });
-    CLI::App* const help = app.add_subcommand("help", "Print the help of the program or a command");
+    CLI::App* const help =
+        app.add_subcommand("help", "Print the help of the program or of a command");
     const auto name = std::make_shared<std::string>();
-    help->add_option("COMMAND", *name, "Whose help to print; the program's if not given")
+    help->add_option("COMMAND", *name, "The command whose help to print. Without it: the program's")
         ->type_name("");
     help->callback([&app, &programHelp, name] {
         std::vector<std::string> known;

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/print.h"
 #include "woodcock/base/printable.h"
 
@@ -28,7 +29,7 @@ class JsonSink : public spdlog::sinks::base_sink<std::mutex> {
             {"level",
              fmt::to_string(fmt::string_view(spdlog::level::to_string_view(message.level)))},
             {"message", fmt::to_string(fmt::string_view(message.payload))}};
-        printProgress("{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+        printProgress("{}\n", jsonText(line, -1));
     }
     void flush_() override {}
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/common/interrupt.h"
 #include "tools/common/print.h"
 #include "woodcock/base/parse.h"
 
@@ -24,6 +25,57 @@ std::string bar(double fraction) {
     return fmt::format("[{:#<{}}{:.<{}}]", "", full, "", width - full);
 }
 
+/// What is told of a render on its way.
+class RenderProgressReport {
+public:
+    explicit RenderProgressReport(ProgressStyle style) : style_(style) {}
+
+    void start(const RenderSettings& settings) {
+        if (style_ == ProgressStyle::Json)
+            printLine({{"event", "start"},
+                       {"width", settings.width},
+                       {"height", settings.height},
+                       {"first_sample", settings.firstSample},
+                       {"end_sample", settings.endSample},
+                       {"seed", settings.seed}});
+    }
+
+    void update(const RenderProgress& progress) {
+        spdlog::trace("render: {:.1f} %, {} samples a pixel, {} left", 100 * progress.fraction,
+                      progress.samples, formatDuration(progress.secondsLeft));
+        if (style_ == ProgressStyle::Json) {
+            printLine({{"event", "progress"},
+                       {"fraction", progress.fraction},
+                       {"seconds", progress.seconds},
+                       {"seconds_left", progress.secondsLeft},
+                       {"samples", progress.samples},
+                       {"noise", progress.noise}});
+        } else if (style_ == ProgressStyle::Bar) {
+            const std::string noise =
+                std::isfinite(progress.noise) ? ", " + noiseText(progress.noise) : "";
+            // Carriage return, and erase to the end of the line.
+            printProgress("\r{} {:3.0f} %, {} left, {} samples{}\x1b[K", bar(progress.fraction),
+                          100 * progress.fraction, formatDuration(progress.secondsLeft),
+                          progress.samples, noise);
+        }
+    }
+
+    void finish(const RenderResult& result) {
+        if (style_ == ProgressStyle::Json)
+            printLine({{"event", "done"},
+                       {"reason", stopReasonName(result.reason)},
+                       {"seconds", result.seconds},
+                       {"end_sample", result.endSample},
+                       {"noise", result.film.noise()},
+                       {"non_finite", result.film.nonFiniteCount()}});
+        else if (style_ == ProgressStyle::Bar)
+            printProgress("\r\x1b[K");
+    }
+
+private:
+    ProgressStyle style_;
+};
+
 }  // namespace
 
 ProgressStyle progressStyle(const std::string& name) {
@@ -33,46 +85,16 @@ ProgressStyle progressStyle(const std::string& name) {
     return ProgressStyle::None;
 }
 
-void Progress::start(const RenderSettings& settings) {
-    if (style_ == ProgressStyle::Json)
-        printLine({{"event", "start"},
-                   {"width", settings.width},
-                   {"height", settings.height},
-                   {"first_sample", settings.firstSample},
-                   {"end_sample", settings.endSample},
-                   {"seed", settings.seed}});
-}
-
-void Progress::update(const RenderProgress& progress) {
-    spdlog::trace("render: {:.1f} %, {} samples a pixel, {} left", 100 * progress.fraction,
-                  progress.samples, formatDuration(progress.secondsLeft));
-    if (style_ == ProgressStyle::Json) {
-        printLine({{"event", "progress"},
-                   {"fraction", progress.fraction},
-                   {"seconds", progress.seconds},
-                   {"seconds_left", progress.secondsLeft},
-                   {"samples", progress.samples},
-                   {"noise", progress.noise}});
-    } else if (style_ == ProgressStyle::Bar) {
-        const std::string noise =
-            std::isfinite(progress.noise) ? ", " + noiseText(progress.noise) : "";
-        // Carriage return, and erase to the end of the line.
-        printProgress("\r{} {:3.0f} %, {} left, {} samples{}\x1b[K", bar(progress.fraction),
-                      100 * progress.fraction, formatDuration(progress.secondsLeft),
-                      progress.samples, noise);
-    }
-}
-
-void Progress::finish(const RenderResult& result) {
-    if (style_ == ProgressStyle::Json)
-        printLine({{"event", "done"},
-                   {"reason", stopReasonName(result.reason)},
-                   {"seconds", result.seconds},
-                   {"end_sample", result.endSample},
-                   {"noise", result.film.noise()},
-                   {"non_finite", result.film.nonFiniteCount()}});
-    else if (style_ == ProgressStyle::Bar)
-        printProgress("\r\x1b[K");
+RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
+                                ProgressStyle style) {
+    RenderProgressReport report(style);
+    report.start(settings);
+    RenderResult result = render(scene, settings, [&](const RenderProgress& now) {
+        report.update(now);
+        return !interrupted();
+    });
+    report.finish(result);
+    return result;
 }
 
 WorkProgress::~WorkProgress() {

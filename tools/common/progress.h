@@ -13,18 +13,9 @@ enum class ProgressStyle { None, Bar, Json };
 /// "auto", "bar", "json" or "none"; auto is a bar where stderr is a terminal, none elsewhere.
 ProgressStyle progressStyle(const std::string& name);
 
-/// Shows how a render goes on, on stderr.
-class Progress {
-public:
-    explicit Progress(ProgressStyle style) : style_(style) {}
-
-    void start(const RenderSettings& settings);
-    void update(const RenderProgress& progress);
-    void finish(const RenderResult& result);
-
-private:
-    ProgressStyle style_;
-};
+/// Renders, shows on stderr how far it is, and stops early where interrupted().
+RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
+                                ProgressStyle style);
 
 /// Shows how other work goes on, on stderr, no more often than can be read.
 class WorkProgress {

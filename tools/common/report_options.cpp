@@ -8,7 +8,6 @@
 #include "tools/common/about.h"
 #include "tools/common/log.h"
 #include "tools/common/option_kinds.h"
-#include "tools/common/print.h"
 
 namespace woodcock::tool {
 
@@ -17,7 +16,8 @@ void ReportOptions::addTo(CLI::App& command, const std::string& jsonHelp) {
     const std::vector<std::string> levels{"trace", "debug", "info", "warning", "error", "off"};
     const std::vector<CLI::Option*> options{
         addChoice(command, "--progress", progress, styles,
-                  "Show how far the work is, on stderr; auto is a bar on a terminal:")
+                  "Show how far the work is, on stderr. auto shows a bar on a terminal, and "
+                  "nothing elsewhere:")
             ->type_name("STYLE"),
         command.add_flag("--json", json, jsonHelp),
         addParsed(
@@ -26,7 +26,7 @@ void ReportOptions::addTo(CLI::App& command, const std::string& jsonHelp) {
                 const std::string name = word == "warn" ? "warning" : word;
                 return levels[indexOfWord(name, levels)];
             },
-            "Print messages of this level and above: " + joinNames(levels))
+            "Print messages of this level and of those after it: " + joinNames(levels))
             ->type_name("LEVEL"),
         command.add_flag("-q,--quiet", quiet, "Print warnings and errors only")};
     for (CLI::Option* option : options) option->group("Reports");
@@ -45,7 +45,5 @@ ProgressStyle ReportOptions::start() const {
     spdlog::debug("{}, {} threads at most", programVersion(), std::thread::hardware_concurrency());
     return style;
 }
-
-void printJson(const std::string& document) { printData(document + "\n"); }
 
 }  // namespace woodcock::tool

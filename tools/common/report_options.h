@@ -24,7 +24,4 @@ struct ReportOptions {
     bool printsText() const { return !quiet && !json; }
 };
 
-/// A JSON document on stdout, with a line's end.
-void printJson(const std::string& document);
-
 }  // namespace woodcock::tool

@@ -78,8 +78,8 @@ void checkInput(const SceneInput& input) {
 
 CLI::Option* addOverlay(CLI::App& command, bool& overlay) {
     return command.add_flag("--overlay", overlay,
-                            "Draw volumes whose names differ only in a number into one picture, "
-                            "instead of taking them for frames");
+                            "Draw all volumes into one picture, even if their names differ only in "
+                            "a number, as frames' names do");
 }
 
 // The size goes through the scene file, where cameras depend on it. What it replaces is checked

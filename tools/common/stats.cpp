@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/progress.h"
 #include "woodcock/base/version.h"
 
@@ -52,7 +53,7 @@ std::string statsText(const RenderResult& result, const RenderSettings& settings
                                          {"shadow_segments", counters.shadowSegments},
                                          {"shadow_collisions", counters.shadowCollisions},
                                          {"clamped", counters.clamped}}}};
-    return stats.dump(4) + "\n";
+    return jsonText(stats, 4) + "\n";
 }
 
 }  // namespace woodcock::tool

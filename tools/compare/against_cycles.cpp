@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/compare/against_cycles.h"
-#include "tools/common/exit_codes.h"
 
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 
+#include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress.h"
 #include "tools/cycles/render.h"
@@ -34,13 +33,7 @@ double renderOurs(const Scene& scene, const SceneDescription& description,
     outputSettings.layers = layersFromNames({"error"});
     const Outputs outputs(std::move(outputSettings));
     const RenderSettings settings = renderSettings(description.render);
-    Progress progress(style);
-    progress.start(settings);
-    const RenderResult result = woodcock::render(scene, settings, [&](const RenderProgress& now) {
-        progress.update(now);
-        return !interrupted();
-    });
-    progress.finish(result);
+    const RenderResult result = renderWithProgress(scene, settings, style);
     if (result.reason == StopReason::Interrupted) stop();
     outputs.write(result.film, {0, result.endSample, settings.seed, result.seconds,
                                 sceneDigest(description), commandLine});

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -12,10 +11,10 @@
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/option_kinds.h"
+#include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/common/scratch_directory.h"
 #include "tools/compare/against_cycles.h"
-#include "tools/compare/command.h"
 #include "tools/compare/report.h"
 #include "woodcock/base/whole_file.h"
 
@@ -112,8 +111,16 @@ bool exceeds(const Comparison& comparison, const std::vector<std::string>& limit
 
 // ---- options
 
-std::filesystem::path jsonFile(const CompareOptions& o) { return o.report / "compare.json"; }
-std::filesystem::path htmlFile(const CompareOptions& o) { return o.report / "compare.html"; }
+struct CompareOptions {
+    std::vector<PictureSource> sources;
+    CompareSettings settings;
+    std::vector<std::string> failAbove;  ///< "rmse=0.01", "differ"
+    std::filesystem::path report;        ///< a directory; empty: none
+    std::filesystem::path ocio;          ///< empty: $OCIO or the shipped one
+    ReportOptions reports;
+};
+
+const std::vector<std::string> reportFiles{"compare.json", "compare.html"};
 
 /// "B=word" to the image of that letter.
 std::pair<PictureSource*, std::string> forImage(std::vector<PictureSource>& sources,
@@ -169,27 +176,40 @@ struct CompareWords {
     }
 };
 
-void write(const std::filesystem::path& file, const std::string& text) {
-    writeWholeFile(file, text);
-}
-
-void makeDirectory(const std::filesystem::path& directory) {
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    if (error)
-        throw usageError("--report: cannot make the directory '{}': {}", directory.string(),
-                         error.message());
-}
-
-/// Makes the report's directory.
-void prepareReport(const CompareOptions& o) {
+void refuseOverwritingInputs(const CompareOptions& o) {
     if (o.report.empty()) return;
-    makeDirectory(o.report);
-    checkWritable(jsonFile(o));
-    checkWritable(htmlFile(o));
+    std::vector<std::filesystem::path> read{o.ocio}, written;
+    for (const PictureSource& source : o.sources) {
+        read.push_back(source.file);
+        read.insert(read.end(), source.more.begin(), source.more.end());
+    }
+    for (const std::string& name : reportFiles) written.push_back(o.report / name);
+    refuseOverwriting(written, read);
 }
 
-int run(const CompareWords& words, const std::string& commandLine) {
+/// Compares, prints and writes the report. Notes go to the log. exitFailed where `failAbove` says
+/// so.
+ExitCode runCompare(const CompareOptions& o) {
+    for (const std::string& limit : o.failAbove) parseLimit(limit);
+    const ColorConfig config(o.ocio);
+    LoadedPictures loaded = loadPictures(o.sources, o.settings.resample, config);
+    refuseOverwritingInputs(o);
+    prepareReport(o.report, reportFiles);  // images that cannot be compared leave no directory
+    const Comparison comparison = compare(std::move(loaded), o.settings);
+    if (!o.report.empty() && !config.note().empty()) spdlog::warn("{}", config.note());
+    for (const std::string& note : comparison.notes) spdlog::warn("{}", note);
+    if (o.reports.json)
+        printData(compareJson(comparison));
+    else if (o.reports.printsText())
+        printText(compareText(comparison));
+    std::fflush(stdout);
+    if (!o.report.empty())
+        writeReport(o.report, {{reportFiles[0], compareJson(comparison)},
+                               {reportFiles[1], compareHtml(comparison, bakeViews(config))}});
+    return exceeds(comparison, o.failAbove) ? exitFailed : exitDone;
+}
+
+ExitCode run(const CompareWords& words, const std::string& commandLine) {
     const ProgressStyle style = words.options.reports.start();
     words.check();
     CompareOptions o = words.sorted();
@@ -198,7 +218,7 @@ int run(const CompareWords& words, const std::string& commandLine) {
     both.input.files = {words.scene};
     for (const std::string& limit : o.failAbove) parseLimit(limit);
     if (!o.report.empty()) {
-        makeDirectory(o.report);
+        prepareReport(o.report, reportFiles);
         o.sources = renderBoth(both, o.report, commandLine, style);
         return runCompare(o);
     }
@@ -207,120 +227,96 @@ int run(const CompareWords& words, const std::string& commandLine) {
     return runCompare(o);
 }
 
-}  // namespace
-
-int runCompare(const CompareOptions& o) {
-    for (const std::string& limit : o.failAbove) parseLimit(limit);
-    const ColorConfig config(o.ocio);
-    LoadedPictures loaded = loadPictures(o.sources, o.settings.resample, config);
-    std::vector<std::filesystem::path> read{o.ocio};
-    for (const PictureSource& source : o.sources) {
-        read.push_back(source.file);
-        read.insert(read.end(), source.more.begin(), source.more.end());
-    }
-    if (!o.report.empty()) refuseOverwriting(std::array{jsonFile(o), htmlFile(o)}, read);
-    prepareReport(o);  // images that cannot be compared leave no directory
-    const Comparison comparison = compare(std::move(loaded), o.settings);
-    if (!o.report.empty() && !config.note().empty()) spdlog::warn("{}", config.note());
-    for (const std::string& note : comparison.notes) spdlog::warn("{}", note);
-    if (!o.report.empty()) {
-        const std::string html = compareHtml(comparison, bakeViews(config));
-        write(jsonFile(o), compareJson(comparison));
-        write(htmlFile(o), html);
-    }
-    if (o.reports.json)
-        printData(compareJson(comparison));
-    else if (o.reports.printsText())
-        printText(compareText(comparison));
-    std::fflush(stdout);
-    if (!o.report.empty())
-        spdlog::info("wrote {} and {}", jsonFile(o).string(), htmlFile(o).string());
-    return exceeds(comparison, o.failAbove) ? 1 : 0;
+/// What belongs to --cycles.
+void addCyclesOptions(CLI::App& command, BothOptions& cycles) {
+    addCount(command, "--spp", cycles.spp, 1, 16777216,
+             "For --cycles: samples per pixel of each seed (the scene's)");
+    addCount(command, "--seeds", cycles.seeds, 2, 64,
+             "For --cycles: renders by each program. Their scatter gives the error (2)");
+    addChoice(command, "--mode", cycles.mode, {"null", "biased"},
+              "For --cycles: how Cycles samples volumes, by null-collision tracking or biased ray "
+              "marching:")
+        ->type_name("MODE");
+    addChoice(command, "--interpolation", cycles.interpolation, {"stochastic", "trilinear"},
+              "For --cycles: how Cycles reads grids:")
+        ->type_name("KIND");
+    addParsed(
+        command, "--step-rate", cycles.stepRate,
+        [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
+        "For --cycles --mode biased: length of a step, as in Blender's step rate")
+        ->type_name("NUMBER");
+    command
+        .add_option("--blender", cycles.blender,
+                    "For --cycles: Blender's program, or a Python with bpy. Without it: $BLENDER, "
+                    "then blender on the PATH")
+        ->type_name("PROGRAM");
+    addList(command, "--set", cycles.input.overrides,
+            "For --cycles: set a value of the scene, such as volume[0].scale=2")
+        ->type_name("KEY=VALUE");
 }
 
-namespace {
-
 CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
-    CLI::App* command = app.add_subcommand(
-        "compare",
-        "Hold images against the first of them: metrics, tests against noise, a page to look at");
+    CLI::App* command =
+        app.add_subcommand("compare",
+                           "Compare images with a reference: metrics, tests whether they differ by "
+                           "more than noise, and a page to look at");
     auto words = std::make_shared<CompareWords>();
     CompareOptions& o = words->options;
     command
-        ->add_option(
-            "INPUT", words->files,
-            "Images (EXR, PNG, JPEG, TIFF, HDR ...): the first is the reference A, the others "
-            "are B, C, ...")
+        ->add_option("INPUT", words->files,
+                     "Images (EXR, PNG, JPEG, TIFF, HDR ...). The first is the reference A, the "
+                     "others are B, C, ...")
         ->type_name("FILE");
     command
-        ->add_option("--cycles", words->scene,
-                     "Instead of images: render this scene (.toml, or .vdb) by Woodcock (A) and by "
-                     "Blender's Cycles (B), into the report's directory where there is one")
-        ->type_name("SCENE");
-    addCount(*command, "--spp", words->cycles.spp, 1, 16777216,
-             "For --cycles: samples per pixel of each seed (the scene's)");
-    addCount(*command, "--seeds", words->cycles.seeds, 2, 64,
-             "For --cycles: renders by each program, whose scatter is the error (2)");
-    addChoice(*command, "--mode", words->cycles.mode, {"null", "biased"},
-              "For --cycles: null-collision tracking or ray marching:")
-        ->type_name("MODE");
-    addChoice(*command, "--interpolation", words->cycles.interpolation, {"stochastic", "trilinear"},
-              "For --cycles: how it reads grids:")
-        ->type_name("KIND");
-    addParsed(
-        *command, "--step-rate", words->cycles.stepRate,
-        [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
-        "For --cycles --mode biased: a step's length as Blender counts it")
-        ->type_name("NUMBER");
-    command
         ->add_option(
-            "--blender", words->cycles.blender,
-            "For --cycles: Blender's program, or a Python with bpy; else $BLENDER, else on "
-            "the PATH")
-        ->type_name("PROGRAM");
-    addList(*command, "--set", words->cycles.input.overrides,
-            "For --cycles: set a value of the scene, such as volume[0].scale=2")
-        ->type_name("KEY=VALUE");
+            "--cycles", words->scene,
+            "Instead of images: render this scene (.toml or .vdb) by Woodcock (A) and by Blender's "
+            "Cycles (B), and compare both. The images stay in the folder of --report")
+        ->type_name("SCENE");
+    addCyclesOptions(*command, words->cycles);
     addList(*command, "--more", words->more,
-            "Another seed of an image, as in A=second.exr: their mean is compared, and their "
-            "scatter is the error where the files have no layer 'error'")
+            "Another render of an image with another seed, as in A=second.exr. The mean is "
+            "compared. The scatter gives the error where the files have no layer 'error'")
         ->type_name("LETTER=FILE");
     command
-        ->add_option("--report", o.report,
-                     "Write DIR/compare.json and DIR/compare.html, a page that needs nothing else")
+        ->add_option(
+            "--report", o.report,
+            "Write DIR/compare.json and DIR/compare.html, a page that you can open anywhere")
         ->type_name("DIR");
     o.reports.addTo(*command, "Print one JSON document on stdout instead of the tables");
     addList(*command, "--fail-above", o.failAbove,
-            "Exit with code 1 where an image's metric is above: bias, ratio (its distance from 1), "
-            "rmse, relmse, largest, flip, hdr-flip, non-finite, tiles (that differ), or the word "
-            "'differ' for the verdict")
+            "Exit with code 1 if a metric of an image is above VALUE. Metrics: bias, ratio (its "
+            "distance from 1), rmse, relmse, largest, flip, hdr-flip, non-finite, tiles (how many "
+            "differ). The word 'differ' alone stands for the verdict")
         ->type_name("METRIC=VALUE");
     command->add_flag("--resample", o.settings.resample,
-                      "Average images of other sizes over areas to the smallest width and height");
+                      "Bring images of different sizes to the smallest width and height, by "
+                      "averaging over areas");
     addParsed(
         *command, "--tile", o.settings.tile,
         [](const std::string& text) { return static_cast<int>(parseCount(text, 2, 4096)); },
-        "Least side of a tile in pixels (8)")
+        "Smallest side of a tile in pixels (8)")
         ->type_name("PIXELS");
     addParsed(
         *command, "--false-alarms", o.settings.falseAlarms,
         [](const std::string& text) { return parseNumber(text, 1e-12, 0.5); },
-        "Chance that images of equal expectation are said to differ, all tiles and channels "
-        "together (0.001)")
+        "How likely a wrong verdict 'differ' may be where only noise differs, over all tiles and "
+        "channels together (0.001)")
         ->type_name("RATE");
     addList(*command, "--colour-space", words->colourSpaces,
-            "What an image's colours are, as in B=ACEScg, by the OpenColorIO config; floats are "
-            "scene-linear otherwise, integers sRGB pictures")
+            "Colour space of an image, as in B=ACEScg, by its name in the OpenColorIO config. "
+            "Without it: scene-linear for floats, sRGB for integers")
         ->type_name("LETTER=NAME");
     command
-        ->add_option("--ocio", o.ocio,
-                     "OpenColorIO config ($OCIO, or the one that comes with the program)")
+        ->add_option(
+            "--ocio", o.ocio,
+            "OpenColorIO config. Without it: that of $OCIO, then the one that comes with Woodcock")
         ->type_name("FILE");
     command->footer(
         examplesText({"woodcock compare reference.exr test.exr --report comparison",
                       "woodcock compare reference.png test.png --quiet --fail-above flip=0.05"}));
     command->callback([words, commandLine] {
-        if (const int code = run(*words, commandLine)) throw CLI::RuntimeError(code);
+        if (const ExitCode code = run(*words, commandLine); code != exitDone) endWith(code);
     });
     return *command;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/compare/report.h"
 #include "woodcock/base/version.h"
 
@@ -97,8 +98,7 @@ std::string compareJson(const Comparison& all) {
                     {"images", images},
                     {"comparisons", comparisons},
                     {"notes", all.notes}};
-    // File names need not be UTF-8.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(json) + "\n";
 }
 
 }  // namespace woodcock::tool

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/convert/convert.h"
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
@@ -14,6 +13,7 @@
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/progress.h"
@@ -22,6 +22,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
 #include "woodcock/base/parse.h"
+#include "woodcock/convert/convert.h"
 
 namespace woodcock::tool {
 
@@ -266,17 +267,17 @@ void run(const ConvertWords& words) {
     if (!words.reports.json) return;
     bar.clear();
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-    printJson(resultJson(words, notes, warnings, time.count())
-                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    printJson(resultJson(words, notes, warnings, time.count()));
 }
 
 CLI::App& addTo(CLI::App& app, const std::string&) {
-    CLI::App& command = *app.add_subcommand("convert", "Convert other volumes to VDB, and back");
+    CLI::App& command = *app.add_subcommand(
+        "convert", "Convert volumes and shapes of other formats to VDB, and VDB to other formats");
     const auto words = std::make_shared<ConvertWords>();
     command
         .add_option(
             "INPUT... OUTPUT", words->files,
-            "What to convert, and the file to write; slices as slice.####.png or one by one")
+            "What to convert, then the file to write. Name slices as slice.####.png, or one by one")
         ->required()
         ->type_name("FILE");
     addMkdir(command, words->mkdir);
@@ -284,48 +285,55 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
                          const char* type, const char* help) {
         command.add_option(name, to, help)->type_name(type)->group(group);
     };
-    add("Input", "--from", words->from, "FORMAT", "Format of INPUT, instead of what its name says");
+    add("Input", "--from", words->from, "FORMAT",
+        "Format of INPUT, where its name does not say it");
     add("Input", "--grid", words->grid, "NAME",
-        "Grid of a VDB, medium of a pbrt scene, or array of a .npz");
-    add("Input", "--channel", words->channel, "N", "Take one channel of several, from 0");
-    add("Bare numbers", "--dims", words->dims, "X,Y,Z", "Voxels; x varies fastest in the file");
+        "Which to take: a grid of a VDB, a medium of a pbrt scene, or an array of a .npz");
+    add("Input", "--channel", words->channel, "N", "Take this channel only, counted from 0");
+    add("Bare numbers", "--dims", words->dims, "X,Y,Z",
+        "Voxels along each axis. x varies fastest in the file");
     add("Bare numbers", "--type", words->type, "TYPE",
         "Type of the numbers: u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64");
-    add("Bare numbers", "--channels", words->channels, "N", "Numbers of each voxel (1)");
+    add("Bare numbers", "--channels", words->channels, "N", "How many numbers each voxel has (1)");
     add("Bare numbers", "--endian", words->endian, "ORDER",
-        "Order of their bytes: little (usual) or big");
-    add("Bare numbers", "--header", words->header, "BYTES", "Bytes before the numbers (0)");
+        "Order of the bytes of a number: little (usual) or big");
+    add("Bare numbers", "--header", words->header, "BYTES",
+        "How many bytes stand before the numbers (0)");
     add("Shapes", "--band", words->band, "WIDTH",
-        "Depth below a mesh's or level set's surface at which density is one (three voxels)");
+        "Depth below the surface of a mesh or level set where density reaches one (three voxels)");
     add("Shapes", "--radius", words->radius, "R",
         "Radius of points that have none of their own (2 voxels)");
     add("Shapes", "--columns", words->columns, "NAMES",
-        "What the columns of a table of points are: x,y,z,-,radius (- is not used)");
-    command.add_flag("--shell", words->shell, "Fog around a mesh's surface instead of inside it")
+        "What the columns of a table of points are, such as x,y,z,-,radius. - skips a column");
+    command
+        .add_flag("--shell", words->shell, "Make fog around a mesh's surface instead of inside it")
         ->group("Shapes");
     add("Place", "--axes", words->axes, "ORDER",
-        "Axes of the source that become x, y and z, a minus reversing one: xzy, x,-z,y");
+        "Axes of the source that become x, y and z, such as xzy or x,-z,y. A minus reverses an "
+        "axis");
     add("Place", "--voxel", words->voxel, "SIZE",
-        "Side of a voxel, the shortest if unequal; or three: X,Y,Z");
-    add("Place", "--size", words->size, "LENGTH", "Longest side of the volume, instead; or three");
+        "Side of a voxel, or its three sides X,Y,Z. One number is the shortest side of unequal "
+        "ones");
+    add("Place", "--size", words->size, "LENGTH",
+        "Longest side of the volume, or its three sides, instead of --voxel");
     add("Place", "--origin", words->origin, "X,Y,Z", "Centre of the first voxel");
     constexpr const char* values = "Values, in this order: repair, scale, offset, clamp, threshold";
     command.add_flag("--repair", words->repair, "Set NaN and infinite values to zero")
         ->group(values);
     add(values, "--scale", words->scale, "S", "Multiply");
     add(values, "--offset", words->offset, "B", "Then add");
-    add(values, "--clamp", words->clamp, "LOW,HIGH", "Then hold within");
-    add(values, "--threshold", words->threshold, "T", "Then zero where below");
+    add(values, "--clamp", words->clamp, "LOW,HIGH", "Then clamp");
+    add(values, "--threshold", words->threshold, "T", "Then set to zero what is below");
     add(values, "--tolerance", words->tolerance, "E",
-        "Values this near to zero become background, which takes no memory (0)");
+        "Turn values this near to zero into background, which takes no memory (0)");
     add("Output", "--name", words->name, "NAME", "Name of the grid (density)");
     add("Output", "--precision", words->precision, "P",
-        "Save values as half, float or double; the error is measured and said");
+        "Save values as half, float or double. The largest error is printed");
     add("Output", "--compression", words->compression, "C",
-        "Compress: none, zip or blosc; usual: blosc (vdb), none (nvdb, nrrd)");
+        "How to compress: none, zip or blosc. Without it: blosc for vdb, none for nvdb and nrrd");
     add("Output", "--out-type", words->outType, "TYPE", "Type of the numbers in a dense file");
     add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
-        "First and last voxel that a dense file gets; else the active ones' box");
+        "First and last voxel of a dense file. Without it: the box of the active voxels");
     words->reports.addTo(command, "Print a JSON object about what is written, on stdout");
     command.footer("Formats:\n" + describeFormats() + "\n" +
                    examplesText({"woodcock convert teapot.obj teapot.vdb --voxel 0.01",

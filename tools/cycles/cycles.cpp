@@ -7,8 +7,8 @@
 
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
-#include "tools/common/frames.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/progress.h"
@@ -38,9 +38,7 @@ void checkOutput(const std::filesystem::path& file, const char* option, const ch
     if (file.empty()) return;
     if (file.extension() != extension)
         throw usageError("{} '{}' is no {} file", option, file.string(), extension);
-    checkNoPattern(file, option);
-    prepareFolder(file, mkdir, option);
-    checkWritable(file);
+    prepareOutput(file, mkdir, option);
 }
 
 void check(const Options& options) {
@@ -105,48 +103,49 @@ void run(const Options& options, const std::string& commandLine) {
                       {"samples", scene.render.spp},
                       {"seed", scene.render.seed},
                       {"seconds", result.seconds}});
-    printJson(about.dump(2));
+    printJson(about);
 }
 
 CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
     CLI::App& command =
-        *app.add_subcommand("cycles", "Render a scene with Blender's Cycles, to compare");
+        *app.add_subcommand("cycles", "Render a scene with Blender's Cycles, for a comparison");
     const auto o = std::make_shared<Options>();
     command.add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
         ->required()
         ->type_name("FILE");
     addOverlay(command, o->input.overlay);
     command.add_option("-o,--output", o->image, "Image to write")->type_name("FILE.exr");
-    command.add_option("--save", o->blend, "Save the scene for Blender; renders only with -o")
+    command
+        .add_option("--save", o->blend,
+                    "Save the scene for Blender. Renders only if you give -o, too")
         ->type_name("FILE.blend");
     command
         .add_option("--blender", o->blender,
-                    "Blender's program, or a Python with bpy; else $BLENDER, else on the PATH")
+                    "Blender's program, or a Python with bpy. Without it: $BLENDER, then blender "
+                    "on the PATH")
         ->type_name("PROGRAM");
     addMkdir(command, o->mkdir);
     addChoice(command, "--mode", o->mode, {"null", "biased"},
-              "Null-collision tracking (from Blender 5.0 on, and the default there) or ray "
-              "marching:")
+              "How to sample volumes: null-collision tracking (from Blender 5.0 on, and the "
+              "default there) or biased ray marching:")
         ->type_name("MODE");
     addChoice(command, "--interpolation", o->interpolation, {"stochastic", "trilinear"},
-              "How grids are read: one voxel at random (from Blender 5.0 on, and the default "
-              "there), or all "
-              "eight:")
+              "How to read grids: one of eight voxels at random (from Blender 5.0 on, and the "
+              "default there), or all eight:")
         ->type_name("KIND");
     addParsed(
         command, "--step-rate", o->stepRate,
         [](const std::string& text) { return parseNumber(text, 1e-3, 100); },
-        "For --mode biased: a step's length as Blender counts it, 1 being a voxel; 0.1 if not "
-        "given")
+        "For --mode biased: length of a step, as in Blender's step rate, where 1 is a voxel (0.1)")
         ->type_name("NUMBER");
     addParsed(command, "--res", o->input.size, parseImageSize,
               "Image size; a width alone keeps the scene's shape")
         ->type_name("WIDTHxHEIGHT");
     addCount(command, "--spp", o->spp, 1, 16777216, "Samples per pixel");
     addCount(command, "--seed", o->seed, 0, INT64_MAX,
-             "Start of the random numbers: another seed gives other noise (0)");
+             "Seed of the random numbers. Another seed gives other noise (0)");
     addCount(command, "--threads", o->threads, 0, 1024,
-             "How many processor threads to use (0: all cores)");
+             "How many processor threads to use. 0 takes all cores");
     addList(command, "--set", o->input.overrides,
             "Set a value of the scene, such as volume[0].scale=2")
         ->type_name("KEY=VALUE");

@@ -8,6 +8,7 @@
 
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/print.h"
 #include "tools/common/report_options.h"
@@ -68,8 +69,7 @@ void runInfo(const InfoOptions& options) {
         progress.update(static_cast<double>(files.size()) /
                         static_cast<double>(options.files.size()));
     }
-    if (json)
-        printJson(infoJson(files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    if (json) printJson(infoJson(files));
     const bool sound =
         std::all_of(files.begin(), files.end(), [](const FileInfo& file) { return file.sound(); });
     if (!sound) endWith(exitBadInput);
@@ -78,7 +78,7 @@ void runInfo(const InfoOptions& options) {
 CLI::App& addTo(CLI::App& app, const std::string&) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App& command = *app.add_subcommand(
-        "info", "Tell what volumes hold: types, bounds, values, memory, and what looks wrong");
+        "info", "Show what volume files hold: grids, bounds, values, memory, and what looks wrong");
     command.add_option("INPUT", options->files, "One or more volumes (.vdb, .nvdb)")
         ->required()
         ->type_name("FILE");

@@ -18,28 +18,31 @@ namespace {
 void addOutput(CLI::App& command, RenderOptions& o) {
     std::vector<CLI::Option*> options{
         addList(command, "-o,--output", o.outputs,
-                "Image to write: .exr, or a picture: .png, .jpg, .tif (16 bits), .webp")
+                "Image to write: .exr keeps the radiance; .png, .jpg, .tif (16 bits) and .webp are "
+                "pictures to look at")
             ->type_name("FILE"),
-        addList(command, "--layers", o.layers, "Further EXR layers: " + joinNames(layerNames()))
+        addList(command, "--layers", o.layers,
+                "More layers for EXR files: " + joinNames(layerNames()))
             ->delimiter(',')
             ->type_name("LAYER,..."),
-        command.add_flag("--half", o.half, "Write EXR colour in half precision"),
+        command.add_flag("--half", o.half, "Write the colour of EXR files in half precision"),
         command.add_option("--display", o.display, "OpenColorIO display of pictures (all but EXR)")
             ->type_name("NAME"),
         command.add_option("--view", o.view, "OpenColorIO view of pictures")->type_name("NAME"),
         command
             .add_option("--look", o.look,
-                        "OpenColorIO look, instead of the view's own; none: no look")
+                        "OpenColorIO look of pictures, instead of the view's own. The word none "
+                        "takes no look")
             ->type_name("NAME"),
         addParsed(
             command, "--exposure", o.exposure,
             [](const std::string& text) { return parseNumber(text, -100, 100); },
-            "Brighten pictures by so many stops, such as +1 or -0.5")
+            "Make pictures brighter by this many stops, such as +1 or -0.5")
             ->type_name("NUMBER"),
         command
             .add_option("--ocio", o.ocio,
-                        "OpenColorIO config; without it, the scene's, else that of $OCIO, else "
-                        "Woodcock's own")
+                        "OpenColorIO config. Without it: the scene's, then that of $OCIO, then the "
+                        "one that comes with Woodcock")
             ->type_name("FILE"),
         addMkdir(command, o.mkdir)};
     for (CLI::Option* option : options) option->group("Output");
@@ -50,36 +53,37 @@ void addRendering(CLI::App& command, RenderOptions& o) {
     qualities.push_back("auto");
     std::vector<CLI::Option*> options{
         addChoice(command, "--quality", o.quality, qualities,
-                  "Trade accuracy for speed, instead of what the scene says (auto: measure what is "
-                  "best for --time-limit or --noise):")
+                  "How to weigh accuracy against speed, instead of what the scene says. auto "
+                  "measures what is best for --time-limit or --noise:")
             ->type_name("QUALITY"),
         addParsed(command, "--res", o.size, parseImageSize,
                   "Image size; a width alone keeps the scene's shape")
             ->type_name("WIDTHxHEIGHT"),
         addParsed(command, "--crop", o.crop, parsePixelRectangle,
-                  "Render only pixels [X0, X1) x [Y0, Y1), y down")
+                  "Render only the pixels from X0,Y0 up to but without X1,Y1. y points down")
             ->type_name("X0,Y0,X1,Y1"),
         addCount(command, "--spp", o.spp, 1, INT_MAX,
-                 "Samples per pixel; adaptive renders do as much work with other numbers"),
-        addParsed(
-            command, "--samples", o.samples, parseSampleRange,
-            "Draw only samples FIRST to END - 1 of each pixel; there is no command yet that merges "
-            "such parts with their depth, samples and error")
+                 "Samples per pixel. Adaptive renders do the same work, but with another number in "
+                 "each pixel"),
+        addParsed(command, "--samples", o.samples, parseSampleRange,
+                  "Draw only the samples FIRST to END - 1 of each pixel. No command merges such "
+                  "parts yet")
             ->type_name("FIRST:END"),
         addCount(command, "--seed", o.seed, 0, INT64_MAX,
-                 "Start of the random numbers: another seed gives other noise (0)"),
+                 "Seed of the random numbers. Another seed gives other noise (0)"),
         addParsed(command, "--time-limit", o.timeLimit, parseDuration,
-                  "Stop after this long, such as 90s, 5m, 2h")
+                  "Stop after this time, such as 90s, 5m or 2h")
             ->type_name("TIME"),
         addParsed(command, "--noise", o.noise, parseFraction,
-                  "Stop when the noise is below this, such as 1%: the relative standard error of "
-                  "what the scene shows; plain background does not count")
+                  "Stop when the noise is below this, such as 1%. Noise is the relative standard "
+                  "error of the picture without its plain background")
             ->type_name("FRACTION"),
         command.add_flag_function(
             "--adaptive,!--no-adaptive", [&o](std::int64_t times) { o.adaptive = times > 0; },
-            "More samples where the error is larger, fewer elsewhere, in the same time"),
+            "Spend the same time, but take more samples where the error is larger and fewer "
+            "elsewhere"),
         addCount(command, "--threads", o.threads, 0, 4096,
-                 "How many processor threads to use (0: all cores)")};
+                 "How many processor threads to use. 0 takes all cores")};
     for (CLI::Option* option : options) option->group("Rendering");
 }
 
@@ -89,19 +93,20 @@ void addScene(CLI::App& command, RenderOptions& o) {
                 "Set a value of the scene, such as volume[0].scale=2")
             ->type_name("KEY=VALUE"),
         addParsed(command, "--sun", o.sun, parseAngles,
-                  "Where the sun stands, in degrees: above the horizon, and clockwise from above")
+                  "Where the sun stands, in degrees: its height above the horizon, and its "
+                  "direction, clockwise as seen from above")
             ->type_name("ELEVATION,AZIMUTH"),
         addParsed(
             command, "--orbit", o.orbit,
             [](const std::string& text) { return parseNumber(text, -1e6, 1e6); },
-            "Turn the camera to its right around what it looks at, for turntables; a camera that "
-            "is chosen then frames all sides")
+            "Turn the camera to its right around what it looks at, for turntables. A camera that "
+            "Woodcock chooses then stands far enough for all sides")
             ->type_name("DEGREES"),
         addOverlay(command, o.overlay),
         command
             .add_option("--write-scene", o.writeScene,
-                        "Save the scene with all that was chosen, and render only where -o is "
-                        "given; - is stdout")
+                        "Save the scene with all values that Woodcock chose. Renders only if you "
+                        "give -o, too. - is stdout")
             ->type_name("FILE"),
         command.add_flag("--repair", o.repair,
                          "Set NaN, infinite and negative voxels to zero instead of stopping"),
@@ -112,7 +117,7 @@ void addScene(CLI::App& command, RenderOptions& o) {
 
 void addReports(CLI::App& command, RenderOptions& o) {
     o.reports.addTo(command, "Print counts, times and the files as a JSON object on stdout");
-    command.add_option("--stats", o.stats, "Write the same to a file; - is stdout")
+    command.add_option("--stats", o.stats, "Write what --json prints to a file. - is stdout")
         ->type_name("FILE")
         ->group("Reports");
 }

@@ -100,14 +100,8 @@ std::string placeOfDisplayError(const SceneDescription& scene, std::string_view 
 }
 
 Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& options) {
-    const auto check = [&](const std::string& place, const std::filesystem::path& file) {
-        if (file.empty() || isStdout(file)) return;
-        checkNoPattern(file, place);
-        prepareFolder(file, options.mkdir, place);
-        inPlace(place, [&] { checkWritable(file); });
-    };
-    check("--stats", options.stats);
-    check("--write-scene", options.writeScene);
+    prepareOutput(options.stats, options.mkdir, "--stats");
+    prepareOutput(options.writeScene, options.mkdir, "--write-scene");
     ColorConfig colour =
         inPlace(findPlace(scene.places, "ocio"), [&] { return ColorConfig(scene.ocio); });
     OutputSettings settings{.colour = std::move(colour)};
@@ -116,7 +110,7 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
     for (std::size_t i = 0; i < settings.files.size(); ++i) {
         const std::string place = findPlace(scene.places, fmt::format("output.files[{}]", i));
         inPlace(place, [&] { imageFormat(settings.files[i]); });
-        check(place, settings.files[i]);
+        prepareOutput(settings.files[i], options.mkdir, place);
     }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
@@ -220,19 +214,8 @@ std::string samplesText(const RenderResult& result, const RenderSettings& settin
                        film.meanSamples());
 }
 
-RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
-                                ProgressStyle style) {
-    const Needs needs = findNeeds(scene);
-    spdlog::info("the scene {}", usedOf(needs));
-    if (const std::string unused = unusedOf(needs); !unused.empty())
-        spdlog::debug("the scene {}", unused);
-    Progress progress(style);
-    progress.start(settings);
-    RenderResult result = render(scene, settings, [&](const RenderProgress& now) {
-        progress.update(now);
-        return !interrupted();
-    });
-    progress.finish(result);
+/// Numbers that say how well the render went.
+void reportResult(const RenderResult& result, const RenderSettings& settings) {
     spdlog::info("{} in {}: {}, {}", stopReasonName(result.reason), formatDuration(result.seconds),
                  samplesText(result, settings), noiseOf(result));
     if (const std::uint64_t count = result.counters.clamped)
@@ -247,83 +230,129 @@ RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settin
                      result.reason == StopReason::TimeLimit
                          ? ": one sample of each takes longer than twice the time limit"
                          : "");
-    return result;
 }
 
-void run(const RenderOptions& options, const std::string& commandLine) {
-    const ProgressStyle style = options.reports.start();
-    options.check();
-
-    SceneDescription description = describeScene(options);
-    catchInterrupts();  // not while a scene that comes through a pipe is waited for
-    const std::vector<std::filesystem::path>& files = description.output.files;
-    if (files.empty() && options.rendersImages())
-        throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
-    if (options.rendersImages()) options.checkFor(files);
-    checkFiles(description, options);
-    RenderSettings settings = renderSettings(description, options);
-    const Outputs outputs = prepareOutputs(description, options);
-    if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
-
-    const auto loadStart = std::chrono::steady_clock::now();
-    const Openings open = openingsOf(description);
-    LoadedScene loaded = loadAndComplete(description);
-    checkFiles(description, options);  // with what --set says of lights that were chosen
-    if (!options.writeScene.empty()) {
-        writeTextFile(options.writeScene,
-                      writeScene(description, options.writeScene.parent_path()));
-        if (!isStdout(options.writeScene))
-            spdlog::info("wrote {}: {}", options.writeScene.string(),
-                         describeChoices(open, description));
-    }
-    if (!options.rendersImages()) return;
-    if (options.choosesQuality()) {
-        const SceneDescription before = description;
-        if (!chooseQuality(description, options, commandLine)) endWith(exitInterrupted);
-        if (!haveSameFields(before, description)) loaded = loadScene(description);
-        settings = renderSettings(description, options);
-    }
-    PictureWarnings warnings(description, loaded);
-    std::vector<std::string> notes;
-    const Scene scene = buildScene(description, std::move(loaded), &notes);
-    for (const std::string& note : notes) spdlog::info("{}", note);
-    const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart;
-    endIfInterrupted();
-    for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);
-    warnUnlessEmpty(warnings.ofCamera(scene));
-
-    checkMemoryLeft(settings, description, outputs);
-    const RenderResult result = renderWithProgress(scene, settings, style);
-    const std::string digest = sceneDigest(description);
-    if (result.film.mostSamples() > 0) {
-        const std::string note =
-            outputs.write(result.film, {settings.firstSample, result.endSample, settings.seed,
-                                        result.seconds, digest, commandLine, settings.adaptive});
-        for (const std::filesystem::path& file : files) spdlog::info("wrote {}", file.string());
-        if (!note.empty()) spdlog::info("{}", note);
-        warnUnlessEmpty(warnings.ofPicture(scene, result));
-    } else if (result.reason != StopReason::TimeLimit) {
-        spdlog::warn("interrupted before anything was rendered: nothing is written");
-    }
-    const std::string stats =
-        statsText(result, settings, digest, loading.count(),
-                  result.film.mostSamples() > 0 ? files : std::vector<std::filesystem::path>());
-    if (!options.stats.empty()) writeTextFile(options.stats, stats);
-    if (options.reports.json) writeTextFile("-", stats);
-    if (result.reason == StopReason::Interrupted) endWith(exitInterrupted);
-    if (result.film.mostSamples() == 0)
-        throw failure(
-            "nothing was rendered within twice the time limit of {}: nothing is written. Paths may "
-            "be without end: look for media of albedo 1 that fill all space, or give max_bounces "
-            "or max_scatterings",
-            formatDuration(settings.timeLimit));
+void reportNeeds(const Scene& scene) {
+    const Needs needs = findNeeds(scene);
+    spdlog::info("the scene {}", usedOf(needs));
+    if (const std::string unused = unusedOf(needs); !unused.empty())
+        spdlog::debug("the scene {}", unused);
 }
+
+/// One call of the command, in its phases: check, load, build, render, write.
+class RenderJob {
+public:
+    RenderJob(const RenderOptions& options, const std::string& commandLine)
+        : options_(options), commandLine_(commandLine), style_(options.reports.start()) {}
+
+    void run() {
+        options_.check();
+        description_ = describeScene(options_);
+        catchInterrupts();  // not while a scene that comes through a pipe is waited for
+        checkWhatIsAsked();
+        settings_ = renderSettings(description_, options_);
+        const Outputs outputs = prepareOutputs(description_, options_);
+        if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
+
+        loadStart_ = std::chrono::steady_clock::now();
+        load();
+        if (options_.rendersImages()) render(outputs);
+    }
+
+private:
+    const std::vector<std::filesystem::path>& files() const { return description_.output.files; }
+
+    void checkWhatIsAsked() const {
+        if (files().empty() && options_.rendersImages())
+            throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
+        if (options_.rendersImages()) options_.checkFor(files());
+        checkFiles(description_, options_);
+    }
+
+    void load() {
+        const Openings open = openingsOf(description_);
+        loaded_ = loadAndComplete(description_);
+        checkFiles(description_, options_);  // with what --set says of lights that were chosen
+        const std::filesystem::path& file = options_.writeScene;
+        if (file.empty()) return;
+        writeTextFile(file, writeScene(description_, file.parent_path()));
+        if (!isStdout(file))
+            spdlog::info("wrote {}: {}", file.string(), describeChoices(open, description_));
+    }
+
+    /// For --quality auto.
+    void chooseSettings() {
+        const SceneDescription before = description_;
+        if (!chooseQuality(description_, options_, commandLine_)) endWith(exitInterrupted);
+        if (!haveSameFields(before, description_)) loaded_ = loadScene(description_);
+        settings_ = renderSettings(description_, options_);
+    }
+
+    void render(const Outputs& outputs) {
+        if (options_.choosesQuality()) chooseSettings();
+        PictureWarnings warnings(description_, loaded_);
+        std::vector<std::string> notes;
+        const Scene scene = buildScene(description_, std::move(loaded_), &notes);
+        for (const std::string& note : notes) spdlog::info("{}", note);
+        const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart_;
+        endIfInterrupted();
+        for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);
+        warnUnlessEmpty(warnings.ofCamera(scene));
+
+        checkMemoryLeft(settings_, description_, outputs);
+        reportNeeds(scene);
+        const RenderResult result = renderWithProgress(scene, settings_, style_);
+        reportResult(result, settings_);
+        const std::string digest = sceneDigest(description_);
+        write(result, outputs, digest);
+        if (result.film.mostSamples() > 0) warnUnlessEmpty(warnings.ofPicture(scene, result));
+        writeStats(result, digest, loading.count());
+        if (result.reason == StopReason::Interrupted) endWith(exitInterrupted);
+        if (result.film.mostSamples() == 0)
+            throw failure(
+                "nothing was rendered within twice the time limit of {}: nothing is written. Paths "
+                "may be without end: look for media of albedo 1 that fill all space, or give "
+                "max_bounces or max_scatterings",
+                formatDuration(settings_.timeLimit));
+    }
+
+    void write(const RenderResult& result, const Outputs& outputs,
+               const std::string& digest) const {
+        if (result.film.mostSamples() > 0) {
+            const std::string note = outputs.write(
+                result.film, {settings_.firstSample, result.endSample, settings_.seed,
+                              result.seconds, digest, commandLine_, settings_.adaptive});
+            for (const std::filesystem::path& file : files())
+                spdlog::info("wrote {}", file.string());
+            if (!note.empty()) spdlog::info("{}", note);
+        } else if (result.reason != StopReason::TimeLimit) {
+            spdlog::warn("interrupted before anything was rendered: nothing is written");
+        }
+    }
+
+    void writeStats(const RenderResult& result, const std::string& digest,
+                    double loadSeconds) const {
+        const std::string stats = statsText(
+            result, settings_, digest, loadSeconds,
+            result.film.mostSamples() > 0 ? files() : std::vector<std::filesystem::path>());
+        if (!options_.stats.empty()) writeTextFile(options_.stats, stats);
+        if (options_.reports.json) writeTextFile("-", stats);
+    }
+
+    const RenderOptions& options_;
+    const std::string& commandLine_;
+    ProgressStyle style_;
+    SceneDescription description_;
+    RenderSettings settings_;
+    LoadedScene loaded_;
+    std::chrono::steady_clock::time_point loadStart_;
+};
 
 CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
     CLI::App& command = *app.add_subcommand("render", "Render a scene or a volume to images");
     const auto options = std::make_shared<RenderOptions>();
     options->addTo(command);
-    command.callback([options, commandLine] { run(*options, commandLine); });
+    command.callback([options, commandLine] { RenderJob(*options, commandLine).run(); });
     return command;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "tools/common/json_text.h"
+#include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/trade/parts.h"
 #include "tools/trade/report_html.h"
@@ -115,14 +117,12 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
     const std::vector<std::string> notes = notesOn(costs);
     const std::string name = input.files.front().filename().string();
     const Json json = needsJson(name, costs, notes);
-    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace);
-    if (reports.json) printJson(text);
+    if (reports.json) printJson(json, 1);
     if (reports.printsText())
         for (const std::string& note : notes) print("note: {}\n", note);
-    if (report.empty()) return;
-    writeReport(report / "needs.json", text + "\n");
-    writeReport(report / "needs.csv", needsCsv(costs));
-    writeReport(report / "needs.html", needsPage(json));
+    writeReport(report, {{"needs.json", jsonText(json, 1) + "\n"},
+                         {"needs.csv", needsCsv(costs)},
+                         {"needs.html", needsPage(json)}});
 }
 
 }  // namespace woodcock::tool

@@ -21,12 +21,6 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
 /// --scaling: how the cost grows. Likewise; scaling.json and scaling.csv.
 void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports);
 
-/// Makes the directory of a report, and makes sure that these files can be written there. Throws
-/// Error{Usage}.
-void prepareReport(const std::filesystem::path& directory,
-                   const std::vector<std::string>& fileNames);
-void writeReport(const std::filesystem::path& file, const std::string& text);
-
 nlohmann::ordered_json toJson(const Measured& m);  ///< {"value", "se"}; null where not finite
 nlohmann::ordered_json aboutWoodcock();
 

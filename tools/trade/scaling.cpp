@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tools/common/json_text.h"
+#include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/common/scratch_directory.h"
 #include "tools/trade/parts.h"
@@ -89,13 +91,11 @@ void runScaling(double budget, const std::filesystem::path& report, const Report
                             spdlog::info("{}", what);
                         }});
     const Json json = scalingJson(found);
-    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace);
-    if (reports.json) printJson(text);
+    if (reports.json) printJson(json, 1);
     if (reports.printsText()) printReport(found);
-    if (report.empty()) return;
-    writeReport(report / "scaling.json", text + "\n");
-    writeReport(report / "scaling.csv", scalingCsv(found));
-    writeReport(report / "scaling.html", scalingPage(json));
+    writeReport(report, {{"scaling.json", jsonText(json, 1) + "\n"},
+                         {"scaling.csv", scalingCsv(found)},
+                         {"scaling.html", scalingPage(json)}});
 }
 
 }  // namespace woodcock::tool

@@ -9,7 +9,9 @@
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
+#include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/common/progress.h"
 #include "tools/common/report_options.h"
@@ -63,40 +65,48 @@ std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription
     return runTrade(complete, parse, given, settings);
 }
 
+const std::vector<std::string> reportFiles{"trade.json", "trade.csv", "trade.html"};
+
+/// What was asked, and what was found.
+TradeReport reportOf(const TradeOptions& o, const std::string& commandLine,
+                     const SceneDescription& scene, TradeResult result) {
+    TradeReport report{commandLine, joinedFiles(o.input.files), sceneDigest(scene),
+                       RenderCommand(o.input, scene.output.files.empty())};
+    report.threads = o.threads.value_or(0) > 0
+                         ? *o.threads
+                         : static_cast<int>(std::thread::hardware_concurrency());
+    report.budget = o.budget.value_or(defaultBudget);
+    report.result = std::move(result);
+    if (!o.report.empty()) report.pictures = tradePictures(report.result, scene);
+    return report;
+}
+
 void weighCandidates(const TradeOptions& o, const std::string& commandLine, ProgressStyle style) {
     checkInput(o.input);
     const std::vector<Candidate> given =
         o.candidates.empty() ? std::vector<Candidate>() : readCandidates(o.candidates);
-    prepareReport(o.report, {"trade.json", "trade.csv", "trade.html"});
+    prepareReport(o.report, reportFiles);
     catchInterrupts();
     SceneDescription complete = parseInput(o.input);
     std::vector<std::filesystem::path> read = filesRead(o.input, complete);
     read.push_back(o.candidates);
-    for (const char* name : {"trade.json", "trade.csv", "trade.html"})
+    for (const std::string& name : reportFiles)
         if (!o.report.empty()) refuseOverwriting(std::array{o.report / name}, read);
     loadAndComplete(complete);
 
     std::optional<TradeResult> result = measure(o, complete, given, style);
     if (!result) endWith(exitInterrupted);
-    TradeReport report{commandLine, joinedFiles(o.input.files), sceneDigest(complete),
-                       RenderCommand(o.input, complete.output.files.empty())};
-    report.threads = o.threads.value_or(0) > 0
-                         ? *o.threads
-                         : static_cast<int>(std::thread::hardware_concurrency());
-    report.budget = o.budget.value_or(defaultBudget);
-    report.result = std::move(*result);
-    if (!o.report.empty()) report.pictures = tradePictures(report.result, complete);
-    const std::string text =
-        tradeJson(report, false).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
-        "\n";
+    const TradeReport report = reportOf(o, commandLine, complete, std::move(*result));
+    const nlohmann::ordered_json json = tradeJson(report, false);
     if (o.reports.json)
-        printData(text);
+        printJson(json, 1);
     else if (o.reports.printsText())
         printText(tradeText(report));
     if (o.report.empty()) return;
-    writeReport(o.report / "trade.json", text);
-    writeReport(o.report / "trade.csv", tradeCsv(report));
-    writeReport(o.report / "trade.html", tradePage(tradeJson(report, true)));
+    writeReport(o.report,
+                {{reportFiles[0], jsonText(json, 1) + "\n"},
+                 {reportFiles[1], tradeCsv(report)},
+                 {reportFiles[2], tradePage(tradeJson(report, true))}});
 }
 
 /// Throws Error{Usage} where an option speaks of what is not asked for.
@@ -128,29 +138,33 @@ void run(const TradeOptions& o, const std::string& commandLine) {
 }
 
 CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
-    CLI::App* command = app.add_subcommand(
-        "trade", "Measure what each choice costs and brings on a scene, and tell which to take");
+    CLI::App* command = app.add_subcommand("trade",
+                                           "Measure how fast and how accurate each render setting "
+                                           "is on your scene, and recommend one");
     const auto o = std::make_shared<TradeOptions>();
     command->add_option("INPUT", o->input.files, "A scene (.toml), or one or more volumes (.vdb)")
         ->type_name("FILE");
     addOverlay(*command, o->input.overlay);
-    command->add_flag("--needs", o->needs,
-                      "Measure what features that the scene does not need would cost it, instead");
+    command->add_flag(
+        "--needs", o->needs,
+        "Instead: measure what it would cost to render with features that the scene does not use");
     command->add_flag("--scaling", o->scaling,
-                      "Measure how cost grows with voxels, optical depth, albedo, overlapping "
-                      "volumes and threads, instead; takes no input");
+                      "Instead: measure how the cost grows with voxels, optical depth, albedo, "
+                      "overlapping volumes and threads. Takes no input");
     addParsed(*command, "--budget", o->budget, parseDuration,
-              "The time it may take (2m; --needs: 1m; --scaling: 10m)")
+              "How long it may take (2m; with --needs 1m; with --scaling 10m)")
         ->type_name("TIME");
     command
         ->add_option("--candidates", o->candidates,
-                     "What to compare, instead of what the program comes with: a TOML file of "
-                     "[[candidate]] name = \"...\", quality = \"...\", set = [\"KEY=VALUE\"]")
+                     "Compare these settings instead of those that come with the program. A TOML "
+                     "file with a table [[candidate]] for each: name = \"...\", quality = \"...\", "
+                     "set = [\"KEY=VALUE\"]")
         ->type_name("FILE");
     command
-        ->add_option("--report", o->report,
-                     "Write DIR/trade.json, DIR/trade.csv and DIR/trade.html, a page that needs "
-                     "nothing else (--needs, --scaling: under their names)")
+        ->add_option(
+            "--report", o->report,
+            "Write DIR/trade.json, DIR/trade.csv and DIR/trade.html, a page that you can open "
+            "anywhere. With --needs and --scaling the files are called needs and scaling")
         ->type_name("DIR");
     addList(*command, "--set", o->input.overrides,
             "Set a value of the scene, such as volume[0].scale=2")
@@ -159,9 +173,9 @@ CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
               "Image size; a width alone keeps the scene's shape")
         ->type_name("WIDTHxHEIGHT");
     addCount(*command, "--threads", o->threads, 0, 4096,
-             "How many processor threads to use (0: all cores)");
+             "How many processor threads to use. 0 takes all cores");
     addCount(*command, "--seed", o->seed, 0, INT64_MAX / 2,
-             "Start of the random numbers: another seed gives other noise (0)");
+             "Seed of the random numbers. Another seed gives other noise (0)");
     command->footer(examplesText({"woodcock trade scene.toml --budget 2m --report trade",
                                   "woodcock trade smoke.vdb --needs"}));
     o->reports.addTo(*command, "Print one JSON document on stdout instead of the tables");

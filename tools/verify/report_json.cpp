@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tools/common/json_text.h"
 #include "tools/verify/report.h"
 #include "woodcock/base/version.h"
 
@@ -65,7 +66,7 @@ std::string reportJson(const VerifyReport& report) {
                     {"checks", checks},
                     {"cases", cases}};
     // File names need not be UTF-8.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(json) + "\n";
 }
 
 }  // namespace woodcock::tool

@@ -11,6 +11,7 @@
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/option_kinds.h"
+#include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/common/report_options.h"
 #include "tools/verify/purpose.h"
@@ -18,7 +19,6 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/parse.h"
-#include "woodcock/base/whole_file.h"
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/proof/proof.h"
 
@@ -36,28 +36,14 @@ struct VerifyOptions {
     std::string only;
     std::filesystem::path report;
     std::vector<std::filesystem::path> volumes;
-
-    std::filesystem::path jsonFile() const { return report / "verify.json"; }
-    std::filesystem::path htmlFile() const { return report / "verify.html"; }
 };
-
-void write(const std::filesystem::path& file, const std::string& text) {
-    writeWholeFile(file, text);
-}
 
 /// What would waste the time that checks take.
 void validate(const VerifyOptions& o) {
     if (o.quick && o.full)
         throw usageError("--quick and --full contradict each other: give one of them");
     for (const auto& file : o.volumes) listGrids(file);
-    if (o.report.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(o.report, error);
-    if (error)
-        throw usageError("--report: cannot make the directory '{}': {}", o.report.string(),
-                         error.message());
-    checkWritable(o.jsonFile());
-    checkWritable(o.htmlFile());
+    prepareReport(o.report, {"verify.json", "verify.html"});
 }
 
 /// The checks whose kind or name contains `only`.
@@ -148,11 +134,9 @@ void runVerify(const VerifyOptions& o) {
     else if (o.reports.printsText())
         printText(summaryText(report));
     std::fflush(stdout);
-    if (!o.report.empty()) {
-        write(o.jsonFile(), reportJson(report));
-        write(o.htmlFile(), reportHtml(report));
-        spdlog::info("wrote {} and {}", o.jsonFile().string(), o.htmlFile().string());
-    }
+    if (!o.report.empty())
+        writeReport(o.report,
+                    {{"verify.json", reportJson(report)}, {"verify.html", reportHtml(report)}});
     if (!report.complete) endWith(exitInterrupted);
     const auto failed = std::count_if(report.cases.begin(), report.cases.end(),
                                       [](const Case& c) { return c.verdict() != Verdict::Pass; });
@@ -165,28 +149,33 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App* command = app.add_subcommand("verify", verifyPurpose);
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick,
-                      "Prove two digits, in about a minute (the default)");
-    command->add_flag("--full", options->full,
-                      "Prove three digits for tables of slabs; takes an hour or more on two cores");
+                      "Check to two digits, in about a minute (the default)");
+    command->add_flag(
+        "--full", options->full,
+        "Check the tables of slabs to three digits, which takes an hour or more on two cores");
     addChoice(*command, "--quality", options->quality, {"reference", "final"},
-              "Whose samples to prove (final: adaptive ones; others are biased):")
+              "Which quality to check. final samples adaptively. The qualities that are not here "
+              "are biased:")
         ->type_name("NAME");
     command
-        ->add_option("--only", options->only,
-                     "Only checks whose kind or name contains TEXT: 'slab', say, or 'half-space'")
+        ->add_option(
+            "--only", options->only,
+            "Run only the checks whose kind or name contains TEXT, such as 'slab' or 'half-space'")
         ->type_name("TEXT");
     command
         ->add_option("--report", options->report,
-                     "Write DIR/verify.json and DIR/verify.html, a page that needs nothing else")
+                     "Write DIR/verify.json and DIR/verify.html, a page that you can open anywhere")
         ->type_name("DIR");
     options->reports.addTo(*command, "Print one JSON document on stdout instead of the table");
     command
         ->add_option("--seed", options->seed,
-                     "Draw other random numbers; of 1000 cases, chance fails one in 16 runs")
+                     "Seed of the random numbers (1). Chance alone fails one of 1000 cases in one "
+                     "of 16 runs")
         ->type_name("N");
     command
         ->add_option("INPUT", options->volumes,
-                     "VDB files of your own, to hold the properties of any volume against")
+                     "VDB files of your own. The properties that hold for any volume are tested on "
+                     "them, too")
         ->type_name("FILE");
     command->footer(
         examplesText({"woodcock verify", "woodcock verify smoke.vdb --only slab --report proof"}));
