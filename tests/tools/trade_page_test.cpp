@@ -19,6 +19,25 @@ json exampleReports() {
     return json::parse(readText(sourceDir() / "tests/tools/trade_pages.json"));
 }
 
+/// The models that the example's candidates are told to have.
+std::vector<TradeModel> exampleModels(const json& report) {
+    std::vector<TradeModel> models;
+    for (const json& c : report.at("candidates")) {
+        TradeModel& model = models.emplace_back();
+        if (c.at("costs").empty()) continue;
+        model.secondsPerSample = c.at("seconds_per_sample").at("value");
+        model.costs = c.at("costs").get<std::vector<double>>();
+        if (!c.at("biased")) continue;
+        const double bias = c.at("rms_bias").at("value"), error = c.at("rms_bias").at("se");
+        model.squaredBias = {bias * bias, 2 * bias * error + error * error};
+    }
+    return models;
+}
+
+std::string exampleTradePage(const json& report) {
+    return tool::tradePage(report, exampleModels(report));
+}
+
 struct MadePage {
     std::string name;
     std::string page;
@@ -27,7 +46,7 @@ struct MadePage {
 
 std::vector<MadePage> examplePages() {
     const json all = exampleReports();
-    return {{"trade", tool::tradePage(all.at("trade")), all.at("trade")},
+    return {{"trade", exampleTradePage(all.at("trade")), all.at("trade")},
             {"scaling", tool::scalingPage(all.at("scaling")), all.at("scaling")},
             {"needs", tool::needsPage(all.at("needs")), all.at("needs")}};
 }
@@ -62,7 +81,7 @@ TEST(TradePages, HoldWhatJsonCannotSay) {
     json report = exampleReports().at("trade");
     report["seconds"] = std::numeric_limits<double>::quiet_NaN();
     report["scene"] = "not UTF-8: \xff, and @DATA@";
-    const json held = json::parse(dataIn(tool::tradePage(report)));
+    const json held = json::parse(dataIn(exampleTradePage(report)));
     EXPECT_TRUE(held.at("seconds").is_null());
     EXPECT_EQ(held.at("scene"), "not UTF-8: \xef\xbf\xbd, and @DATA@");
 }

@@ -5,16 +5,16 @@
 #include <set>
 #include <string_view>
 
+#include "tools/common/json_text.h"
 #include "tools/compare/report.h"
 #include "tools/pages/page.h"
 #include "woodcock/base/error.h"
 #include "woodcock/compare/pack.h"
 
+// Of page/, see CMakeLists.txt.
 namespace woodcock {
-extern const std::string_view comparePageStyle;   // compare_page.css
-extern const std::string_view comparePageImages;  // compare_page_images.js
-extern const std::string_view comparePageViewer;
-extern const std::string_view comparePageTables;
+extern const std::string_view comparePageStyle, comparePageImages, comparePageViewer,
+    comparePageControls, comparePageTables;
 }  // namespace woodcock
 
 namespace woodcock::tool {
@@ -91,11 +91,11 @@ std::vector<BakedView> bakeViews(const ColorConfig& config) {
 
 std::string compareHtml(const Comparison& comparison, const std::vector<BakedView>& views) {
     const Json pixels = pixelsJson(comparison, views);
-    return makePage({"woodcock compare",
-                     {comparePageStyle},
-                     {{"report", compareJson(comparison)},
-                      {"pixels", pixels.dump(-1, ' ', false, Json::error_handler_t::replace)}},
-                     {comparePageImages, comparePageViewer, comparePageTables}});
+    return makePage(
+        {"woodcock compare",
+         {comparePageStyle},
+         {{"report", compareJson(comparison)}, {"pixels", jsonText(pixels, -1)}},
+         {comparePageImages, comparePageViewer, comparePageControls, comparePageTables}});
 }
 
 }  // namespace woodcock::tool

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Charts of y against x, with series of points and lines, which tell of the point under the pointer or the arrow keys.
+// Charts of y against x, with series of points and lines, which tell of the point under the
+// pointer or the arrow keys.
 
 const colourCount = 7,
     shapes = ["circle", "square", "triangle", "diamond", "wedge"];
 
-/** The SVG of a series' mark around (x, y); hollow ones are filled with the card's colour. Colour and shape go round at different lengths. */
+/**
+ * The SVG of a series' mark around (x, y); hollow ones are filled with the card's colour. Colour
+ * and shape go round at different lengths.
+ */
 function mark(x, y, { index, hollow }, radius = 4.5) {
     const r = radius,
         style = `mark c${index % colourCount}${hollow ? " hollow" : ""}`;
     const polygon = (points) =>
-        `<polygon points="${points.map(([u, v]) => `${(x + u * r).toFixed(1)},${(y + v * r).toFixed(1)}`).join(" ")}" class="${style}"/>`;
+        `<polygon points="${points
+            .map(([u, v]) => `${(x + u * r).toFixed(1)},${(y + v * r).toFixed(1)}`)
+            .join(" ")}" class="${style}"/>`;
     switch (shapes[index % shapes.length]) {
         case "square":
             return polygon([
@@ -44,12 +50,21 @@ function mark(x, y, { index, hollow }, radius = 4.5) {
 const swatch = (
     series,
 ) => `<svg class="swatch" viewBox="0 0 28 14" width="28" height="14" aria-hidden="true">
-    ${line(1, 7, 27, 7, `curve c${series.index % colourCount}${series.dashed ? " dashed" : ""}`)}${mark(14, 7, series)}</svg>`;
+    ${line(
+        1,
+        7,
+        27,
+        7,
+        `curve c${series.index % colourCount}${series.dashed ? " dashed" : ""}`,
+    )}${mark(14, 7, series)}</svg>`;
 
 const powerOfTen = (n) =>
     "10" + String(n).replace(/./g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]));
 
-/** An axis that has room for the values: maps them to [0, 1] and back, and gives about `count` marks [value, text]. */
+/**
+ * An axis that has room for the values: maps them to [0, 1] and back, and gives about `count`
+ * marks [value, text].
+ */
 function axis({ label, log }, values) {
     const scale = log ? Math.log10 : (v) => v,
         back = log ? (v) => Math.pow(10, v) : (v) => v;
@@ -88,7 +103,9 @@ function axis({ label, log }, values) {
     };
 }
 
-/** Moves sorted places apart until neighbours are `apart` from one another, within [top, bottom]. */
+/**
+ * Moves sorted places apart until neighbours are `apart` from one another, within [top, bottom].
+ */
 function spread(places, apart, top, bottom) {
     const list = [...places];
     for (let i = 0; i < list.length; ++i)
@@ -100,8 +117,11 @@ function spread(places, apart, top, bottom) {
 
 let chartCount = 0;
 
-/** A chart in a card. `x` and `y` are {label, log}; a series is {index, name, key, hollow, dashed, points: [{x, y, se, text}], line: [[x, y]]}:
-    points have bars of one standard error. `extent` gives more x and y to make room for; behind(f) draws under the series. Returns {card, redraw}. */
+/**
+ * A chart in a card. `x` and `y` are {label, log}; a series is {index, name, key, hollow, dashed,
+ * points: [{x, y, se, text}], line: [[x, y]]}: points have bars of one standard error. `extent`
+ * gives more x and y to make room for; behind(f) draws under the series. Returns {card, redraw}.
+ */
 function chart(
     parent,
     {
@@ -122,13 +142,18 @@ function chart(
         hidden = new Set();
     card.className = "card chart";
     card.innerHTML =
-        `<h3>${escape(title)}</h3><div class="drawing" tabindex="0" role="application" aria-roledescription="chart"
-        aria-label="${escape(title)}. Arrow keys go from point to point."></div><div class="tip" hidden></div><p class="unseen" role="status"></p>` +
+        `<h3>${escape(title)}</h3><div class="drawing" tabindex="0" role="application"
+            aria-roledescription="chart"
+            aria-label="${escape(title)}. Arrow keys go from point to point."></div><div class="tip"
+            hidden></div><p class="unseen" role="status"></p>` +
         (legend
             ? `<div class="keys" role="group" aria-label="Shown in ${escape(title)}">${series
                   .map(
                       (s, i) =>
-                          `<button type="button" data-series="${i}" aria-pressed="true">${swatch(s)}<span>${keys ? `<b>${escape(s.key)}</b> ` : ""}${escape(s.name)}</span></button>`,
+                          `<button type="button" data-series="${i}"
+                              aria-pressed="true">${swatch(s)}<span>${
+                                  keys ? `<b>${escape(s.key)}</b> ` : ""
+                              }${escape(s.name)}</span></button>`,
                   )
                   .join("")}</div>`
             : "");
@@ -154,7 +179,8 @@ function chart(
             bottom = height - 40;
         const px = (v) => left + xAxis.place(v) * (right - left),
             py = (v) => bottom - yAxis.place(v) * (bottom - top);
-        const least = yAxis.log ? Math.pow(10, yAxis.low - 1) : -Infinity; // what is not positive goes below the frame
+        // What is not positive goes below the frame.
+        const least = yAxis.log ? Math.pow(10, yAxis.low - 1) : -Infinity;
         frame = { left, right, top, bottom, px, py: (v) => py(Math.max(v, least)), xAxis, yAxis };
         const xMarks = xAxis.marks(Math.max(2, Math.floor((right - left) / 60))),
             yMarks = yAxis.marks(Math.max(2, Math.floor((bottom - top) / 45)));
@@ -192,10 +218,12 @@ function chart(
         );
         const ring =
             chosen && !hidden.has(chosen.series)
-                ? `<circle cx="${px(chosen.point.x)}" cy="${frame.py(chosen.point.y)}" r="9" class="ring"/>`
+                ? `<circle cx="${px(chosen.point.x)}" cy="${frame.py(chosen.point.y)}" r="9"
+                    class="ring"/>`
                 : "";
         return (
-            `<defs><clipPath id="${id}"><rect x="${left}" y="${top - 6}" width="${right - left}" height="${bottom - top + 6}"/></clipPath></defs>` +
+            `<defs><clipPath id="${id}"><rect x="${left}" y="${top - 6}" width="${right - left}"
+                height="${bottom - top + 6}"/></clipPath></defs>` +
             xMarks.map(([v]) => line(px(v), top, px(v), bottom, "grid")).join("") +
             yMarks
                 .map(
@@ -208,7 +236,8 @@ function chart(
             xTexts.join("") +
             label((left + right) / 2, height - 4, xAxis.label) +
             label(0, 10, yAxis.label, "start") +
-            `<g clip-path="url(#${id})">${behind(frame, visible())}${curves.join("")}${marks.join("")}${ring}</g>` +
+            `<g clip-path="url(#${id})">${behind(frame, visible())}` +
+            `${curves.join("")}${marks.join("")}${ring}</g>` +
             (keys ? endKeys() : "")
         );
     };
@@ -228,13 +257,15 @@ function chart(
         return ends
             .map(
                 (e, i) =>
-                    `<text x="${frame.right + 6}" y="${places[i] + 4}" class="end c${e.s.index % colourCount}">${escape(e.s.key)}</text>`,
+                    `<text x="${frame.right + 6}" y="${places[i] + 4}"
+                        class="end c${e.s.index % colourCount}">${escape(e.s.key)}</text>`,
             )
             .join("");
     };
     const redraw = () => {
         const width = Math.max(240, drawing.clientWidth);
-        drawing.innerHTML = `<svg viewBox="0 0 ${width} ${height}" height="${height}" aria-hidden="true">${draw(width)}</svg>`;
+        drawing.innerHTML = `<svg viewBox="0 0 ${width} ${height}" height="${height}"
+            aria-hidden="true">${draw(width)}</svg>`;
     };
 
     const all = () => visible().flatMap((s) => s.points.map((point) => ({ series: s, point })));
@@ -245,12 +276,17 @@ function chart(
         if (!found) return;
         const { series: s, point } = found,
             at = [frame.px(point.x), Math.min(frame.bottom, frame.py(point.y))];
-        tip.innerHTML = `<b>${keys ? escape(s.key) + " " : ""}${escape(s.name)}</b><br>${point.text.map(escape).join("<br>")}`;
+        tip.innerHTML = `<b>${
+            keys ? escape(s.key) + " " : ""
+        }${escape(s.name)}</b><br>${point.text.map(escape).join("<br>")}`;
         status.textContent = `${s.name}: ${point.text.join(", ")}`;
         const room = card.clientWidth,
             wide = tip.offsetWidth,
             x0 = drawing.offsetLeft + at[0];
-        tip.style.left = `${Math.max(4, Math.min(room - wide - 4, x0 + (x0 > room / 2 ? -wide - 14 : 14)))}px`;
+        tip.style.left = `${Math.max(
+            4,
+            Math.min(room - wide - 4, x0 + (x0 > room / 2 ? -wide - 14 : 14)),
+        )}px`;
         tip.style.top = `${drawing.offsetTop + Math.max(0, at[1] - tip.offsetHeight - 8)}px`;
     };
     const nearest = (event) => {
@@ -310,69 +346,3 @@ function chart(
     new ResizeObserver(redraw).observe(drawing);
     return { card, redraw };
 }
-
-/** Rows of name, mark and bars of one and two standard errors, names above: {index, hollow, key, name, value, se, text, missing}. `lines` are [value, text, class]. */
-function rowChart(
-    parent,
-    title,
-    rows,
-    { unit = "", lines = [], bars = false, from = 0, note = "" } = {},
-) {
-    const known = rows.filter((r) => Number.isFinite(r.value)),
-        ends = known.flatMap((r) => [r.value - 2 * (r.se || 0), r.value + 2 * (r.se || 0)]);
-    const tall = 36,
-        height = rows.length * tall + 44;
-    const values = [...ends, ...lines.map((l) => l[0]), from],
-        scale = axis({ label: "", log: false }, values);
-    const text = rows.map((r) => `${r.name} ${r.text}`).join("; ");
-    plot(parent, title, { height, label: `${title}: ${text}`, legend: note }, (width) => {
-        const left = 8,
-            right = width - 14,
-            px = (v) => left + scale.place(v) * (right - left);
-        const top = 18,
-            bottom = rows.length * tall + top;
-        const marks = scale.marks(Math.max(2, Math.floor(width / 64)));
-        const row = (r, i) => {
-            const y = top + i * tall,
-                at = y + 26,
-                style = `c${r.index % colourCount}`;
-            const text =
-                `<text x="${left}" y="${y + 13}" class="name"><tspan class="number">${escape(r.key)}</tspan> ${escape(fitted(r.name, (width - 24) / 7 - r.text.length))}</text>` +
-                `<text x="${right}" y="${y + 13}" text-anchor="end" class="name">${escape(r.text)}</text>`;
-            if (!Number.isFinite(r.value)) return text;
-            const se = r.se || 0,
-                whisker = (n) =>
-                    line(
-                        px(r.value - n * se).toFixed(1),
-                        at,
-                        px(r.value + n * se).toFixed(1),
-                        at,
-                        `bar ${style} sigma${n}`,
-                    );
-            const body = bars
-                ? `<rect x="${Math.min(px(from), px(r.value)).toFixed(1)}" width="${Math.abs(px(r.value) - px(from)).toFixed(1)}" y="${at - 6}" height="12" class="body ${style}"/>`
-                : "";
-            return `<g class="point"><title>${escape(`${r.name}: ${r.text}`)}</title>${body}${whisker(2)}${whisker(1)}${bars ? line(px(r.value), at - 7, px(r.value), at + 7, `bar ${style}`) : mark(px(r.value), at, r, 4)}</g>${text}`;
-        };
-        return (
-            marks
-                .map(
-                    ([v, text]) =>
-                        line(px(v), top, px(v), bottom, "grid") +
-                        label(px(v), bottom + 16, text + unit),
-                )
-                .join("") +
-            lines
-                .map(
-                    ([v, text, style]) =>
-                        line(px(v), top - 4, px(v), bottom, style) +
-                        (text ? label(px(v), 10, text, px(v) > width / 2 ? "end" : "start") : ""),
-                )
-                .join("") +
-            line(left, bottom, right, bottom, "axis") +
-            rows.map(row).join("")
-        );
-    });
-}
-const fitted = (text, letters) =>
-    text.length <= letters ? text : text.slice(0, Math.max(3, Math.floor(letters) - 1)) + "…";

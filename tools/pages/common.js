@@ -5,6 +5,8 @@ const dataOf = (id) => JSON.parse(document.getElementById(id).textContent);
 const escape = (text) => String(text).replace(/[&<>"']/g, (c) => `&#${c.charCodeAt(0)};`);
 const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
 
+const isNumber = (v) => typeof v === "number" && Number.isFinite(v);
+
 /** A number to read; what is missing is a dash. */
 const number = (v, digits = 5) => {
     if (v === null || v === undefined || Number.isNaN(v)) return "–";
@@ -26,7 +28,8 @@ function section(fill) {
     fill(s);
 }
 
-// ---- tables: a column has a name, the text or html of a row, the key to sort by, and a class for its cells
+// ---- tables: a column has a name, the text or html of a row, the key to sort by, and a class for
+// its cells
 
 function table(rows, columns, sort) {
     const head = columns.map((c, i) => {
@@ -39,12 +42,16 @@ function table(rows, columns, sort) {
         return `<th scope="col" class="${c.cell || ""}"${order}>${title}</th>`;
     });
     const cell = (c, row) =>
-        `<td class="${c.cell || ""} ${c.mood ? c.mood(row) : ""}" data-label="${escape(c.name)}">${c.html ? c.html(row) : escape(c.text(row))}</td>`;
+        `<td class="${c.cell || ""} ${c.mood ? c.mood(row) : ""}"
+            data-label="${escape(c.name)}">${c.html ? c.html(row) : escape(c.text(row))}</td>`;
     const body = rows.map((row) => `<tr>${columns.map((c) => cell(c, row)).join("")}</tr>`);
     return `<table><thead><tr>${head.join("")}</tr></thead><tbody>${body.join("")}</tbody></table>`;
 }
 
-/** Keeps a table of rows() in the box, sorted by the heading that was pressed last; what has no key comes last. Returns what draws it anew. */
+/**
+ * Keeps a table of rows() in the box, sorted by the heading that was pressed last; what has no key
+ * comes last. Returns what draws it anew.
+ */
 function sortableTable(box, rows, columns, sort, otherwise = () => 0) {
     const missing = (k) => k === null || k === undefined || Number.isNaN(k);
     const compare = (a, b) =>
@@ -77,14 +84,17 @@ const plots = [];
 function plot(parent, title, { height = 200, label = title, legend = "" }, draw) {
     const card = document.createElement("div");
     card.className = "card";
-    card.innerHTML = `<h3>${escape(title)}</h3><div></div>${legend && `<p class="legend">${legend}</p>`}`;
+    card.innerHTML = `<h3>${escape(title)}</h3><div></div>${
+        legend && `<p class="legend">${legend}</p>`
+    }`;
     parent.append(card);
     plots.push({ box: card.children[1], height, label, draw });
 }
 function drawPlots() {
     for (const { box, height, label, draw } of plots) {
         const width = Math.max(200, box.clientWidth);
-        box.innerHTML = `<svg viewBox="0 0 ${width} ${height}" height="${height}" role="img" aria-label="${escape(label)}">${draw(width, height)}</svg>`;
+        box.innerHTML = `<svg viewBox="0 0 ${width} ${height}" height="${height}" role="img"
+            aria-label="${escape(label)}">${draw(width, height)}</svg>`;
     }
 }
 
@@ -99,7 +109,8 @@ const line = (x0, y0, x1, y1, style) =>
 const label = (x, y, text, anchor = "middle") =>
     `<text x="${x}" y="${y}" text-anchor="${anchor}">${escape(text)}</text>`;
 const path = (points, style) =>
-    `<polyline points="${points.map((p) => p.map((v) => v.toFixed(1)).join(",")).join(" ")}" class="${style}"/>`;
+    `<polyline points="${points.map((p) => p.map((v) => v.toFixed(1)).join(",")).join(" ")}"
+        class="${style}"/>`;
 
 /** About `count` round numbers from a to b. */
 function ticks(a, b, count) {

@@ -3,10 +3,9 @@
 
 #include <fmt/core.h>
 
+// Of this folder, see CMakeLists.txt.
 namespace woodcock {
-extern const std::string_view pageFrame;   // page_frame.html
-extern const std::string_view pageStyle;   // page_style.css
-extern const std::string_view pageCommon;  // page_common.js
+extern const std::string_view pageFrame, pageStyle, pageCommon;
 }  // namespace woodcock
 
 namespace woodcock::tool {

@@ -8,8 +8,8 @@
 
 namespace woodcock::tool {
 
-/// What one kind of page has beside what all share: page_frame.html, page_style.css and
-/// page_common.js.
+/// What one kind of page has beside what all share: frame.html, style.css and
+/// common.js.
 struct PageParts {
     std::string_view title;
     std::vector<std::string_view> styles;                        ///< CSS, in this order

@@ -2,54 +2,68 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "tools/common/json_text.h"
 #include "tools/pages/page.h"
 #include "tools/trade/report_html.h"
 
+// Of ../pages and page/, see their CMakeLists.txt.
 namespace woodcock {
-extern const std::string_view pageChart;       // page_chart.js
-extern const std::string_view pageChartStyle;  // page_chart.css
-extern const std::string_view tradePageStyle;  // trade_page.css
-extern const std::string_view tradePageModel;  // trade_page_model.js, and so on
-extern const std::string_view tradePageChoose;
-extern const std::string_view tradePagePlots;
-extern const std::string_view tradePageTables;
-extern const std::string_view tradePageCrops;
-extern const std::string_view tradePageStart;
-extern const std::string_view scalingPageScript;  // scaling_page.js
-extern const std::string_view needsPageScript;    // needs_page.js
+extern const std::string_view pageChart, pageChartRows, pageChartStyle;
+extern const std::string_view tradePageStyle, tradePageModel, tradePageWords, tradePageChoose,
+    tradePagePlots, tradePageTables, tradePageCrops, tradePageStart;
+extern const std::string_view scalingPageScript, needsPageScript;
 }  // namespace woodcock
 
 namespace woodcock::tool {
 
 namespace {
 
-/// What is not finite becomes null, and what is not UTF-8 a mark of replacement.
-std::string jsonText(const nlohmann::json& report) {
-    return report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+nlohmann::json numbers(const Measured& m) { return {{"value", m.value}, {"se", m.se}}; }
+
+/// The numbers that the page needs for any time and any error: for each candidate what its bias is,
+/// what its noise is times the time, and how well the latter's difference from each other
+/// candidate's is known.
+nlohmann::json modelsJson(const std::vector<TradeModel>& models) {
+    nlohmann::json candidates = nlohmann::json::array();
+    for (const TradeModel& model : models) {
+        if (model.costs.empty()) {
+            candidates.push_back(nullptr);
+            continue;
+        }
+        nlohmann::json differences = nlohmann::json::array();
+        for (const TradeModel& other : models)
+            differences.push_back(noiseDifferenceError(model, other));
+        candidates.push_back({{"seconds_per_sample", model.secondsPerSample},
+                              {"bias", numbers({model.biasError(), model.squaredBias.se})},
+                              {"noise", numbers(model.noise())},
+                              {"noise_difference_se", std::move(differences)}});
+    }
+    return {{"tie_width", tieWidth}, {"candidates", std::move(candidates)}};
 }
 
 }  // namespace
 
-std::string tradePage(const nlohmann::json& report) {
-    return makePage({"woodcock trade",
-                     {pageChartStyle, tradePageStyle},
-                     {{"report", jsonText(report)}},
-                     {pageChart, tradePageModel, tradePageChoose, tradePagePlots, tradePageTables,
-                      tradePageCrops, tradePageStart}});
+std::string tradePage(const nlohmann::json& report, const std::vector<TradeModel>& models) {
+    return makePage(
+        {"woodcock trade",
+         {pageChartStyle, tradePageStyle},
+         {{"report", jsonText(report, -1)}, {"models", jsonText(modelsJson(models), -1)}},
+         {pageChart, pageChartRows, tradePageModel, tradePageWords, tradePageChoose, tradePagePlots,
+          tradePageTables, tradePageCrops, tradePageStart}});
 }
 
 std::string scalingPage(const nlohmann::json& report) {
     return makePage({"woodcock trade --scaling",
                      {pageChartStyle},
-                     {{"report", jsonText(report)}},
-                     {pageChart, scalingPageScript}});
+                     {{"report", jsonText(report, -1)}},
+                     {pageChart, pageChartRows, scalingPageScript}});
 }
 
 std::string needsPage(const nlohmann::json& report) {
     return makePage({"woodcock trade --needs",
                      {pageChartStyle},
-                     {{"report", jsonText(report)}},
-                     {pageChart, needsPageScript}});
+                     {{"report", jsonText(report, -1)}},
+                     {pageChart, pageChartRows, needsPageScript}});
 }
 
 }  // namespace woodcock::tool

@@ -65,6 +65,12 @@ std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription
     return runTrade(complete, parse, given, settings);
 }
 
+std::vector<TradeModel> modelsOf(const TradeResult& result) {
+    std::vector<TradeModel> models;
+    for (const CandidateResult& candidate : result.candidates) models.push_back(candidate.model);
+    return models;
+}
+
 const std::vector<std::string> reportFiles{"trade.json", "trade.csv", "trade.html"};
 
 /// What was asked, and what was found.
@@ -106,7 +112,7 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine, Prog
     writeReport(o.report,
                 {{reportFiles[0], jsonText(json, 1) + "\n"},
                  {reportFiles[1], tradeCsv(report)},
-                 {reportFiles[2], tradePage(tradeJson(report, true))}});
+                 {reportFiles[2], tradePage(tradeJson(report, true), modelsOf(report.result))}});
 }
 
 /// Throws Error{Usage} where an option speaks of what is not asked for.

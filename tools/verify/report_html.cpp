@@ -4,9 +4,9 @@
 #include "tools/pages/page.h"
 #include "tools/verify/report.h"
 
+// Of page/, see CMakeLists.txt.
 namespace woodcock {
-extern const std::string_view verifyPageStyle;   // verify_page.css
-extern const std::string_view verifyPageScript;  // verify_page.js
+extern const std::string_view verifyPageStyle, verifyPageCases, verifyPagePlots, verifyPageStart;
 }  // namespace woodcock
 
 namespace woodcock::tool {
@@ -15,7 +15,7 @@ std::string reportHtml(const VerifyReport& report) {
     return makePage({"woodcock verify",
                      {verifyPageStyle},
                      {{"report", reportJson(report)}},
-                     {verifyPageScript}});
+                     {verifyPageCases, verifyPagePlots, verifyPageStart}});
 }
 
 }  // namespace woodcock::tool

@@ -8,8 +8,6 @@
 namespace woodcock {
 namespace {
 
-constexpr double tieWidth = 2;  // standard errors of the difference
-
 /// The candidate of least `value` (absent: it does not take part), and those whose `difference`
 /// from it is not significant.
 template <class Value, class Difference>
@@ -43,28 +41,31 @@ double TradeModel::samplesIn(double seconds) const {
 
 std::optional<Measured> TradeModel::errorAt(double seconds) const {
     if (seconds < secondsPerSample) return std::nullopt;
-    const Measured noise = meanOf(costs);
-    return Measured{biasError() + noise.value / seconds,
-                    std::hypot(squaredBias.se, noise.se / seconds)};
+    const Measured n = noise();
+    return Measured{biasError() + n.value / seconds, std::hypot(squaredBias.se, n.se / seconds)};
 }
 
 std::optional<Measured> TradeModel::secondsTo(double error) const {
     const double room = error - biasError();
     if (!(room > 0)) return std::nullopt;
-    const Measured noise = meanOf(costs);
-    const double seconds = noise.value / room;
+    const Measured n = noise();
+    const double seconds = n.value / room;
     return Measured{std::max(secondsPerSample, seconds),
-                    std::hypot(noise.se / room, seconds * squaredBias.se / room)};
+                    std::hypot(n.se / room, seconds * squaredBias.se / room)};
+}
+
+double noiseDifferenceError(const TradeModel& a, const TradeModel& b) {
+    const std::size_t common = std::min(a.costs.size(), b.costs.size());
+    std::vector<double> paired;
+    for (std::size_t k = 0; k < common; ++k) paired.push_back(a.costs[k] - b.costs[k]);
+    return meanOf(paired).se;
 }
 
 Measured errorDifference(const TradeModel& a, const TradeModel& b, double seconds) {
-    const std::size_t common = std::min(a.costs.size(), b.costs.size());
     const double bias = a.biasError() - b.biasError();
     const double biasVariance = std::pow(a.squaredBias.se, 2) + std::pow(b.squaredBias.se, 2);
-    std::vector<double> paired;
-    for (std::size_t k = 0; k < common; ++k) paired.push_back((a.costs[k] - b.costs[k]) / seconds);
     return {bias + (a.cost() - b.cost()) / seconds,
-            std::sqrt(biasVariance + std::pow(meanOf(paired).se, 2))};
+            std::sqrt(biasVariance + std::pow(noiseDifferenceError(a, b) / seconds, 2))};
 }
 
 std::optional<Winner> bestAt(const std::vector<TradeModel>& models, double seconds) {

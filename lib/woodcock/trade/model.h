@@ -19,7 +19,8 @@ struct TradeModel {
     /// with the same seeds side by side are compared seed by seed.
     std::vector<double> costs;
 
-    double cost() const { return meanOf(costs).value; }
+    Measured noise() const { return meanOf(costs); }
+    double cost() const { return noise().value; }
     /// The bias's part of the error; estimates below zero are noise and count as 0.
     double biasError() const { return squaredBias.value > 0 ? squaredBias.value : 0; }
     /// The error with the bias raised by two standard errors: a safe choice without a second
@@ -33,8 +34,15 @@ struct TradeModel {
     std::optional<Measured> secondsTo(double error) const;
 };
 
+/// Standard error of noise() of a minus that of b. With common seeds it is that of the mean of the
+/// seeds' differences.
+double noiseDifferenceError(const TradeModel& a, const TradeModel& b);
+
 /// Error of a minus that of b after so many seconds, in which both render at least a sample.
 Measured errorDifference(const TradeModel& a, const TradeModel& b, double seconds);
+
+/// Standard errors of a difference within which two candidates are tied.
+constexpr double tieWidth = 2;
 
 /// The best candidate by some measure: its index, and those within two standard errors of the
 /// difference.

@@ -135,7 +135,10 @@ const signedColours = colourTable(signedStops),
     flipColours = colourTable(flipStops);
 const gradient = (stops) => `linear-gradient(90deg, ${stops.map((s) => `rgb(${s})`).join(", ")})`;
 
-/** right - left of a channel, or of the mean of all, for each pixel; relative to |left| if asked, where that is above a thousandth of the brightest. */
+/**
+ * right - left of a channel, or of the mean of all, for each pixel; relative to |left| if asked,
+ * where that is above a thousandth of the brightest.
+ */
 function differences(left, right, channel, relative) {
     const list = channel < 0 ? channels.map((_, c) => c) : [channel],
         out = new Float32Array(pixelCount);

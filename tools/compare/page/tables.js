@@ -5,7 +5,9 @@ function summary() {
     const differing = report.comparisons.filter((c) => c.verdict === "differ").map((c) => c.image),
         a = letters[0];
     const title = differing.length
-        ? `<h1 class="bad">${differing.join(", ")} differ${differing.length === 1 ? "s" : ""} from ${a}</h1>`
+        ? `<h1 class="bad">${differing.join(", ")} differ${
+              differing.length === 1 ? "s" : ""
+          } from ${a}</h1>`
         : `<h1 class="good">${letters.slice(1).join(", ")} and ${a}: same within noise</h1>`;
     const files = report.images.map((image, i) => {
         const facts = [
@@ -15,20 +17,23 @@ function summary() {
             image.render_seconds && `${number(image.render_seconds, 3)} s`,
             image.errors_from && `standard errors from ${image.errors_from}`,
         ].filter(Boolean);
-        return `<li><b>${image.letter}</b> ${image.files.map(escape).join(", ")} <span class="soft">${escape(facts.join(", "))}</span></li>`;
+        return `<li><b>${image.letter}</b> ${image.files.map(escape).join(", ")} <span
+            class="soft">${escape(facts.join(", "))}</span></li>`;
     });
     const verdicts = report.comparisons.map(
-        (
-            c,
-        ) => `<p>${c.image}: <b class="${c.verdict === "differ" ? "bad" : "good"}">${c.verdict}</b>${c.reason ? `: ${escape(c.reason)}` : ""}.
-        <span class="soft">${plural(c.tests, "test")} of means, over ${plural(report.tiles, "tile")} and the whole of each channel; noise from ${c.noise_from}; images of equal expectation are said to
-        differ with probability ${number(report.false_alarm_rate)}.</span></p>`,
+        (c) => `<p>${c.image}: <b class="${
+            c.verdict === "differ" ? "bad" : "good"
+        }">${c.verdict}</b>${c.reason ? `: ${escape(c.reason)}` : ""}.
+        <span class="soft">${plural(c.tests, "test")} of means, over ${plural(report.tiles, "tile")}
+        and the whole of each channel; noise from ${c.noise_from}; images of equal expectation are
+        said to differ with probability ${number(report.false_alarm_rate)}.</span></p>`,
     );
     return (
         title +
         `<ul class="files">${files.join("")}</ul>` +
         verdicts.join("") +
-        `<p class="soft">${report.width} × ${report.height} pixels.${report.notes.map((n) => `<br>${escape(n)}`).join("")}</p>`
+        `<p class="soft">${report.width} × ${report.height}
+            pixels.${report.notes.map((n) => `<br>${escape(n)}`).join("")}</p>`
     );
 }
 
@@ -53,6 +58,9 @@ const columns = [
     ],
 ];
 
+const channelRow = (channel) =>
+    `<tr>${columns.map(([, text]) => `<td>${text(channel)}</td>`).join("")}</tr>`;
+
 function largestList(c, right) {
     const places = new Map();
     for (const channel of c.channels)
@@ -64,30 +72,47 @@ function largestList(c, right) {
         }
     const list = [...places.values()].sort((p, q) => q.size - p.size).slice(0, 5);
     const link = (x, y, text) =>
-        `<button type="button" class="link" data-x="${x}" data-y="${y}" data-right="${right}">${text}</button>`;
-    const tiles = c.worst_tiles
-        .slice(0, 5)
-        .map(
-            (t) =>
-                `${link((t.x0 + t.x1 - 1) >> 1, (t.y0 + t.y1 - 1) >> 1, `[${t.x0}, ${t.x1}) × [${t.y0}, ${t.y1})`)} ${escape(t.channel)} ${number(t.difference, 3)} ± ${number(t.error, 2)}`,
-        );
+        `<button type="button" class="link" data-x="${x}" data-y="${y}"
+            data-right="${right}">${text}</button>`;
+    const tiles = c.worst_tiles.slice(0, 5).map(
+        (t) =>
+            `${link(
+                (t.x0 + t.x1 - 1) >> 1,
+                (t.y0 + t.y1 - 1) >> 1,
+                `[${t.x0}, ${t.x1}) ×
+                    [${t.y0}, ${t.y1})`,
+            )} ${escape(t.channel)} ${number(t.difference, 3)} ±
+                        ${number(t.error, 2)}`,
+    );
     return (
         (list.length
-            ? `<p>Largest differences: ${list.map((d) => `${link(d.x, d.y, `${d.x}, ${d.y}`)} ${escape(d.name)} ${number(d.image - d.reference, 3)}`).join("; ")}.</p>`
+            ? `<p>Largest differences: ${list
+                  .map(
+                      (d) => `${link(d.x, d.y, `${d.x}, ${d.y}`)}
+                ${escape(d.name)} ${number(d.image - d.reference, 3)}`,
+                  )
+                  .join("; ")}.</p>`
             : "") + (tiles.length ? `<p>Least likely tiles: ${tiles.join("; ")}.</p>` : "")
     );
 }
 
 function tables(section) {
     section.innerHTML =
-        `<h2>Metrics</h2><p class="soft">relMSE is the mean of (image − A)² / (A² + ${report.relmse_epsilon}). PSNR is relative to the largest value of A. ± is one standard error. FLIP is of scene-linear Rec.709,
-        clipped at 1 (LDR) or over all exposures (HDR), at 67 pixels per degree.</p>` +
+        `<h2>Metrics</h2><p class="soft">relMSE is the mean of (image − A)² / (A² +
+            ${report.relmse_epsilon}). PSNR is relative to the largest value of A. ± is one standard
+            error. FLIP is of scene-linear Rec.709, clipped at 1 (LDR) or over all exposures (HDR),
+            at 67 pixels per degree.</p>` +
         report.comparisons
             .map(
                 (c, i) => `<h3>${c.image} against ${letters[0]}</h3>
-        <div class="wide"><table><thead><tr>${columns.map(([name]) => `<th scope="col">${name === "mean" ? `mean ${c.image}` : name}</th>`).join("")}</tr></thead>
-        <tbody>${c.channels.map((row) => `<tr>${columns.map(([, text]) => `<td>${text(row)}</td>`).join("")}</tr>`).join("")}</tbody></table></div>
-        ${c.flip ? `<p>Mean FLIP ${number(c.flip.ldr, 4)}, HDR-FLIP ${number(c.flip.hdr, 4)}.</p>` : ""}${largestList(c, i + 1)}`,
+        <div class="wide"><table><thead><tr>${columns
+            .map(([name]) => `<th scope="col">${name === "mean" ? `mean ${c.image}` : name}</th>`)
+            .join("")}</tr></thead>
+        <tbody>${c.channels.map(channelRow).join("")}</tbody></table></div> ${
+            c.flip
+                ? `<p>Mean FLIP ${number(c.flip.ldr, 4)}, HDR-FLIP ${number(c.flip.hdr, 4)}.</p>`
+                : ""
+        }${largestList(c, i + 1)}`,
             )
             .join("");
     section.addEventListener("click", (event) => {
@@ -131,7 +156,8 @@ function valueHistogram(section, c, a, b) {
         section,
         `${channels[c]}: values`,
         {
-            legend: `<span><i></i>${letters[a]}</span><span><i class="b"></i>${letters[b]}</span><span>pixels (logarithmic) by stops</span>`,
+            legend: `<span><i></i>${letters[a]}</span><span><i
+                class="b"></i>${letters[b]}</span><span>pixels (logarithmic) by stops</span>`,
         },
         (w, h) => {
             const x = (i) => 8 + (i / bins) * (w - 16),
@@ -177,7 +203,8 @@ function differenceHistogram(section, c, a, b) {
         section,
         `${channels[c]}: ${letters[b]} − ${letters[a]}`,
         {
-            legend: `<span><i></i>pixels (logarithmic)</span><span><i class="theory"></i>normal curve of the same width</span>`,
+            legend: `<span><i></i>pixels (logarithmic)</span><span><i
+                class="theory"></i>normal curve of the same width</span>`,
         },
         (w, h) => {
             const x = (i) => 8 + (i / bins) * (w - 16),
@@ -231,7 +258,8 @@ function convergencePlot(section, points, unit) {
         section,
         `RMSE against ${unit}`,
         {
-            legend: `<span>points: images against ${letters[0]}</span><span><i class="theory"></i>as the square root of ${unit}</span>`,
+            legend: `<span>points: images against ${letters[0]}</span><span><i
+                class="theory"></i>as the square root of ${unit}</span>`,
         },
         (w, h) => {
             const x = (v) => 56 + ((Math.log2(v) - x0) / (x1 - x0)) * (w - 72),
@@ -266,7 +294,8 @@ function convergencePlot(section, points, unit) {
 }
 
 function convergence(section) {
-    section.innerHTML = `<h2>Convergence</h2><p class="soft">RMSE over the channels shown. Against a noisy reference it cannot fall below that one's noise.</p><div class="plots"></div>`;
+    section.innerHTML = `<h2>Convergence</h2><p class="soft">RMSE over the channels shown. Against a
+        noisy reference it cannot fall below that one's noise.</p><div class="plots"></div>`;
     section.hidden = true;
     for (const [key, unit] of [
         ["samples", "samples"],
@@ -302,7 +331,8 @@ async function start() {
     } catch (error) {
         drawn = false;
         section((s) => {
-            s.innerHTML = `<p class="bad">The images cannot be shown: ${escape(error.message)}. Browsers since 2023 can.</p>`;
+            s.innerHTML = `<p class="bad">The images cannot be shown: ${escape(error.message)}.
+                Browsers since 2023 can.</p>`;
         });
     }
     if (drawn) section(viewer);

@@ -2,31 +2,39 @@
 // The page's head and its recommendation.
 
 const badge = (c) =>
-    `<span class="badge ${c.biased ? "biased" : "unbiased"}">${c.biased ? "biased" : "unbiased"}</span>`;
+    `<span class="badge ${c.biased ? "biased" : "unbiased"}">${
+        c.biased ? "biased" : "unbiased"
+    }</span>`;
 const nameOf = (c) =>
-    `<span class="who"><b class="key c${c.index % colourCount}">${c.key}</b> ${escape(c.name)}</span>`;
+    `<span class="who"><b class="key c${c.index % colourCount}"` +
+    `>${c.key}</b> ${escape(c.name)}</span>`;
+const namedWithBias = (c) => `${nameOf(c)} ${badge(c)}`;
 const relmseText = (v, se) => `${withError(v, se)}`;
 
 const sizeText = (size) => (size ? `${size.join(" × ")} pixels` : "–");
 
 function head() {
     const r = report.reference || {};
+    const full = sizeText(report.resolution);
+    const measured = sizeText(report.measured_resolution ?? report.resolution);
+    const sizes = measured === full ? full : `${full}, measured at ${measured}`;
     const facts = {
         Budget: `${seconds(report.budget)}, of which ${seconds(report.seconds)} were used`,
-        Reference: `unbiased, ${plural(r.samples ?? 0, "sample")} per pixel of ${plural(r.seeds ?? 1, "seed")}, ${seconds(r.seconds)}; its own relMSE is ${withError(r.relmse, r.relmse_se)}
-            (${rms(r.relmse)} rms)`,
-        Image: `${sizeText(report.resolution)}${sizeText(report.measured_resolution ?? report.resolution) === sizeText(report.resolution) ? "" : `, measured at ${sizeText(report.measured_resolution)}`},
-            ${plural(report.threads ?? 1, "thread")}`,
-        "Made by": `woodcock ${escape(report.woodcock?.version ?? "")}: <code>${escape(report.command ?? "")}</code>`,
+        Reference: `unbiased, ${plural(r.samples ?? 0, "sample")} per pixel of
+            ${plural(r.seeds ?? 1, "seed")}, ${seconds(r.seconds)}; its own relMSE is
+            ${withError(r.relmse, r.relmse_se)} (${rms(r.relmse)} rms)`,
+        Image: `${sizes}, ${plural(report.threads ?? 1, "thread")}`,
+        "Made by": `woodcock ${escape(report.woodcock?.version ?? "")}:
+            <code>${escape(report.command ?? "")}</code>`,
     };
-    const notes = report.notes || [];
+    const notes = (report.notes || []).map((note) => `<li>${escape(note)}</li>`);
     return (
         `<h1>What each choice costs in ${escape(report.scene)}</h1>
         <dl class="facts">${Object.entries(facts)
             .map(([k, v]) => `<dt>${k}</dt><dd>${v}</dd>`)
             .join("")}</dl>` +
         (notes.length
-            ? `<div class="notes" role="note"><h2>Notes</h2><ul>${notes.map((n) => `<li>${escape(n)}</li>`).join("")}</ul></div>`
+            ? `<div class="notes" role="note"><h2>Notes</h2><ul>${notes.join("")}</ul></div>`
             : "")
     );
 }
@@ -67,8 +75,11 @@ const targetText = (kind, v) =>
 
 function expectation(kind, r) {
     return kind === "time"
-        ? `${plural(r.samples, "sample")} per pixel, expected relMSE ${relmseText(r.relmse, r.se)} (${rms(r.relmse)} rms)`
-        : `${plural(r.samples, "sample")} per pixel, ${seconds(r.seconds)}${r.se > 0 ? ` ± ${seconds(r.se)}` : ""}`;
+        ? `${plural(r.samples, "sample")} per pixel, expected relMSE ${relmseText(r.relmse, r.se)}
+            (${rms(r.relmse)} rms)`
+        : `${plural(r.samples, "sample")} per pixel, ${seconds(r.seconds)}${
+              r.se > 0 ? ` ± ${seconds(r.se)}` : ""
+          }`;
 }
 
 function answer() {
@@ -77,16 +88,24 @@ function answer() {
         best = recommended(list),
         first = list[0];
     if (!best)
-        return `<p class="answer">For ${targetText(kind, target())}: <b>none${settings.unbiasedOnly ? " of the unbiased ones" : ""}</b>: ${kind === "time" ? "it is too short for one sample of every pixel." : "every one's bias alone exceeds it."}</p>`;
+        return `<p class="answer">For ${targetText(kind, target())}: <b>none${
+            settings.unbiasedOnly ? " of the unbiased ones" : ""
+        }</b>: ${
+            kind === "time"
+                ? "it is too short for one sample of every pixel."
+                : "every one's bias alone exceeds it."
+        }</p>`;
     const tied = list.filter((r) => r !== best && (r.tied || r === first)),
         without = best.c.biased && list.find((r) => !r.c.biased);
-    const longest = Math.max(...(best.c.points || []).map((p) => p.samples), 0);
+    const longest = Math.max(...(best.c.points || []).map((p) => p.samples), 0) || Infinity;
+    const beyond = `<span class="soft">Measured up to ${plural(longest, "sample")}; what lies
+        beyond follows from the model.</span>`;
     return (
-        `<p class="answer">For ${targetText(kind, target())}: ${nameOf(best.c)} ${badge(best.c)}</p><p>${expectation(kind, best)}.
-        ${longest && best.samples > 4 * longest ? `<span class="soft">Measured up to ${plural(longest, "sample")}; beyond that, it is the model that says so.</span>` : ""}</p>
+        `<p class="answer">For ${targetText(kind, target())}: ${namedWithBias(best.c)}</p>
+        <p>${expectation(kind, best)}. ${best.samples > 4 * longest ? beyond : ""}</p>
         ${commandBox(commandFor(kind, target(), best))}` +
         (tied.length
-            ? `<p>Cannot be told from it: ${tied.map((r) => `${nameOf(r.c)} ${badge(r.c)}`).join(", ")}.</p>`
+            ? `<p>Cannot be told from it: ${tied.map((r) => namedWithBias(r.c)).join(", ")}.</p>`
             : "") +
         (without && !without.tied
             ? `<p>Best without bias: ${nameOf(without.c)}, ${expectation(kind, without)}.</p>`
@@ -107,21 +126,34 @@ function rankingTable() {
             1 - Math.log(most / figure(r)) / Math.max(1e-9, Math.log(most / figure(best)) * 1.15),
         );
     return (
-        `<table class="ranking"><caption>All of them ${kind === "time" ? "after" : "at"} ${targetText(kind, target())}</caption><thead><tr><th scope="col">Choice</th>
-        <th scope="col">${kind === "time" ? "relMSE" : "time"}</th><th scope="col"></th></tr></thead><tbody>` +
+        `<table class="ranking"><caption>All of them ${
+            kind === "time" ? "after" : "at"
+        } ${targetText(kind, target())}</caption><thead><tr><th scope="col">Choice</th>
+        <th scope="col">${kind === "time" ? "relMSE" : "time"}</th>
+        <th scope="col"></th></tr></thead><tbody>` +
         list
             .map(
-                (
-                    r,
-                ) => `<tr><td>${nameOf(r.c)}</td><td>${kind === "time" ? relmseText(r.relmse, r.se) : seconds(r.seconds)}</td>
-            <td>${r === best ? "<b>best</b>" : r.tied ? "tied" : `× ${number(figure(r) / figure(best), 3)}`}</td></tr>
-            <tr class="share" aria-hidden="true"><td colspan="3"><i class="c${r.c.index % colourCount}" style="width:${(100 * share(r)).toFixed(1)}%"></i></td></tr>`,
+                (r) => `<tr><td>${nameOf(r.c)}</td><td>${
+                    kind === "time" ? relmseText(r.relmse, r.se) : seconds(r.seconds)
+                }</td>
+            <td>${
+                r === best
+                    ? "<b>best</b>"
+                    : r.tied
+                      ? "tied"
+                      : `× ${number(figure(r) / figure(best), 3)}`
+            }</td></tr>
+            <tr class="share" aria-hidden="true"><td colspan="3"><i
+            class="c${r.c.index % colourCount}"
+            style="width:${(100 * share(r)).toFixed(1)}%"></i></td></tr>`,
             )
             .join("") +
         unable
             .map(
                 (c) =>
-                    `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${!isNumber(noiseOf(c).value) ? "not measured" : kind === "time" ? "too slow" : "never: its bias"}</td></tr>`,
+                    `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${
+                        !c.model ? "not measured" : kind === "time" ? "too slow" : "never: its bias"
+                    }</td></tr>`,
             )
             .join("") +
         `</tbody></table>`
@@ -147,7 +179,12 @@ function strip(list, kind) {
                 to = toSlider(kind, s.to) / steps;
             const text = s.c ? `${s.c.key} ${s.c.name}` : "none",
                 title = `${text}: ${rangeText(kind, s.from, s.to)}`;
-            return `<span class="${s.c ? `c${s.c.index % colourCount}${s.c.biased ? " biased" : ""}` : "nobody"}" style="flex:${Math.max(0, to - from).toFixed(4)} 1 0" title="${escape(title)}">${to - from > 0.04 ? (s.c ? s.c.key : "–") : ""}</span>`;
+            return `<span class="${
+                s.c ? `c${s.c.index % colourCount}${s.c.biased ? " biased" : ""}` : "nobody"
+            }" style="flex:${Math.max(0, to - from).toFixed(4)} 1 0"
+                    title="${escape(title)}">${
+                        to - from > 0.04 ? (s.c ? s.c.key : "–") : ""
+                    }</span>`;
         })
         .join("");
 }
@@ -157,7 +194,9 @@ function whichToTake(list, kind) {
         .filter((s) => s.to > s.from)
         .map(
             (s) =>
-                `<li><span class="range">${rangeText(kind, s.from, s.to)}</span><span>${s.c ? `${nameOf(s.c)} ${badge(s.c)}` : "none"}</span></li>`,
+                `<li><span class="range">${rangeText(kind, s.from, s.to)}</span><span>${
+                    s.c ? namedWithBias(s.c) : "none"
+                }</span></li>`,
         );
     return `<h3>Which to take when</h3><ul class="when">${items.join("")}</ul>`;
 }
@@ -167,23 +206,35 @@ function ownRecommendations() {
     if (!list.length) return "";
     return `<h3>Recommendations at a glance</h3><ul class="glance">${list
         .map(
-            (
-                r,
-                i,
-            ) => `<li><p><button type="button" class="link" data-recommendation="${i}">${escape(targetText(r.kind, r.target))}</button>
-        ${nameOf(candidates[r.candidate])} ${badge(candidates[r.candidate])} <span class="soft">${isNumber(r.samples) ? plural(r.samples, "sample") + ", " : ""}relMSE ${number(r.expected_relmse, 2)}</span></p>${commandBox(r.command)}</li>`,
+            (r, i) => `<li><p><button type="button" class="link"
+                data-recommendation="${i}">${escape(targetText(r.kind, r.target))}</button>
+                ${nameOf(candidates[r.candidate])} ${badge(candidates[r.candidate])} <span
+                class="soft">${isNumber(r.samples) ? plural(r.samples, "sample") + ", " : ""}relMSE
+                ${number(r.expected_relmse, 2)}</span></p>${commandBox(r.command)}</li>`,
         )
         .join("")}</ul>`;
 }
 
-/** Fills the section; changed() is called after every change, with true when the chart's points move. */
+/**
+ * Fills the section; changed() is called after every change, with true when the chart's points
+ * move.
+ */
 function choose(section, changed) {
     section.innerHTML = `<h2>Recommendation</h2><div class="card choose"><div class="controls">
-        <div class="modes" role="group" aria-label="Asked for"><button type="button" data-kind="time">A time</button><button type="button" data-kind="error">An error</button></div>
-        <label class="number"><span id="unit"></span><input type="number" id="target" step="any" min="0"></label>
-        <label class="check"><input type="checkbox" id="unbiasedOnly"> unbiased ones only</label><label class="check"><input type="checkbox" id="loading"> count loading, too</label></div>
-        <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip" aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: which to take there; striped: biased</span><span></span></div>
-        <div class="columns"><div><div id="answer" aria-live="polite"></div><div id="when"></div></div><div id="ranking" class="wide"></div></div></div><div id="own">${ownRecommendations()}</div>`;
+        <div class="modes" role="group" aria-label="Asked for"><button type="button"
+        data-kind="time">A time</button><button type="button" data-kind="error">An
+        error</button></div>
+        <label class="number"><span id="unit"></span><input type="number" id="target" step="any"
+        min="0"></label>
+        <label class="check"><input type="checkbox" id="unbiasedOnly"> unbiased ones
+        only</label><label class="check"><input type="checkbox" id="loading"> count loading,
+        too</label></div>
+        <input type="range" id="slider" min="0" max="${steps}" step="1"><div class="strip"
+        aria-hidden="true"></div><div class="ends soft"><span></span><span>by number: which to take
+        there; striped: biased</span><span></span></div>
+        <div class="columns"><div><div id="answer" aria-live="polite"></div>
+        <div id="when"></div></div><div id="ranking" class="wide"></div></div></div>
+        <div id="own">${ownRecommendations()}</div>`;
     const find = (id) => section.querySelector("#" + id),
         slider = find("slider"),
         field = find("target");

@@ -9,10 +9,22 @@ function crops(section) {
     const taken = new Set(candidates.map((c) => c.crop)),
         first = (report.crops || []).findIndex((crop, i) => !taken.has(i) && crop.png);
     const reference = report.crops[first] || shownCrops[0];
-    section.innerHTML = `<h2>Crops at equal time</h2><p class="soft">Press one to enlarge it; then hold it, or the space bar, to see the reference in its place. The arrow keys go on to the next.</p>
-        <div class="crops">${shownCrops.map((crop, i) => `<figure><button type="button" data-crop="${i}" aria-label="Enlarge ${escape(crop.title)}"><img alt="" class="crop"></button><figcaption>${escape(crop.title)}</figcaption></figure>`).join("")}</div>
-        <dialog aria-label="Crop, enlarged"><figure><img alt="" class="crop large" draggable="false"><figcaption></figcaption></figure>
-        <form method="dialog"><button type="button" data-step="-1" aria-label="Previous">←</button><button type="button" class="flip">Hold: reference</button><button type="button" data-step="1" aria-label="Next">→</button><button>Close</button></form></dialog>`;
+    section.innerHTML = `<h2>Crops at equal time</h2>
+        <p class="soft">Press one to enlarge it; then hold it, or the space bar, to see the
+        reference in its place. The arrow keys go on to the next.</p>
+        <div class="crops">${shownCrops
+            .map(
+                (crop, i) => `<figure><button type="button"
+        data-crop="${i}" aria-label="Enlarge ${escape(crop.title)}"><img alt=""
+        class="crop"></button><figcaption>${escape(crop.title)}</figcaption></figure>`,
+            )
+            .join("")}</div>
+        <dialog aria-label="Crop, enlarged"><figure><img alt="" class="crop large"
+        draggable="false"><figcaption></figcaption></figure>
+        <form method="dialog"><button type="button" data-step="-1"
+        aria-label="Previous">←</button><button type="button" class="flip">Hold:
+        reference</button><button type="button" data-step="1"
+        aria-label="Next">→</button><button>Close</button></form></dialog>`;
     section.querySelectorAll(".crops img").forEach((img, i) => {
         img.src = shownCrops[i].png;
     });

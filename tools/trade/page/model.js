@@ -1,134 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the report says, and what follows from it: error = variance / samples + (rms bias)^2, for any time and any error.
+// What the report says, and what follows from it for any time and any error. The program fits the
+// models: the error is a candidate's bias, and its noise divided by the time of rendering.
 
 const report = dataOf("report");
+const models = dataOf("models");
 const candidates = report.candidates.map((c, index) => ({
     ...c,
+    model: models.candidates[index],
     index,
     key: String(index + 1),
     hollow: c.biased,
     dashed: c.biased,
 }));
-const isNumber = (v) => typeof v === "number" && Number.isFinite(v);
 const valueOf = (measured) => (isNumber(measured?.value) ? measured.value : NaN);
 const errorOf = (measured) => (isNumber(measured?.se) ? measured.se : 0);
-
-const gap = "\u00a0"; // between a number and its unit, where no line may break
-const seconds = (v) =>
-    !isNumber(v)
-        ? "–"
-        : v < 0.1
-          ? `${number(1000 * v, 2)}${gap}ms`
-          : v < 300
-            ? `${number(v, v < 10 ? 2 : 3)}${gap}s`
-            : v < 7200
-              ? `${Math.floor(Math.round(v) / 60)}${gap}min ${Math.round(v) % 60}${gap}s`
-              : `${Math.floor(v / 3600)}${gap}h ${Math.round((v % 3600) / 60)}${gap}min`;
-const percent = (v, digits = 2) => (isNumber(v) ? `${number(100 * v, digits)}${gap}%` : "–");
-const rms = (relmse) => (isNumber(relmse) && relmse >= 0 ? percent(Math.sqrt(relmse)) : "–");
-const bytes = (v) =>
-    !isNumber(v)
-        ? "–"
-        : v < 1 << 20
-          ? `${number(v / 1024, 3)} KiB`
-          : v < 2 ** 30
-            ? `${number(v / 2 ** 20, 3)} MiB`
-            : `${number(v / 2 ** 30, 3)} GiB`;
-
-/** v ± se, with as many digits as the error leaves. */
-function withError(v, se, scale = 1, unit = "") {
-    if (!isNumber(v)) return "–";
-    const digits =
-        isNumber(se) && se > 0 && v !== 0
-            ? Math.max(
-                  2,
-                  Math.min(6, Math.floor(Math.log10(Math.abs(v))) - Math.floor(Math.log10(se)) + 2),
-              )
-            : 4;
-    return (
-        number(scale * v, digits) +
-        (isNumber(se) && se > 0 ? ` ± ${number(scale * se, 2)}` : "") +
-        unit
-    );
-}
+const orInfinite = (se) => se ?? Infinity; // which JSON cannot say
 
 const settings = { kind: "time", time: 1, error: 1, unbiasedOnly: false, loading: false };
 const loadingOf = (c) => (settings.loading && isNumber(c.load_seconds) ? c.load_seconds : 0);
 const allowed = () => candidates.filter((c) => !settings.unbiasedOnly || !c.biased);
 
-/** The squared bias and its standard error; without bias by construction, nothing that was measured is one. */
-function squaredBias(c) {
-    if (!c.biased) return [0, 0];
-    const b = Math.max(0, valueOf(c.rms_bias) || 0),
-        se = errorOf(c.rms_bias);
-    return [b * b, 2 * b * se + se * se];
-}
-
-const mean = (list) => list.reduce((a, b) => a + b, 0) / list.length;
-const errorOfMean = (list) =>
-    Math.sqrt(
-        list.reduce((a, b) => a + Math.pow(b - mean(list), 2), 0) /
-            (list.length * (list.length - 1)),
-    );
-
-/** Variance x seconds per sample: what noise is, times the time. Each seed has its own where the report says so. */
-function noiseOf(c) {
-    if (c.costs?.length > 1) return { value: mean(c.costs), se: errorOfMean(c.costs) };
-    const each = valueOf(c.seconds_per_sample),
-        v = valueOf(c.variance);
-    return {
-        value: v * each,
-        se: v * each * Math.hypot(errorOf(c.variance) / v, errorOf(c.seconds_per_sample) / each),
-    };
-}
-
-/** What a candidate reaches in a time: {samples, relmse, se}; null when that is too short for one sample. */
+/**
+ * What a candidate reaches in a time: {samples, relmse, se}; null when that is too short for one
+ * sample.
+ */
 function inTime(c, time) {
-    const rendering = time - loadingOf(c),
-        n = rendering / valueOf(c.seconds_per_sample),
-        noise = noiseOf(c);
-    if (!(n >= 1 - 1e-9) || !isNumber(noise.value)) return null;
-    const [b2, b2Error] = squaredBias(c);
+    if (!c.model) return null;
+    const { bias, noise, seconds_per_sample: each } = c.model;
+    const rendering = time - loadingOf(c);
+    if (!(rendering / each >= 1 - 1e-9)) return null;
     return {
-        samples: Math.max(1, Math.floor(n + 1e-9)),
-        relmse: noise.value / rendering + b2,
-        se: Math.hypot(noise.se / rendering, b2Error),
+        samples: Math.max(1, Math.floor(rendering / each + 1e-9)),
+        relmse: bias.value + noise.value / rendering,
+        se: Math.hypot(bias.se, orInfinite(noise.se) / rendering),
     };
 }
 
-/** What a candidate needs for an error: {samples, seconds, se}; null when its bias alone exceeds that. */
+/**
+ * What a candidate needs for an error: {samples, seconds, se}; null when its bias alone exceeds
+ * that.
+ */
 function forError(c, relmse) {
-    const each = valueOf(c.seconds_per_sample),
-        noise = noiseOf(c),
-        [b2, b2Error] = squaredBias(c),
-        room = relmse - b2;
-    if (!(room > 0) || !isNumber(noise.value)) return null;
-    const time = Math.max(each, noise.value / room);
+    if (!c.model || !(relmse > c.model.bias.value)) return null;
+    const { bias, noise, seconds_per_sample: each } = c.model;
+    const room = relmse - bias.value;
+    const rendering = Math.max(each, noise.value / room);
     return {
-        samples: Math.ceil(time / each - 1e-9),
-        seconds: loadingOf(c) + time,
-        se: Math.hypot(noise.se, time * b2Error) / room,
+        samples: Math.ceil(rendering / each - 1e-9),
+        seconds: loadingOf(c) + rendering,
+        se: Math.hypot(orInfinite(noise.se), (noise.value / room) * bias.se) / room,
     };
 }
 
-/** The standard error of a difference of two of a ranking: in time, both met the same random numbers, seed by seed. */
+/**
+ * The standard error of a difference of two of a ranking. In the same time of rendering, both met
+ * the same random numbers, seed by seed.
+ */
 function errorOfDifference(a, b, kind, time) {
-    const [p, q] = [a.c.costs || [], b.c.costs || []];
-    if (
-        kind === "error" ||
-        p.length < 2 ||
-        p.length !== q.length ||
-        loadingOf(a.c) !== loadingOf(b.c)
-    )
-        return Math.hypot(a.se, b.se);
-    return Math.hypot(
-        squaredBias(a.c)[1],
-        squaredBias(b.c)[1],
-        errorOfMean(p.map((v, i) => v - q[i])) / (time - loadingOf(a.c)),
-    );
+    if (kind === "error" || loadingOf(a.c) !== loadingOf(b.c)) return Math.hypot(a.se, b.se);
+    const noise = orInfinite(a.c.model.noise_difference_se[b.c.index]);
+    const rendering = time - loadingOf(a.c);
+    return Math.hypot(a.c.model.bias.se, b.c.model.bias.se, noise / rendering);
 }
 
-/** All that can, best first: [{c, samples, relmse or seconds, se, tied}]; tied: not two standard errors of the difference behind the first. */
+/**
+ * All that can, best first: [{c, samples, relmse or seconds, se, tied}]. Tied: the standard error
+ * of the difference does not tell it from the first.
+ */
 function ranking(kind, target, list = allowed()) {
     const key = kind === "time" ? "relmse" : "seconds",
         find = kind === "time" ? inTime : forError;
@@ -137,10 +75,9 @@ function ranking(kind, target, list = allowed()) {
         .filter((r) => isNumber(r[key]))
         .sort((a, b) => a[key] - b[key]);
     const first = ranked[0];
-    return ranked.map((r) => ({
-        ...r,
-        tied: r !== first && r[key] - first[key] <= 2 * errorOfDifference(r, first, kind, target),
-    }));
+    const isTied = (r) =>
+        r[key] - first[key] <= models.tie_width * errorOfDifference(r, first, kind, target);
+    return ranked.map((r) => ({ ...r, tied: r !== first && isTied(r) }));
 }
 
 /** Which to take of a ranking: the best, or the best without bias that is tied with it. */
@@ -165,7 +102,8 @@ const domain = (() => {
         ...targets("error"),
         ...(report.equal_error || []).map((e) => e.relmse),
     ]);
-    const sensible = errors.some((e) => e < 1) ? errors.map((e) => Math.min(e, 1)) : errors; // beyond 1, there is no picture
+    // Beyond 1, there is no picture.
+    const sensible = errors.some((e) => e < 1) ? errors.map((e) => Math.min(e, 1)) : errors;
     return {
         time,
         error: errors.length ? [Math.min(...sensible), Math.max(...sensible)] : [1e-4, 1],

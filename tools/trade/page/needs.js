@@ -3,7 +3,6 @@
 
 const report = dataOf("report"),
     rows = (report.rows || []).map((r, index) => ({ ...r, index, key: String(index + 1) }));
-const isNumber = (v) => typeof v === "number" && Number.isFinite(v);
 const withSe = (m, unit = "") =>
     isNumber(m?.value)
         ? `${number(m.value, 4)}${m.se > 0 ? ` ± ${number(m.se, 2)}` : ""}${unit}`
@@ -14,10 +13,18 @@ const signs = { earns: "✓ earns", "does not earn": "✗ does not earn", needed
 main.innerHTML = "";
 section((s) => {
     const failing = rows.filter((r) => r.verdict === "does not earn");
+    const several = plural(failing.length, "specialisation");
+    const verdict = failing.length
+        ? `${several} of ${rows.filter((r) => !r.needed).length} ` +
+          `${failing.length === 1 ? "does" : "do"} not earn 10 %`
+        : "Each specialisation that this scene uses earns its 10 %";
     s.innerHTML =
-        `<h1 class="${failing.length ? "bad" : "good"}">${failing.length ? `${plural(failing.length, "specialisation")} of ${rows.filter((r) => !r.needed).length} ${failing.length === 1 ? "does" : "do"} not earn 10 %` : "Each specialisation that this scene uses earns its 10 %"}</h1>
-        <p class="soft">${escape(report.scene ?? "")}; woodcock ${escape(report.woodcock?.version ?? "")}. What the scene does not need is left out when it renders; here it is rendered as if it were needed, too. The ratio is the time with it over the time
-        without: one that is below ${least} is not worth its code. ± is one standard error.</p>` +
+        `<h1 class="${failing.length ? "bad" : "good"}">${verdict}</h1>
+        <p class="soft">${escape(report.scene ?? "")}; woodcock
+        ${escape(report.woodcock?.version ?? "")}. A render leaves out what the scene does not need.
+        Here each such feature was rendered as if it were needed. The ratio is the time with it over
+        the time without. A feature whose ratio is below ${least} is not worth its code. ± is one
+        standard error.</p>` +
         ((report.notes || []).length
             ? `<ul>${report.notes.map((n) => `<li>${escape(n)}</li>`).join("")}</ul>`
             : "");
@@ -42,7 +49,9 @@ section((s) => {
                 [1, "", "zero"],
                 [least, "10 %", "limit"],
             ],
-            note: "Thick bars are one standard error, thin ones two; those that end right of the dashed line earn their place.",
+            note:
+                "Thick bars are one standard error, thin ones two. " +
+                "Those that end right of the dashed line earn their place.",
         });
 });
 section((s) => {
@@ -76,7 +85,8 @@ section((s) => {
                 r.verdict === "earns" ? "good" : r.verdict === "does not earn" ? "bad" : "soft",
         },
     ];
-    s.innerHTML = `<h2>Table</h2><p class="soft">Press a heading to sort.</p><div class="wide"></div>`;
+    s.innerHTML = `<h2>Table</h2><p class="soft">Press a heading to sort.</p>
+        <div class="wide"></div>`;
     sortableTable(s.lastElementChild, () => rows, columns, { column: columns[0], down: false });
 });
 keepPlots();

@@ -39,8 +39,10 @@ function pointsTable() {
 }
 
 function errorPlot(section) {
-    section.innerHTML = `<h2>Error against time</h2><p class="soft">Points are measured, with bars of one standard error; lines are the model, variance / samples + (rms bias)².
-        Unbiased choices are filled and solid, biased ones hollow and dashed: their lines end at their bias. The broad band is the Pareto front of those shown: nothing is better in that time.</p>`;
+    section.innerHTML = `<h2>Error against time</h2><p class="soft">Points are measured, with bars
+        of one standard error; lines are the model, variance / samples + (rms bias)². Unbiased
+        choices are filled and solid, biased ones hollow and dashed: their lines end at their bias.
+        The broad band is the Pareto front of those shown: nothing is better in that time.</p>`;
     const series = candidates.map((c) => ({
         ...c,
         line: modelLine(c),
@@ -89,7 +91,9 @@ function errorPlot(section) {
 }
 
 function biasPlots(section) {
-    section.innerHTML = `<h2>Bias</h2><p class="soft">Thick bars are one standard error, thin ones two. An unbiased choice should reach zero with its thin bar nineteen times out of twenty.</p><div class="plots pairs"></div>`;
+    section.innerHTML = `<h2>Bias</h2><p class="soft">Thick bars are one standard error, thin ones
+        two. An unbiased choice should reach zero with its thin bar nineteen times out of
+        twenty.</p><div class="plots pairs"></div>`;
     const box = section.lastElementChild,
         scaled = (m) => 100 * valueOf(m);
     rowChart(
@@ -119,7 +123,9 @@ function biasPlots(section) {
         {
             unit: " %",
             lines: [[0, "", "zero"]],
-            note: "What is left of the error however long it renders; where it is not seen, it is below what this budget can see.",
+            note:
+                "This much of the error stays however long it renders. " +
+                "Where it is not seen, it is below what this budget can see.",
         },
     );
 }

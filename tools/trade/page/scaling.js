@@ -2,11 +2,13 @@
 // How cost grows: curves with their fitted slopes, and tables.
 
 const report = dataOf("report");
-const isNumber = (v) => typeof v === "number" && Number.isFinite(v);
 const withSe = (v, se) =>
     isNumber(v) ? number(v, 4) + (isNumber(se) && se > 0 ? ` ± ${number(se, 2)}` : "") : "–";
 
-/** The line of the fitted slope through the points' middle, as the axes show it: each point counts by its relative error, if all have one. */
+/**
+ * The line of the fitted slope through the points' middle, as the axes show it: each point counts
+ * by its relative error, if all have one.
+ */
 function fittedLine({ x, y }, points, slope) {
     if (!isNumber(slope?.value) || points.length < 2 || !x.log !== !y.log) return null;
     const [scale, back] = x.log ? [Math.log, Math.exp] : [(v) => v, (v) => v];
@@ -78,8 +80,10 @@ const cellText = (v) =>
 main.innerHTML = "";
 section((s) => {
     s.innerHTML =
-        `<h1>How cost grows</h1><p class="soft">woodcock ${escape(report.woodcock?.version ?? "")}. Points have bars of one standard error; dashed lines are the fitted slopes: on two logarithmic axes, a slope of 1 is twice the cost for
-        twice the size. Press a name to hide or show it.</p>` +
+        `<h1>How cost grows</h1><p class="soft">woodcock ${escape(report.woodcock?.version ?? "")}.
+            Points have bars of one standard error; dashed lines are the fitted slopes: on two
+            logarithmic axes, a slope of 1 is twice the cost for twice the size. Press a name to
+            hide or show it.</p>` +
         ((report.notes || []).length
             ? `<ul>${report.notes.map((n) => `<li>${escape(n)}</li>`).join("")}</ul>`
             : "") +

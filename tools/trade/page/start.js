@@ -27,8 +27,10 @@ section(equalTime);
 section(equalError);
 section(crops);
 section((s) => {
-    s.innerHTML = `<h2>What the words mean</h2><p class="soft">relMSE: the mean over pixels of (difference)² / (reference² + ε²), where ε is a hundredth of the reference's mean; its root, “rms”, is an error relative to the pixel.
-    Biased: its error does not go to zero however long it renders. ± is one standard error. FLIP: the difference that is seen, from 0 to 1.</p>`;
+    s.innerHTML = `<h2>What the words mean</h2><p class="soft">relMSE: the mean over pixels of
+        (difference)² / (reference² + ε²), where ε is a hundredth of the reference's mean; its root,
+        “rms”, is an error relative to the pixel. Biased: its error does not go to zero however long
+        it renders. ± is one standard error. FLIP: the difference that is seen, from 0 to 1.</p>`;
 });
 keepPlots();
 document.documentElement.dataset.ready = true;

@@ -2,14 +2,16 @@
 // The candidates, and their readings at equal time and at equal error.
 
 /** What halving the error costs: variance x seconds; less is better. */
-const effort = (c) => valueOf(c.variance) * valueOf(c.seconds_per_sample);
+const effort = (c) => valueOf(c.model?.noise);
 
 const candidateColumns = [
     {
         name: "Choice",
         key: (c) => c.index,
         html: (c) =>
-            `${nameOf(c)}${c.quality ? ` <span class="badge">${escape(c.quality)}</span>` : ""}<small>${(c.choices || []).map(escape).join(" ") || "as the scene says"}</small>`,
+            `${nameOf(c)}${
+                c.quality ? ` <span class="badge">${escape(c.quality)}</span>` : ""
+            }<small>${(c.choices || []).map(escape).join(" ") || "as the scene says"}</small>`,
         cell: "first",
     },
     { name: "Bias", key: (c) => Number(c.biased), html: badge },
@@ -48,8 +50,12 @@ const candidateColumns = [
 const msWithError = (m) => escape(withError(m?.value, m?.se, 1000, " ms"));
 
 function candidateTable(section) {
-    section.innerHTML = `<h2>The choices</h2><p class="soft">Press a heading to sort. Variance is that of one sample, relative; variance × seconds is what an error costs: half of it is the same error in half the time.</p><div class="wide"></div>
-        <details><summary>Their command lines</summary>${candidates.map((c) => `<p>${nameOf(c)}</p>${commandBox(c.command || "")}`).join("")}</details>`;
+    section.innerHTML = `<h2>The choices</h2><p class="soft">Press a heading to sort. Variance is
+        that of one sample, relative; variance × seconds is what an error costs: half of it is the
+        same error in half the time.</p><div class="wide"></div>
+        <details><summary>Their command lines</summary>${candidates
+            .map((c) => `<p>${nameOf(c)}</p>${commandBox(c.command || "")}`)
+            .join("")}</details>`;
     sortableTable(
         section.querySelector(".wide"),
         () => candidates,
@@ -76,23 +82,33 @@ function readings(title, text, list, heading, cell) {
                 const row = e.rows.find((r) => r.candidate === c.index),
                     tied = (e.tied || []).includes(c.index);
                 if (!row) return "–";
-                return `${e.best === c.index ? `<b class="mood">best</b> ` : tied ? `<span class="mood">tied</span> ` : ""}${cell(row)}`;
+                return `${
+                    e.best === c.index
+                        ? `<b class="mood">best</b> `
+                        : tied
+                          ? `<span class="mood">tied</span> `
+                          : ""
+                }${cell(row)}`;
             },
             mood: (c) =>
                 e.best === c.index ? "best" : (e.tied || []).includes(c.index) ? "tied" : "",
         })),
     ];
-    return `<h2>${title}</h2><p class="soft">${text}</p><div class="wide">${table(shown, columns)}</div>`;
+    return `<h2>${title}</h2><p class="soft">${text}</p>
+        <div class="wide">${table(shown, columns)}</div>`;
 }
 
 function equalTime(section) {
     section.innerHTML = readings(
         "At equal time",
-        "relMSE after so many seconds; below it FLIP and the samples per pixel. Tied: not told from the best by these measurements.",
+        "relMSE after so many seconds; below it FLIP and the samples per pixel. " +
+            "Tied: these measurements do not tell it from the best.",
         report.equal_time,
         (e) => seconds(e.seconds),
         (r) =>
-            `${withError(r.relmse, r.relmse_se)}<small>${isNumber(r.flip) ? `FLIP ${number(r.flip, 3)}, ` : ""}${isNumber(r.samples) ? plural(r.samples, "sample") : "no whole sample"}</small>`,
+            `${withError(r.relmse, r.relmse_se)}<small>${
+                isNumber(r.flip) ? `FLIP ${number(r.flip, 3)}, ` : ""
+            }${isNumber(r.samples) ? plural(r.samples, "sample") : "no whole sample"}</small>`,
     );
 }
 function equalError(section) {
@@ -103,7 +119,9 @@ function equalError(section) {
         (e) => `relMSE ${number(e.relmse, 2)} (${rms(e.relmse)} rms)`,
         (r) =>
             isNumber(r.seconds)
-                ? `${seconds(r.seconds)}${r.seconds_se > 0 ? ` ± ${seconds(r.seconds_se)}` : ""}<small>${isNumber(r.samples) ? plural(r.samples, "sample") : ""}</small>`
+                ? `${seconds(r.seconds)}${
+                      r.seconds_se > 0 ? ` ± ${seconds(r.seconds_se)}` : ""
+                  }<small>${isNumber(r.samples) ? plural(r.samples, "sample") : ""}</small>`
                 : `<span class="soft">never</span>`,
     );
 }

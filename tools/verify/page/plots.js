@@ -1,159 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program was held against: verdicts, plots, and every case.
-
-const report = dataOf("report");
-const cases = report.cases.map((c, index) => ({
-    ...c,
-    index,
-    name: c.case,
-    verdict: c.verdict.toLowerCase(),
-    note: c.note || "",
-    // What is not finite came as null.
-    measured: c.measured ?? NaN,
-    standardError: c.standard_error ?? Infinity,
-    z: c.z ?? Infinity,
-}));
-const kinds = ["closed form", "slab", "surface", "property", "sampling", "extreme"];
-const verdicts = ["fail", "imprecise", "pass"];
-const largestZ = report.largest_z;
-
-const figure = (v) => (Number.isNaN(v) ? "not finite" : number(v, 6));
-const duration = (s) =>
-    s < 90 ? `${s.toPrecision(3)} s` : `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`;
-const sum = (list) => list.reduce((a, b) => a + b, 0);
-const random = (c) =>
-    c.standardError > 0 && Number.isFinite(c.standardError) && Number.isFinite(c.measured);
-const difference = (c) => c.measured - c.expected;
-
-// ---- summary
-
-function headline() {
-    const bad = cases.filter((c) => c.verdict !== "pass").length;
-    const failed = cases.filter((c) => c.verdict === "fail").length;
-    if (!cases.length) return `<h1 class="imprecise">No case was run</h1>`;
-    if (!bad)
-        return `<h1 class="pass">${cases.length === 1 ? "The one case passes" : `All ${cases.length} cases pass`}</h1>`;
-    const parts = [
-        failed && `${failed} fail`,
-        bad - failed && `${bad - failed} too imprecise to tell`,
-    ];
-    return `<h1 class="${failed ? "fail" : "imprecise"}">Of ${plural(cases.length, "case")}, ${parts.filter(Boolean).join(", ")}</h1>`;
-}
-
-function falseAlarms() {
-    const n = cases.filter(random).length;
-    const some = 1 - Math.pow(1 - 6.334e-5, n); // beyond four standard errors, both sides
-    const rate =
-        some > 0
-            ? `about one run in ${number(Math.max(1, Math.round(1 / some)), 2)} has one by chance alone`
-            : "none can come by chance alone";
-    return `${plural(n, "case")} with random numbers: |z| &gt; ${largestZ} fails, and ${rate}`;
-}
-
-function summary() {
-    const b = report.build;
-    const facts = {
-        Version: `woodcock ${escape(report.version)}`,
-        Build: escape(
-            `${b.compiler}, ${b.native ? "for this processor (native)" : "for any processor"}${b.assertions ? ", assertions on" : ""}`,
-        ),
-        Threads: report.threads,
-        Date: escape(report.date.replace("T", " ").replace("Z", " UTC")),
-        Effort: `${report.full ? "full: three digits and more" : "quick: two digits"}; took ${duration(report.seconds)}`,
-        Seed: report.seed,
-        Volumes: report.volumes.map(escape).join("<br>") || "none of your own",
-        "False alarms": falseAlarms(),
-    };
-    if (report.only) facts["Only checks of"] = escape(report.only);
-    const cards = kinds.map((kind) => {
-        const own = cases.filter((c) => c.kind === kind),
-            passed = own.filter((c) => c.verdict === "pass").length;
-        const seconds = sum(report.checks.filter((c) => c.kind === kind).map((c) => c.seconds));
-        const state = !own.length
-            ? "soft"
-            : passed === own.length
-              ? "pass"
-              : own.some((c) => c.verdict === "fail")
-                ? "fail"
-                : "imprecise";
-        return (
-            `<div class="card">${kind}<b class="${state}">${own.length ? `${passed} of ${own.length}` : "none run"}</b>` +
-            `<span class="soft">${own.length ? `pass, ${duration(seconds)}` : ""}</span></div>`
-        );
-    });
-    return (
-        headline() +
-        (report.complete
-            ? ""
-            : `<p class="imprecise">Interrupted: these are the cases until then.</p>`) +
-        `<p class="soft">The renderer held against what theory knows, on this machine and build.</p>` +
-        `<dl class="facts">${Object.entries(facts)
-            .map(([k, v]) => `<dt>${k}</dt><dd>${v}</dd>`)
-            .join("")}</dl>` +
-        `<div class="cards">${cards.join("")}</div>`
-    );
-}
-
-// ---- tables
-
-const columns = [
-    { name: "Case", text: (c) => c.name, key: (c) => c.name, cell: "name" },
-    { name: "Kind", text: (c) => c.kind, key: (c) => kinds.indexOf(c.kind), cell: "kind" },
-    { name: "Expected", text: (c) => figure(c.expected), key: (c) => c.expected, cell: "number" },
-    { name: "Measured", text: (c) => figure(c.measured), key: (c) => c.measured, cell: "number" },
-    {
-        name: "Standard error",
-        text: (c) => (c.standardError ? number(c.standardError, 2) : "0"),
-        key: (c) => c.standardError,
-        cell: "number",
-    },
-    { name: "z", text: (c) => number(c.z, 3), key: (c) => Math.abs(c.z), cell: "number" },
-    {
-        name: "Verdict",
-        text: (c) => c.verdict,
-        key: (c) => verdicts.indexOf(c.verdict),
-        cell: "verdict",
-        mood: (c) => c.verdict,
-    },
-    { name: "Note", text: (c) => c.note, key: (c) => c.note, cell: "note" },
-];
-
-const failingFirst = (a, b) =>
-    verdicts.indexOf(a.verdict) - verdicts.indexOf(b.verdict) || a.index - b.index;
-
-function caseTable(section) {
-    const options = (list) =>
-        `<option value="">all</option>` + list.map((v) => `<option>${v}</option>`).join("");
-    section.innerHTML = `<h2>Cases</h2><form role="search">
-        <label>Name or note contains <input type="search" id="text"></label>
-        <label>Kind <select id="kind">${options(kinds.filter((k) => cases.some((c) => c.kind === k)))}</select></label>
-        <label>Verdict <select id="verdict">${options(verdicts.filter((v) => cases.some((c) => c.verdict === v)))}</select></label>
-        </form><p class="soft" role="status"></p><div></div>`;
-    const value = (id) => section.querySelector("#" + id).value;
-    const filtered = () => {
-        const text = value("text").toLowerCase();
-        const list = cases.filter(
-            (c) =>
-                (!value("kind") || c.kind === value("kind")) &&
-                (!value("verdict") || c.verdict === value("verdict")) &&
-                (c.name + " " + c.note).toLowerCase().includes(text),
-        );
-        section.querySelector("p").textContent =
-            `${list.length} of ${plural(cases.length, "case")}`;
-        return list;
-    };
-    const draw = sortableTable(
-        section.lastElementChild,
-        filtered,
-        columns,
-        { column: columns[6], down: false },
-        failingFirst,
-    );
-    section.querySelector("form").addEventListener("input", draw);
-    section.querySelector("form").addEventListener("submit", (event) => event.preventDefault());
-}
-
-// ---- plots
+// Plots of standard errors and of curves.
 
 /** A frame with a scale of y on its left; returns the drawing, and maps. */
 function frame(width, height, [low, high], unit = (v) => number(v, 3)) {
@@ -180,8 +26,11 @@ function mark(x, y, c, style = `mark-${c.verdict}`, radius = 3) {
         c.verdict === "pass"
             ? `<circle cx="${x}" cy="${y}" r="${radius}"`
             : `<path d="M${x - 6} ${y}L${x} ${y - 6}L${x + 6} ${y}L${x} ${y + 6}Z"`;
-    const title = `${c.name}\nexpected ${figure(c.expected)}, measured ${figure(c.measured)}, standard error ${number(c.standardError, 2)}, z ${number(c.z, 3)}`;
-    return `${shape} class="${style}"><title>${escape(title)}</title></${c.verdict === "pass" ? "circle" : "path"}>`;
+    const title = `${c.name}\nexpected ${figure(c.expected)}, measured ${figure(c.measured)},
+        standard error ${number(c.standardError, 2)}, z ${number(c.z, 3)}`;
+    return `${shape} class="${style}"><title>${escape(title)}</title></${
+        c.verdict === "pass" ? "circle" : "path"
+    }>`;
 }
 
 const radiusFor = (list) => (list.length > 150 ? 2 : 3);
@@ -193,7 +42,8 @@ function standardErrors(list) {
             f = frame(width, height, [-most, most]),
             x = across(f, list.length);
         return (
-            `<rect x="${f.left}" y="${f.y(1)}" width="${f.right - f.left}" height="${f.y(-1) - f.y(1)}" class="band"/>` +
+            `<rect x="${f.left}" y="${f.y(1)}" width="${f.right - f.left}"
+                height="${f.y(-1) - f.y(1)}" class="band"/>` +
             f.svg +
             line(f.left, f.y(0), f.right, f.y(0), "zero") +
             [-largestZ, largestZ]
@@ -259,9 +109,12 @@ function relative(list) {
 }
 
 function errorPlots(section) {
-    section.innerHTML = `<h2>Differences from theory</h2><p class="soft">First the difference over its standard error: two thirds should lie in the band, and
-        none beyond the dashed lines. Then the difference relative to theory, with bars of one (thick) and four (thin) standard errors; bars that leave
-        the plot are cut. Cases without random numbers are in the table only, as are, in the second plot, those within 20 standard errors of zero.</p><div class="plots"></div>`;
+    section.innerHTML = `<h2>Differences from theory</h2>
+        <p class="soft">First the difference over its standard error: two thirds should lie in the
+        band, and none beyond the dashed lines. Then the difference relative to theory, with bars of
+        one (thick) and four (thin) standard errors; bars that leave the plot are cut. Cases without
+        random numbers are in the table only, as are, in the second plot, those within 20 standard
+        errors of zero.</p><div class="plots"></div>`;
     let any = false;
     for (const kind of kinds) {
         const list = cases.filter((c) => c.kind === kind && random(c)),
@@ -273,7 +126,8 @@ function errorPlots(section) {
                     `${kind}: standard errors off`,
                     {
                         height: 240,
-                        label: `${kind}: difference over standard error of ${plural(list.length, "case")}`,
+                        label: `${kind}: difference over standard error of
+                            ${plural(list.length, "case")}`,
                     },
                     standardErrors(list),
                 ));
@@ -283,7 +137,8 @@ function errorPlots(section) {
                 `${kind}: relative difference`,
                 {
                     height: 240,
-                    label: `${kind}: relative difference of ${plural(scaled.length, "case")}, with error bars`,
+                    label: `${kind}: relative difference of ${plural(scaled.length, "case")}, with
+                        error bars`,
                 },
                 relative(scaled),
             );
@@ -295,8 +150,10 @@ function histogram(section) {
     // An allowance that shows would bend the distribution.
     const list = cases.filter((c) => random(c) && c.allowance < 0.1 * c.standardError);
     section.hidden = list.length < 10;
-    section.innerHTML = `<h2>Distribution of z</h2><p class="soft">Of the ${list.length} cases whose expectation is exact by comparison, against the normal curve
-        that independent samples would follow. Quasi-random points err less than their standard error says, which makes it narrower.</p><div class="plots"></div>`;
+    section.innerHTML = `<h2>Distribution of z</h2><p class="soft">Of the ${list.length} cases whose
+        expectation is exact by comparison, against the normal curve that independent samples would
+        follow. Quasi-random points err less than their standard error says, which makes it
+        narrower.</p><div class="plots"></div>`;
     const bins = 22,
         lowest = -5.5,
         wide = 0.5,
@@ -325,8 +182,9 @@ function histogram(section) {
                 counts
                     .map((n, i) =>
                         n
-                            ? `<rect x="${x(lowest + i * wide) + 1}" width="${x(wide) - x(0) - 2}" y="${f.y(n)}" height="${f.bottom - f.y(n)}"
-                class="bar"><title>${plural(n, "case")}</title></rect>`
+                            ? `<rect x="${x(lowest + i * wide) + 1}" width="${x(wide) - x(0) - 2}"
+                                y="${f.y(n)}" height="${f.bottom - f.y(n)}"
+                                class="bar"><title>${plural(n, "case")}</title></rect>`
                             : "",
                     )
                     .join("") +
@@ -349,8 +207,10 @@ function curvePlots(section) {
         if (!all.has(series)) all.set(series, []);
         all.get(series).push(c);
     }
-    section.innerHTML = `<h2>Curves</h2><p class="soft">Theory as a line from point to point, measurements with bars of four standard errors; where no bar is seen, it is
-        smaller than the point. Curves of a single point are in the table only.</p><div class="plots small"></div>`;
+    section.innerHTML = `<h2>Curves</h2><p class="soft">Theory as a line from point to point,
+        measurements with bars of four standard errors; where no bar is seen, it is smaller than the
+        point. Curves of a single point are in the table only.</p>
+        <div class="plots small"></div>`;
     let any = false;
     for (const [panel, all] of panels) {
         const list = [...all.values()].flat(),
@@ -372,7 +232,9 @@ function curvePlots(section) {
         const low = Math.min(0, ...ends),
             high = Math.max(...ends),
             room = 0.06 * (high - low || 1);
-        const legend = `${[...all.keys()].map((name, i) => `<i${i % 2 ? ' class="second"' : ""}></i>${escape(name)}`).join("")}
+        const legend = `${[...all.keys()]
+            .map((name, i) => `<i${i % 2 ? ' class="second"' : ""}></i>${escape(name)}`)
+            .join("")}
             <span>against ${escape(list[0].x_name)}</span>`;
         plot(
             section.lastElementChild,
@@ -399,8 +261,9 @@ function curvePlots(section) {
                 const seriesSvg = [...all.values()]
                     .map((cs, i) => {
                         const sorted = [...cs].sort((p, q) => p.x - q.x);
+                        const expected = sorted.map((c) => `${x(c.x)},${f.y(c.expected)}`);
                         return (
-                            `<polyline class="line${i % 2}" points="${sorted.map((c) => `${x(c.x)},${f.y(c.expected)}`).join(" ")}"/>` +
+                            `<polyline class="line${i % 2}" points="${expected.join(" ")}"/>` +
                             sorted
                                 .map(
                                     (c) =>
@@ -432,32 +295,3 @@ function curvePlots(section) {
     }
     section.hidden = !any;
 }
-
-// ---- the page
-
-main.innerHTML = "";
-section((s) => (s.innerHTML = summary()));
-const failing = cases.filter((c) => c.verdict !== "pass");
-if (failing.length)
-    section(
-        (s) =>
-            (s.innerHTML =
-                `<h2>What does not pass</h2>` + table([...failing].sort(failingFirst), columns)),
-    );
-section(errorPlots);
-section(histogram);
-section(curvePlots);
-const extremes = cases.filter((c) => c.kind === "extreme");
-if (extremes.length)
-    section(
-        (s) =>
-            (s.innerHTML =
-                `<h2>Extremes</h2>` +
-                table(
-                    [...extremes].sort(failingFirst),
-                    columns.filter((c) => c.name !== "Kind"),
-                )),
-    );
-section(caseTable);
-keepPlots();
-document.documentElement.dataset.ready = true;
