@@ -6,8 +6,8 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "tools/trade/report_html.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 namespace {
@@ -27,7 +27,7 @@ std::vector<TradeModel> exampleModels(const json& report) {
         if (c.at("costs").empty()) continue;
         model.secondsPerSample = c.at("seconds_per_sample").at("value");
         model.costs = c.at("costs").get<std::vector<double>>();
-        if (!c.at("biased")) continue;
+        if (!c.at("biased").get<bool>()) continue;
         const double bias = c.at("rms_bias").at("value"), error = c.at("rms_bias").at("se");
         model.squaredBias = {bias * bias, 2 * bias * error + error * error};
     }

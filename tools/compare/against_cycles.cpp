@@ -3,7 +3,6 @@
 
 #include <spdlog/spdlog.h>
 
-
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress.h"
