@@ -8,6 +8,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
+#include "woodcock/scene/keys/sections.h"
 
 namespace woodcock {
 namespace {
@@ -197,10 +198,7 @@ SurfaceNature natureOf(const SceneDescription& scene, size_t index) {
 }
 
 std::string_view typeName(const MaterialDescription& material) {
-    constexpr std::array<std::string_view, 6> names{"diffuse",   "conductor", "dielectric",
-                                                    "interface", "emissive",  "mix"};
-    static_assert(names.size() == std::variant_size_v<decltype(MaterialDescription::material)>);
-    return names[material.material.index()];
+    return tagOf(material.material);
 }
 
 void checkSurfaces(const SceneDescription& scene) { Check(scene).all(); }

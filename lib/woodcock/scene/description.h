@@ -137,7 +137,7 @@ struct SphereDescription {
     bool operator==(const SphereDescription&) const = default;
 };
 struct LightDescription {
-    std::variant<SunDescription, EnvironmentDescription, PointDescription, SphereDescription> light;
+    std::variant<SunDescription, PointDescription, SphereDescription, EnvironmentDescription> light;
     bool operator==(const LightDescription&) const = default;
 };
 

@@ -10,7 +10,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/printable.h"
 #include "woodcock/grid/input_file.h"
-#include "woodcock/scene/parse_values.h"
+#include "woodcock/scene/keys/values.h"
 
 namespace woodcock {
 namespace {

@@ -2,8 +2,8 @@
 #include "woodcock/scene/light_changes.h"
 
 #include "woodcock/base/toml_reader.h"
+#include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/overrides.h"
-#include "woodcock/scene/parse_sections.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock {
@@ -19,7 +19,7 @@ std::vector<LightDescription> changedLights(const std::vector<LightDescription>&
     toml::table scene = parseToml(text, "the chosen lights");
     for (const std::string& assignment : overrides) applyOverride(scene, assignment);
     keepOverriddenSuns(scene);
-    return parseLights(TomlTable(scene, ""), "");
+    return readLights(TomlTable(scene, ""), "");
 }
 
 std::vector<LightDescription> foreseenLights(const SceneDescription& scene) {

@@ -12,6 +12,7 @@
 #include "woodcock/base/toml_nesting.h"
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/base/toml_text.h"
+#include "woodcock/scene/keys/sections.h"
 
 namespace woodcock {
 namespace {
@@ -118,7 +119,7 @@ private:
     /// `name` is a list too short for the index that was asked for.
     Error missing(const std::string& name, size_t size) const {
         const bool section =
-            name == "volume" || name == "light" || name == "material" || name == "surface";
+            std::find(sceneLists.begin(), sceneLists.end(), name) != sceneLists.end();
         if (!section) return inputError("{}: {} has {} elements", place_, name, size);
         if (size == 0)
             return inputError(

@@ -2,9 +2,9 @@
 #include "woodcock/scene/parse.h"
 
 #include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/light_changes.h"
 #include "woodcock/scene/overrides.h"
-#include "woodcock/scene/parse_sections.h"
 #include "woodcock/scene/quality.h"
 
 namespace woodcock {
@@ -37,28 +37,27 @@ void collectPlaces(const toml::node& node, const std::string& name, Places& plac
 
 SceneDescription readScene(const TomlTable& table, const std::string& name,
                            const std::filesystem::path& base) {
-    table.allowOnly(
-        {"volume", "material", "surface", "light", "camera", "render", "output", "ocio"},
-        "the scene");
     SceneDescription scene;
+    std::vector<std::string> sections(sceneLists.begin(), sceneLists.end());
+    sections.insert(sections.end(), {"camera", "render", "output"});
+    readKeys(table, scene, base, sections);
     for (const TomlTable& volume : tablesOf(table, "volume"))
-        scene.volumes.push_back(parseVolume(volume, base));
+        scene.volumes.push_back(readVolume(volume, base));
     for (const TomlTable& material : tablesOf(table, "material"))
-        scene.materials.push_back(parseMaterial(material, base));
+        scene.materials.push_back(readMaterial(material, base));
     for (const TomlTable& surface : tablesOf(table, "surface"))
-        scene.surfaces.push_back(parseSurface(surface, base));
+        scene.surfaces.push_back(readSurface(surface, base));
     if (scene.volumes.empty() && scene.surfaces.empty())
         throw inputError(
             "{}: the scene has no [[volume]] and no [[surface]]; the least is\n"
             "[[volume]]\nfile = \"smoke.vdb\"",
             name);
-    scene.lights = parseLights(table, base);
-    if (const auto render = table.find("render")) scene.render = parseRender(render->table());
+    scene.lights = readLights(table, base);
+    if (const auto render = table.find("render")) readKeys(render->table(), scene.render, base);
     const double aspect = double(scene.render.width) / scene.render.height;
     if (const auto camera = table.find("camera"))
-        scene.camera = parseCamera(camera->table(), aspect);
-    if (const auto output = table.find("output")) scene.output = parseOutput(output->table(), base);
-    if (const auto ocio = table.find("ocio")) scene.ocio = ocio->path(base);
+        scene.camera = readCamera(camera->table(), aspect);
+    if (const auto output = table.find("output")) readKeys(output->table(), scene.output, base);
     return scene;
 }
 
@@ -74,11 +73,11 @@ void checkLightChanges(const SceneDescription& scene) {
 
 }  // namespace
 
-std::vector<LightDescription> parseLights(const TomlTable& scene,
+std::vector<LightDescription> readLights(const TomlTable& scene,
                                           const std::filesystem::path& base) {
     std::vector<LightDescription> lights;
     for (const TomlTable& light : tablesOf(scene, "light"))
-        lights.push_back(parseLight(light, base));
+        lights.push_back(readLight(light, base));
     return lights;
 }
 

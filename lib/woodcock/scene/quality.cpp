@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "woodcock/base/toml_reader.h"
+#include "woodcock/scene/keys/sections.h"
 
 namespace woodcock {
 namespace {
@@ -22,8 +23,12 @@ bool isDisplaced(const toml::table& render, std::string_view key) {
     });
 }
 
-bool isReducedPrecision(Storage storage) {
-    return storage != Storage::Auto && storage != Storage::Float;
+template <class Wanted>
+std::vector<std::string> renderKeys(Wanted wanted) {
+    std::vector<std::string> names;
+    for (const Key<RenderDescription>& key : keysOf<RenderDescription>().keys)
+        if (wanted(key.info)) names.push_back(key.info.name);
+    return names;
 }
 
 }  // namespace
@@ -43,12 +48,16 @@ const std::vector<RenderChoice>& qualityChoices(Quality quality) {
     return choices[static_cast<std::size_t>(quality)];
 }
 
-const std::vector<std::string>& choiceKeys() {
-    static const std::vector<std::string> keys{
-        "storage", "adaptive", "transparent_shadows", "march_step", "march_estimate",
-        "octaves", "clamp",    "similarity_after",    "lookup",     "level_of_detail",
-        "quality"};
-    return keys;
+std::vector<std::string> choiceKeys() {
+    return renderKeys([](const KeyInfo& key) { return key.choice; });
+}
+
+std::vector<std::string> methodKeys() {
+    return renderKeys([](const KeyInfo& key) { return key.method; });
+}
+
+bool isReducedPrecision(Storage storage) {
+    return storage != Storage::Auto && storage != Storage::Float;
 }
 
 void eraseChoices(toml::table& scene) {
@@ -78,24 +87,12 @@ void expandQuality(toml::table& scene) {
 }
 
 std::vector<std::string> biasedChoices(const SceneDescription& scene) {
-    const RenderDescription& render = scene.render;
-    const Approximations& a = render.approximations;
     std::vector<std::string> keys;
-    const auto note = [&](bool chosen, const std::string& key) {
-        if (chosen) keys.push_back(key);
-    };
-    note(render.maxScatterings.has_value(), "render.max_scatterings");
-    note(render.maxBounces.has_value(), "render.max_bounces");
-    note(isReducedPrecision(render.storage), "render.storage");
-    note(a.transparentShadows, "render.transparent_shadows");
-    note(a.marchStep > 0, "render.march_step");
-    note(a.similarityAfter.has_value(), "render.similarity_after");
-    note(a.octaves > 0, "render.octaves");
-    note(a.clamp > 0, "render.clamp");
-    note(render.lookup != Lookup::Trilinear, "render.lookup");
-    note(render.levelOfDetail > 0, "render.level_of_detail");
+    for (const Key<RenderDescription>& key : keysOf<RenderDescription>().keys)
+        if (key.biased && key.biased(scene.render)) keys.push_back("render." + key.info.name);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        note(isReducedPrecision(scene.volumes[i].storage), fmt::format("volume[{}].storage", i));
+        if (isReducedPrecision(scene.volumes[i].storage))
+            keys.push_back(fmt::format("volume[{}].storage", i));
     return keys;
 }
 

@@ -23,11 +23,17 @@ struct RenderChoice {
 };
 const std::vector<RenderChoice>& qualityChoices(Quality quality);
 
-/// The keys of [render] that trade accuracy for time, in the order of the reference.
-const std::vector<std::string>& choiceKeys();
+/// The keys of [render] that trade accuracy for time.
+std::vector<std::string> choiceKeys();
+
+/// The others that concern how a picture is found rather than what it shows.
+std::vector<std::string> methodKeys();
 
 /// Takes out what a scene says of choices (its volumes' storage too): --quality replaces it.
 void eraseChoices(toml::table& scene);
+
+/// Whether voxels are rounded where a float would not be.
+bool isReducedPrecision(Storage storage);
 
 /// Gives [render] the choices of the quality that it names, but for those that are written beside
 /// it and what contradicts them. Throws Error{Input} on unknown names.

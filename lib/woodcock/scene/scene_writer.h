@@ -15,32 +15,31 @@ namespace woodcock {
 /// Lines of a scene file.
 class SceneWriter {
 public:
-    enum class Comments { No, Yes };
-    SceneWriter(const std::filesystem::path& directory, Comments comments)
-        : directory_(directory), comments_(comments == Comments::Yes) {}
+    /// A file for people, or the text that a digest is taken of: without comments, with all paths
+    /// absolute, and with what the image does not show at its defaults.
+    enum class Mode { File, Digest };
+    SceneWriter(const std::filesystem::path& directory, Mode mode)
+        : directory_(directory), digest_(mode == Mode::Digest) {}
+
+    bool isDigest() const { return digest_; }
 
     void heading(std::string_view text) {
         text_ += fmt::format("{}{}\n", text_.empty() ? "" : "\n", text);
     }
     void line(std::string_view key, std::string_view value, std::string_view comment = "") {
         text_ += fmt::format("{} = {}", key, value);
-        if (comments_ && !comment.empty()) text_ += fmt::format("  # {}", comment);
+        if (!digest_ && !comment.empty()) text_ += fmt::format("  # {}", comment);
         text_ += '\n';
     }
-    void path(std::string_view key, const std::filesystem::path& p) { line(key, quoted(p)); }
-    void paths(std::string_view key, const std::vector<std::filesystem::path>& all) {
-        std::vector<std::string> items;
-        for (const auto& p : all) items.push_back(quoted(p));
-        line(key, fmt::format("[{}]", fmt::join(items, ", ")));
-    }
     void comment(std::string_view text) {
-        if (comments_) text_ += fmt::format("# {}\n", text);
+        if (!digest_) text_ += fmt::format("# {}\n", text);
     }
     const std::string& text() const { return text_; }
 
     /// A path inside a value.
     std::string quoted(const std::filesystem::path& p) const {
         namespace fs = std::filesystem;
+        if (digest_) return tomlText(escapePath(fs::absolute(p).lexically_normal()));
         const bool here = directory_.empty() || directory_ == ".";
         if (here || p.is_absolute()) return tomlText(escapePath(p));
         return tomlText(escapePath(fs::absolute(p).lexically_normal().lexically_proximate(
@@ -49,7 +48,7 @@ public:
 
 private:
     std::filesystem::path directory_;
-    bool comments_;
+    bool digest_;
     std::string text_;
 };
 

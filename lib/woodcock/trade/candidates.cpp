@@ -18,8 +18,7 @@ std::vector<std::string> allowedKeys() {
     std::vector<std::string> keys;
     for (const std::string& key : choiceKeys())
         if (key != "quality") keys.push_back("render." + key);
-    for (const char* key : {"max_scatterings", "max_bounces", "majorant_scale"})
-        keys.push_back(std::string("render.") + key);
+    for (const std::string& key : methodKeys()) keys.push_back("render." + key);
     return keys;
 }
 

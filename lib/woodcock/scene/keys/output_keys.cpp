@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/image_format.h"
+#include "woodcock/image/write_exr.h"
+#include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/keys/values.h"
+
+namespace woodcock {
+namespace {
+
+using O = OutputDescription;
+using Base = const std::filesystem::path&;
+
+std::filesystem::path readFile(const TomlValue& value, Base base) {
+    try {
+        imageFormat(value.text());
+    } catch (const Error& e) {
+        throw inputError("{}: {}: {}", value.place(), value.name(), e.what());
+    }
+    return value.path(base);
+}
+
+Value<std::vector<std::filesystem::path>> files() {
+    return {"list", {"[\"a.exr\", \"folder/b.png\"]"},
+            [](const TomlValue& v, Base base) {
+                std::vector<std::filesystem::path> all;
+                for (const TomlValue& file : v.elements("a list of files, such as [\"smoke.exr\"]"))
+                    all.push_back(readFile(file, base));
+                return all;
+            },
+            [](const std::vector<std::filesystem::path>& all, const SceneWriter& out) {
+                std::vector<std::string> items;
+                for (const auto& file : all) items.push_back(out.quoted(file));
+                return fmt::format("[{}]", fmt::join(items, ", "));
+            }};
+}
+
+std::vector<std::string> readLayers(const TomlValue& value, Base) {
+    const std::vector<std::string> known = layerNames();
+    std::vector<std::string> layers;
+    for (const TomlValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
+        const std::string& layer = known[element.choice("layer", known)];
+        if (std::find(layers.begin(), layers.end(), layer) != layers.end())
+            throw element.error("repeats the layer '{}'", layer);
+        layers.push_back(layer);
+    }
+    return layers;
+}
+
+Value<std::vector<std::string>> layers() {
+    return {"list", {"[\"depth\", \"error\"]"}, readLayers,
+            [](const std::vector<std::string>& all, const SceneWriter&) {
+                std::vector<std::string> items;
+                for (const std::string& layer : all) items.push_back(tomlText(layer));
+                return fmt::format("[{}]", fmt::join(items, ", "));
+            }};
+}
+
+std::vector<Key<O>> outputKeys() {
+    const std::string own = "the config's own";
+    std::vector<Key<O>> keys{
+        key({.name = "files",
+             .doc = "images to write, by extension: `.exr`, or a picture: `.png`, `.jpg`, `.tif` "
+                    "(16 bits), `.webp`; `-o` replaces it. Folders that are missing are refused, "
+                    "or made by `--mkdir`",
+             .fallback = "none"},
+            &O::files, files()),
+        key({.name = "layers",
+             .doc = "of the EXR: `\"depth\"` (channel `Z`: mean distance to what a camera ray "
+                    "meets, 1e10 where it meets nothing), `\"albedo\"` and `\"normal\"` (means "
+                    "over camera rays of what they meet first, see \"Layers for denoisers\"), "
+                    "`\"transmittance\"`, `\"samples\"`, `\"error\"` (standard error, see "
+                    "\"Errors\") and `\"variance\"` (its square)",
+             .fallback = "none"},
+            &O::layers, layers()),
+        key({.name = "half", .doc = "EXR colour in half"}, &O::half, flag()),
+        key({.name = "display", .doc = "OpenColorIO name, for pictures", .fallback = own},
+            &O::display, text()),
+        key({.name = "view", .doc = "OpenColorIO name, for pictures", .fallback = own}, &O::view,
+            text()),
+        key({.name = "look",
+             .doc = "OpenColorIO name, for pictures; `\"none\"` is none at all",
+             .fallback = own},
+            &O::look, text()),
+        key({.name = "exposure",
+             .doc = "stops, before the display transform; pictures only",
+             .comment = "stops"},
+            &O::exposure, number({-100, 100})),
+    };
+    for (Key<O>& key : keys) key.info.inDigest = false;
+    return keys;
+}
+
+}  // namespace
+
+template <>
+const KeyTable<O>& keysOf() {
+    static const KeyTable<O> table{.id = "output",
+                                   .where = "[output]",
+                                   .keys = outputKeys(),
+                                   .outer = "[[surface]]\nsphere = {}\n[output]\n",
+                                   .path = "output"};
+    return table;
+}
+
+template <>
+const KeyTable<SceneDescription>& keysOf() {
+    static const KeyTable<SceneDescription> table{
+        .id = "scene",
+        .where = "the scene",
+        .keys = {key({.name = "ocio",
+                      .doc = "of an OpenColorIO config, for pictures, that is all outputs but EXR",
+                      .fallback = "`$OCIO`, then the one that comes with the program",
+                      .inDigest = false},
+                     &SceneDescription::ocio, path())},
+        .outer = "[[surface]]\nsphere = {}\n"};
+    return table;
+}
+
+}  // namespace woodcock
