@@ -5,7 +5,8 @@
 #
 #   tests/ladder.sh [--build DIRECTORY] [--blender PROGRAM] [--spp N] [SCENE ...]
 #
-# PROGRAM is as for woodcock cycles. Exit code 1: some differ, by more than 4 standard errors or 0.3 %.
+# PROGRAM is as for woodcock cycles. Exit code 1: some pictures differ, by more than 4 standard
+# errors or 0.3 %.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

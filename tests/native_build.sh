@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Proves the build that users run. tools/demo.sh compiles for this machine's processor, the tests
-# for any: the native program must pass `verify` too, and give the same bits as the plain one.
+# for any processor. The native program must pass `verify` too, and must give the same bits of
+# volumes and of pictures as the plain program.
 #   tests/native_build.sh WOODCOCK PIXEL_DIGEST
 # WOODCOCK is the plain program, PIXEL_DIGEST is tests/programs/pixel_digest.
 set -euo pipefail

@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the tests that use threads under ThreadSanitizer. Arguments go to ctest: -R Session
 #
-# ThreadSanitizer must see how oneTBB hands work from thread to thread, or every hand-over looks like a race. So oneTBB is built with it too, from the
-# distribution's source package, into the preset's build directory; nothing of the system is changed.
+# ThreadSanitizer must see how oneTBB hands work from thread to thread. Otherwise every hand-over
+# looks like a race. So this script builds oneTBB with ThreadSanitizer too, from the distribution's
+# source package, into the preset's build directory. It changes nothing of the system.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 build=$PWD/build/thread-sanitizer
 onetbb=$build/onetbb  # the preset's TBB_ROOT
 
-# The source package from the user's own mirrors: apt with a copy of its list of sources in which `deb` is `deb-src`.
+# The source package from the user's own mirrors: apt gets a copy of its list of sources, in which
+# `deb` is `deb-src`.
 fetch_onetbb() {
     local apt=$build/apt list parts file
     rm -rf "$apt"
@@ -30,7 +32,8 @@ fetch_onetbb() {
     tar -xf "$apt"/onetbb_*.orig.tar.* --strip-components=1 -C "$apt/onetbb"
 }
 
-# Without TBB's own allocator, which would hide from ThreadSanitizer what memory is freed and used again.
+# TBB's own allocator is left out: ThreadSanitizer would not see what memory is freed and used
+# again.
 build_onetbb() {
     cmake -S "$build/apt/onetbb" -B "$build/apt/build" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
         -DCMAKE_INSTALL_PREFIX="$onetbb" -DCMAKE_INSTALL_LIBDIR=lib \
@@ -44,8 +47,10 @@ build_onetbb() {
     fi
 }
 
-# The tests that run every parallel loop of the library: `grep -rl tbb:: lib` names field, majorants, block ranges and vdb_read (grid/), the session
-# (render/), loading albedo (scene/) and all of bake/. Those of render/ that only render longer are left out, as everything takes ten times as long.
+# The tests that run every parallel loop of the library. `grep -rl tbb:: lib` names the field, the
+# majorants, block ranges and the reading of voxels (grid/), the session (render/), the loading of
+# albedo (scene/) and all of bake/. Tests of render/ that only render longer are left out, as
+# everything takes ten times as long.
 tests='^(Field|Majorants|BlockRanges|VdbLoad|LoadScene|Session|Bak|Ax)'
 
 cmake/packages.sh

@@ -12,8 +12,8 @@ fi
 cmake --preset fuzz -S "$(dirname "${BASH_SOURCE[0]}")/../.." -B "$build" -DCMAKE_CXX_COMPILER="$clang"
 cmake --build "$build" --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
 
-# The number of inputs for each, and a time that is long for code that is not optimised; leaks are not sought, as a tree that is damaged halfway leaks in
-# OpenVDB.
+# The number of inputs for each. The time limit is long, as the code is not optimised. Leaks are not
+# looked for: a tree that is damaged halfway leaks in OpenVDB.
 declare -A runs=([scene]=20000 [display]=2000 [vdb]=1000)
 rm -rf "$build/corpus"
 "$seeds" "$build/corpus"
