@@ -46,7 +46,7 @@ draw overlapping $scenes/overlap.toml "${inCloud[@]}" --set "volume[1].file=$clo
 draw fire $scenes/fire.toml "${inFire[@]}"
 draw ground $scenes/ground.toml "${inCloud[@]}"
 for scene in box_of_fog gems glass tea window; do draw $scene $scenes/$scene.toml; done
-draw local_lights_in_fog $scenes/ladder/lamps.toml
+draw local_lights_in_fog $scenes/ladder/local_lights.toml
 draw layers $scenes/tea.toml --layers depth,albedo,normal,transmittance,samples,error,variance
 for quality in draft preview final reference; do
     draw "quality_$quality" $scenes/demo.toml "${inCloud[@]}" --quality $quality
