@@ -45,7 +45,7 @@ trap 'rm -rf "$copy"' EXIT
 trap 'exit 130' INT TERM
 
 build() {
-    cmake --build "$copy/build/release" --target woodcock_tests woodcock_program \
+    cmake --build "$copy/build/release" --target woodcock_tests woodcock_program woodcock_verify_program \
         >"$copy/build.log" 2>&1
 }
 

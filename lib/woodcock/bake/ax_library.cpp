@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/ranges.h>
+#include <openvdb/openvdb.h>  // without the library, which the module does not link
 #include <openvdb_ax/ast/AST.h>
 #include <openvdb_ax/ast/Parse.h>
 #include <openvdb_ax/ast/Scanners.h>
@@ -23,7 +24,6 @@
 #include "woodcock/bake/openvdb_ax_program.h"
 #include "woodcock/bake/openvdb_ax_rules.h"
 #include "woodcock/base/error.h"
-#include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock {
 namespace {

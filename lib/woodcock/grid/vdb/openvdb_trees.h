@@ -19,7 +19,7 @@ namespace openvdb {
 OPENVDB_USE_VERSION_NAMESPACE
 namespace OPENVDB_VERSION_NAME {
 
-// OpenVDB's library registers these grids, so it holds their trees.
+// All in openvdb_trees_*.cpp. OpenVDB's own library holds what it did not inline, and no more.
 extern template class tree::Tree<FloatTree::RootNodeType>;
 extern template class tree::Tree<DoubleTree::RootNodeType>;
 extern template class tree::Tree<Int32Tree::RootNodeType>;
@@ -39,7 +39,7 @@ extern template class Grid<Vec3STree>;
 extern template class Grid<Vec3DTree>;
 extern template class Grid<Vec3ITree>;
 
-// In openvdb_trees.cpp.
+// OpenVDB 13's.
 extern template class tree::Tree<woodcock::HalfTree::RootNodeType>;
 extern template class Grid<woodcock::HalfTree>;
 

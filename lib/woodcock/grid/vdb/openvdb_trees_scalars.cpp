@@ -5,7 +5,11 @@ namespace openvdb {
 OPENVDB_USE_VERSION_NAMESPACE
 namespace OPENVDB_VERSION_NAME {
 
+template class tree::Tree<FloatTree::RootNodeType>;
+template class tree::Tree<DoubleTree::RootNodeType>;
 template class tree::Tree<woodcock::HalfTree::RootNodeType>;
+template class Grid<FloatTree>;
+template class Grid<DoubleTree>;
 template class Grid<woodcock::HalfTree>;
 
 }  // namespace OPENVDB_VERSION_NAME
