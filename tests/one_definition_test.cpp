@@ -16,6 +16,9 @@
 #include "tests/support/paths.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,9 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 /// Larger than a leaf along x, no multiple of one, and different along each axis.

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 /// A volume from memory. In the scene's text it stands under the name of a file that is not there.
 struct ArrayVolume {
-    LatticeSource source;
+    grid::LatticeSource source;
     Affine3d worldFromIndex;
     std::string section;  // [[volume]] of it
 };
@@ -45,10 +45,10 @@ std::string sectionOf(const LatticeVolume& volume, const std::string& name) {
 }
 
 ArrayVolume arrayVolume(const LatticeVolume& volume, const std::string& name) {
-    auto lattice = std::make_shared<LatticeValues>();
+    auto lattice = std::make_shared<grid::LatticeValues>();
     lattice->size = {volume.size[0], volume.size[1], volume.size[2]};
     lattice->values.assign(volume.density.begin(), volume.density.end());
-    ArrayVolume array{latticeSource(std::move(lattice)), {}, sectionOf(volume, name)};
+    ArrayVolume array{grid::latticeSource(std::move(lattice)), {}, sectionOf(volume, name)};
     const double s = volume.voxelSize;
     array.worldFromIndex = {{Vec3d{s, 0, 0}, {0, s, 0}, {0, 0, s}}, toVec(volume.origin)};
     if (const std::string flaw = flawOf(array.worldFromIndex); !flaw.empty() || !(s > 0))
@@ -56,9 +56,9 @@ ArrayVolume arrayVolume(const LatticeVolume& volume, const std::string& name) {
             "a volume with voxels of {} at [{}, {}, {}] cannot be placed: its size must "
             "be above 0, and all finite",
             s, volume.origin[0], volume.origin[1], volume.origin[2]);
-    GridStatistics statistics;
+    grid::GridStatistics statistics;
     statistics.voxels = array.source.voxels;
-    if (const std::string faults = describeFaults(statistics, true); !faults.empty())
+    if (const std::string faults = grid::describeFaults(statistics, true); !faults.empty())
         throw inputError("the values of a density must be finite and 0 or more; these hold {}",
                          faults);
     return array;
@@ -71,46 +71,47 @@ bool isVolumeFile(const fs::path& file) {
 }
 
 /// The index of the array that the volume stands for; absent where it is a file.
-std::optional<std::size_t> arrayOf(const VolumeDescription& volume, std::size_t arrays) {
+std::optional<std::size_t> arrayOf(const scene::VolumeDescription& volume, std::size_t arrays) {
     for (std::size_t i = 0; i < arrays; ++i)
         if (volume.file.filename() == arrayName(i)) return i;
     return std::nullopt;
 }
 
-void requireDensityAlone(const VolumeDescription& volume) {
-    const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+void requireDensityAlone(const scene::VolumeDescription& volume) {
+    const auto* c = std::get_if<scene::DensityCoefficients>(&volume.coefficients);
     if (!c || !c->albedoGrid.empty() || volume.emission || volume.blackbody)
         throw usageError(
             "a volume from memory holds its density alone: it takes scale, albedo and g, but no "
             "sigma_a, sigma_s, albedo_grid, emission or blackbody");
 }
 
-LoadedField loadArray(const ArrayVolume& array, const VolumeDescription& volume,
-                      const RenderDescription& render) {
+scene::LoadedField loadArray(const ArrayVolume& array, const scene::VolumeDescription& volume,
+                             const scene::RenderDescription& render) {
     requireDensityAlone(volume);
-    Storage storage = volume.storage == Storage::Auto ? render.storage : volume.storage;
-    if (storage == Storage::Auto)
-        storage = array.source.voxels.exactAsHalf ? Storage::Half : Storage::Float;
-    Field field = buildField(array.source.field, storage);
+    grid::Storage storage = volume.storage == grid::Storage::Auto ? render.storage : volume.storage;
+    if (storage == grid::Storage::Auto)
+        storage = array.source.voxels.exactAsHalf ? grid::Storage::Half : grid::Storage::Float;
+    grid::Field field = grid::buildField(array.source.field, storage);
     field.setLookup(render.lookup);
-    return {std::make_shared<Field>(std::move(field)), array.worldFromIndex, "density"};
+    return {std::make_shared<grid::Field>(std::move(field)), array.worldFromIndex, "density"};
 }
 
 /// What the scene names, and the arrays.
-LoadedScene load(const SceneDescription& scene, const std::vector<ArrayVolume>& arrays) {
-    SceneDescription ofFiles = scene;
-    for (VolumeDescription& volume : ofFiles.volumes)
-        if (arrayOf(volume, arrays.size())) volume.coefficients = HomogeneousBox{};
-    LoadedScene loaded = loadScene(ofFiles);
+scene::LoadedScene load(const scene::SceneDescription& scene,
+                        const std::vector<ArrayVolume>& arrays) {
+    scene::SceneDescription ofFiles = scene;
+    for (scene::VolumeDescription& volume : ofFiles.volumes)
+        if (arrayOf(volume, arrays.size())) volume.coefficients = scene::HomogeneousBox{};
+    scene::LoadedScene loaded = scene::loadScene(ofFiles);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         if (const auto array = arrayOf(scene.volumes[i], arrays.size()))
             loaded.volumes[i].density = loadArray(arrays[*array], scene.volumes[i], scene.render);
     return loaded;
 }
 
-RenderSettings settingsOf(const SceneDescription& scene, const RenderCalls& calls) {
-    RenderSettings settings = renderSettings(scene.render);
-    const ExrLayers layers = layersFromNames(scene.output.layers);
+render::RenderSettings settingsOf(const scene::SceneDescription& scene, const RenderCalls& calls) {
+    render::RenderSettings settings = scene::renderSettings(scene.render);
+    const image::ExrLayers layers = image::layersFromNames(scene.output.layers);
     settings.depthLayers = layers.depth || layers.transmittance;
     settings.featureLayers = layers.albedo || layers.normal;
     settings.threads = calls.threads;
@@ -118,17 +119,19 @@ RenderSettings settingsOf(const SceneDescription& scene, const RenderCalls& call
 }
 
 /// Goes on as long as nobody stops it.
-bool tell(const RenderCalls& calls, const RenderProgress& now) {
+bool tell(const RenderCalls& calls, const render::RenderProgress& now) {
     if (calls.progress)
         calls.progress({now.fraction, now.seconds, now.secondsLeft, now.samples, now.noise});
     return !calls.stop || !calls.stop();
 }
 
-RenderResult draw(const Scene& scene, const RenderSettings& settings, const RenderCalls& calls) {
-    return render(scene, settings, [&](const RenderProgress& now) { return tell(calls, now); });
+render::RenderResult draw(const render::Scene& scene, const render::RenderSettings& settings,
+                          const RenderCalls& calls) {
+    return render::render(scene, settings,
+                          [&](const render::RenderProgress& now) { return tell(calls, now); });
 }
 
-std::vector<float> pixelsOf(const Film& film) {
+std::vector<float> pixelsOf(const image::Film& film) {
     std::vector<float> pixels;
     pixels.reserve(std::size_t(film.width()) * std::size_t(film.height()) * 4);
     for (int y = 0; y < film.height(); ++y)
@@ -143,9 +146,9 @@ std::vector<float> pixelsOf(const Film& film) {
 }  // namespace
 
 struct RenderedImage::Impl {
-    SceneDescription scene;  // complete
-    RenderSettings settings;
-    RenderResult result;
+    scene::SceneDescription scene;  // complete
+    render::RenderSettings settings;
+    render::RenderResult result;
     std::vector<float> pixels;
     std::vector<std::string> notes;
 };
@@ -156,25 +159,28 @@ int RenderedImage::width() const { return impl_->result.film.width(); }
 int RenderedImage::height() const { return impl_->result.film.height(); }
 std::span<const float> RenderedImage::pixels() const { return impl_->pixels; }
 int RenderedImage::samples() const { return impl_->result.endSample; }
-bool RenderedImage::complete() const { return impl_->result.reason == StopReason::Complete; }
+bool RenderedImage::complete() const {
+    return impl_->result.reason == render::StopReason::Complete;
+}
 double RenderedImage::seconds() const { return impl_->result.seconds; }
 double RenderedImage::noise() const { return impl_->result.film.noise(); }
 const std::vector<std::string>& RenderedImage::notes() const { return impl_->notes; }
 
 void RenderedImage::write(const fs::path& file) const {
-    const SceneDescription& scene = impl_->scene;
-    const OutputDescription& output = scene.output;
-    OutputSettings settings{.colour = ColorConfig(scene.ocio)};
+    const scene::SceneDescription& scene = impl_->scene;
+    const scene::OutputDescription& output = scene.output;
+    image::OutputSettings settings{.colour = image::ColorConfig(scene.ocio)};
     settings.files = {file};
     settings.half = output.half;
-    settings.layers = layersFromNames(output.layers);
+    settings.layers = image::layersFromNames(output.layers);
     settings.display = {output.display, output.view, output.look, output.exposure};
-    settings.withAlpha = environmentIsHidden(scene);
-    settings.glows = anythingGlows(scene);
-    const RenderResult& result = impl_->result;
-    Outputs(std::move(settings))
-        .write(result.film, {impl_->settings.firstSample, result.endSample, impl_->settings.seed,
-                             result.seconds, sceneDigest(scene), "", impl_->settings.adaptive});
+    settings.withAlpha = scene::environmentIsHidden(scene);
+    settings.glows = scene::anythingGlows(scene);
+    const render::RenderResult& result = impl_->result;
+    image::Outputs(std::move(settings))
+        .write(result.film,
+               {impl_->settings.firstSample, result.endSample, impl_->settings.seed, result.seconds,
+                scene::sceneDigest(scene), "", impl_->settings.adaptive});
 }
 
 struct Renderer::Impl {
@@ -183,8 +189,8 @@ struct Renderer::Impl {
     bool made = false;  // around volumes: its text is nobody's
     std::vector<std::string> overrides;
     std::vector<ArrayVolume> arrays;
-    std::optional<LookAt> camera;
-    SceneDescription scene;
+    std::optional<scene::LookAt> camera;
+    scene::SceneDescription scene;
 
     void parse();
     bool isEmpty() const { return text.empty() && arrays.empty(); }
@@ -205,7 +211,7 @@ struct Renderer::Impl {
 void Renderer::Impl::parse() {
     std::string all = isEmpty() ? "[[volume]]\nfile = \"none\"\n" : text;
     for (const ArrayVolume& array : arrays) all += array.section;
-    SceneDescription parsed = parseSceneText(all, name, folder, overrides);
+    scene::SceneDescription parsed = scene::parseSceneText(all, name, folder, overrides);
     if (isEmpty()) parsed.volumes.clear();
     if (made)
         std::erase_if(parsed.places,
@@ -231,7 +237,7 @@ Renderer Renderer::open(const fs::path& file) {
     Renderer renderer;
     Impl& impl = *renderer.impl_;
     impl.made = isVolumeFile(file);
-    impl.text = impl.made ? defaultSceneText({file}) : readTomlFile(file, "scene file");
+    impl.text = impl.made ? scene::defaultSceneText({file}) : readTomlFile(file, "scene file");
     impl.name = file.string();
     if (!impl.made) impl.folder = file.parent_path();
     impl.parse();
@@ -259,8 +265,8 @@ void Renderer::setSeed(std::uint64_t seed) { set("render.seed", fmt::format("{}"
 
 void Renderer::placeCamera(std::array<double, 3> eye, std::array<double, 3> target,
                            std::array<double, 3> up) {
-    const LookAt pose{toVec(eye), toVec(target), toVec(up)};
-    if (!flawOf(worldFromCamera(pose)).empty())
+    const scene::LookAt pose{toVec(eye), toVec(target), toVec(up)};
+    if (!flawOf(scene::worldFromCamera(pose)).empty())
         throw usageError(
             "a camera at [{}, {}, {}] cannot look at [{}, {}, {}] with [{}, {}, {}] "
             "upwards: these must be finite, apart, and up must lead across the view",
@@ -281,18 +287,18 @@ int Renderer::addVolume(const LatticeVolume& volume) {
 
 RenderedImage Renderer::render(const RenderCalls& calls) const {
     if (impl_->isEmpty()) throw usageError("the scene is empty: add a volume before you render it");
-    SceneDescription description = impl_->scene;
-    const RenderSettings settings = settingsOf(description, calls);
-    LoadedScene loaded = load(description, impl_->arrays);
+    scene::SceneDescription description = impl_->scene;
+    const render::RenderSettings settings = settingsOf(description, calls);
+    scene::LoadedScene loaded = load(description, impl_->arrays);
     std::vector<std::string> notes = loaded.notes;
     const auto note = [&](std::vector<std::string> more) {
         notes.insert(notes.end(), more.begin(), more.end());
     };
-    note(completeScene(description, loaded));
-    loadChosenImages(description, loaded);
-    const Scene scene = buildScene(description, std::move(loaded), &notes);
-    note(precisionWarnings(scene));
-    RenderResult result = draw(scene, settings, calls);
+    note(scene::completeScene(description, loaded));
+    scene::loadChosenImages(description, loaded);
+    const render::Scene scene = scene::buildScene(description, std::move(loaded), &notes);
+    note(render::precisionWarnings(scene));
+    render::RenderResult result = draw(scene, settings, calls);
     std::vector<float> pixels = pixelsOf(result.film);
     return RenderedImage(std::make_shared<const RenderedImage::Impl>(RenderedImage::Impl{
         std::move(description), settings, std::move(result), std::move(pixels), std::move(notes)}));

@@ -17,6 +17,10 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
+
+using namespace bake;
+using namespace grid;
+
 namespace {
 
 using openvdb::Coord;

@@ -8,6 +8,9 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
+
+using namespace bake;
+
 namespace {
 
 constexpr const char* ball = R"(

@@ -15,6 +15,11 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
+
+using namespace bake;
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 template <class Grid = openvdb::FloatGrid>

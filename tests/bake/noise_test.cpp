@@ -9,6 +9,9 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace bake;
+
 namespace {
 
 Vec3d randomPoint(RandomStream& random, double reach) {

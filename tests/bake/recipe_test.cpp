@@ -7,6 +7,9 @@
 #include "woodcock/bake/node_reader.h"
 
 namespace woodcock::test {
+
+using namespace bake;
+
 namespace {
 
 constexpr const char* bounds = "[bounds]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";

@@ -9,12 +9,12 @@
 namespace woodcock::test {
 
 /// A recipe with one output, `density`, of these nodes.
-inline Recipe recipeOf(const std::string& nodes, const std::string& output = "thing",
-                       const std::string& bounds = "min = [-2, -2, -2]\nmax = [2, 2, 2]") {
-    return makeRecipe({"[bounds]\n" + bounds + "\n" + nodes +
-                           "\n[[output]]\nname = \"density\"\nnode = \"" + output + "\"\n",
-                       "test.toml", ""},
-                      {});
+inline bake::Recipe recipeOf(const std::string& nodes, const std::string& output = "thing",
+                             const std::string& bounds = "min = [-2, -2, -2]\nmax = [2, 2, 2]") {
+    return bake::makeRecipe({"[bounds]\n" + bounds + "\n" + nodes +
+                                 "\n[[output]]\nname = \"density\"\nnode = \"" + output + "\"\n",
+                             "test.toml", ""},
+                            {});
 }
 
 }  // namespace woodcock::test

@@ -75,10 +75,10 @@ TEST(FrameNames, ASeriesIsWhatStandsAroundTheNumber) {
 }
 
 TEST(FrameNames, APatternFindsItsFiles) {
-    const test::TempDir dir;
+    const proof::TempDir dir;
     for (const char* name :
          {"a.0010.vdb", "a.0002.vdb", "a.x.vdb", "a..vdb", "b.0003.vdb", "a.0004.png", "a.-01.vdb"})
-        test::writeText(dir / name, "");
+        proof::writeText(dir / name, "");
     for (const char* pattern : {"a.####.vdb", "a.%04d.vdb", "a.$F4.vdb", "a.*.vdb"})
         EXPECT_EQ(seriesOfPattern((dir / pattern).string()).numbers, (Names{"-01", "0002", "0010"}))
             << pattern;

@@ -9,6 +9,9 @@
 #include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 TEST(Random, IsSplitMix64) {

@@ -15,7 +15,7 @@ std::string opening(const std::filesystem::path& file) {
 }
 
 TEST(RegularFile, OthersAreRefusedAtOnce) {
-    const test::TempDir dir;
+    const proof::TempDir dir;
     ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
     std::filesystem::create_symlink("/dev/zero", dir / "zero");
     const auto expected = [&](const char* name, const char* reason) {
@@ -29,8 +29,8 @@ TEST(RegularFile, OthersAreRefusedAtOnce) {
 }
 
 TEST(RegularFile, ReadsWhatIsThere) {
-    const test::TempDir dir;
-    test::writeText(dir / "a", "0123456789");
+    const proof::TempDir dir;
+    proof::writeText(dir / "a", "0123456789");
     const RegularFile file(dir / "a", "table");
     EXPECT_EQ(file.size(), 10u);
     EXPECT_EQ(file.read(2, 3), "234");

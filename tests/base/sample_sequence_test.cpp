@@ -6,7 +6,6 @@
 
 #include <set>
 
-
 namespace woodcock::test {
 namespace {
 

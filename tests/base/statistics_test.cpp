@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/statistics.h"
 #include "woodcock/base/random.h"
+#include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 TEST(Statistics, MomentsOfAFewNumbers) {

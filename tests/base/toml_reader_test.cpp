@@ -52,9 +52,9 @@ TEST(TomlNesting, ValuesHaveAnEndToo) {
 }
 
 TEST(TomlReader, APipeIsReadAndEndlessOnesAreNot) {
-    const test::TempDir dir;
+    const proof::TempDir dir;
     ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
-    std::thread writer([&] { test::writeText(dir / "pipe", "a = 1"); });
+    std::thread writer([&] { proof::writeText(dir / "pipe", "a = 1"); });
     EXPECT_EQ(readTomlFile(dir / "pipe", "recipe"), "a = 1");
     writer.join();
     test::expectError(ErrorKind::Input, "recipe '/dev/zero' is larger than 4 MB",

@@ -9,8 +9,8 @@ namespace woodcock::bench {
 
 /// A ball of waves in [0, 1], `side` voxels wide, a multiple of 8; every leaf that it touches
 /// varies.
-inline Field wavyBall(int side, Storage storage) {
-    FieldSource source;
+inline grid::Field wavyBall(int side, grid::Storage storage) {
+    grid::FieldSource source;
     const double radius = side / 2.0;
     const auto inside = [=](Vec3d p) { return length(p - Vec3d{radius, radius, radius}) < radius; };
     for (int x = 0; x < side; x += 8)
@@ -25,7 +25,7 @@ inline Field wavyBall(int side, Storage storage) {
                 0.5 + 0.5 * std::sin(k * v.x) * std::sin(k * v.y) * std::sin(k * v.z));
         }
     };
-    return buildField(source, storage);
+    return grid::buildField(source, storage);
 }
 
 }  // namespace woodcock::bench

@@ -43,7 +43,7 @@ int main(int count, char** words) {
             in.open(/*delayLoad=*/false);
             in.readGrid(grid);
         });
-        const double loading = best(repeats, [&] { woodcock::loadGrid(file, grid); });
+        const double loading = best(repeats, [&] { woodcock::grid::loadGrid(file, grid); });
         std::printf("OpenVDB reads %.4f s   woodcock loads %.4f s   ratio %.2f   (best of %d)\n",
                     reading, loading, loading / reading, repeats);
         return 0;

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 namespace woodcock::test {
+
+using namespace camera;
+
 namespace {
 
 void expectNear(Vec3d a, Vec3d b) {

@@ -10,6 +10,9 @@
 #include "woodcock/base/statistics.h"
 
 namespace woodcock::test {
+
+using namespace compare;
+
 namespace {
 
 constexpr int width = 48, height = 40;

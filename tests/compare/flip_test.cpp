@@ -11,6 +11,10 @@
 #include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace compare;
+using namespace proof;
+
 namespace {
 
 constexpr int width = 120, height = 90;

@@ -7,11 +7,16 @@
 #include <limits>
 
 #include "tests/support/expect_error.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "tests/support/write_image.h"
 #include "woodcock/compare/comparison.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace compare;
+using namespace image;
+using namespace proof;
+
 namespace {
 
 class LoadPictures : public testing::Test {

@@ -7,6 +7,9 @@
 #include <limits>
 
 namespace woodcock::test {
+
+using namespace compare;
+
 namespace {
 
 TEST(DifferenceMetrics, ByHand) {

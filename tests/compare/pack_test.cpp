@@ -11,6 +11,9 @@
 #include <vector>
 
 namespace woodcock::test {
+
+using namespace compare;
+
 namespace {
 
 std::vector<unsigned char> unpack(const std::string& text, std::size_t size) {

@@ -7,6 +7,9 @@
 #include "woodcock/base/statistics.h"
 
 namespace woodcock::test {
+
+using namespace compare;
+
 namespace {
 
 TEST(Shrink, FractionsOfPixelsCountAsSuch) {

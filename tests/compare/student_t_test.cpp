@@ -8,6 +8,9 @@
 #include <numbers>
 
 namespace woodcock::test {
+
+using namespace compare;
+
 namespace {
 
 void expectRelative(double value, double expected, double error = 1e-10) {

@@ -12,6 +12,10 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
+
+using namespace convert;
+using namespace grid;
+
 namespace {
 
 DenseVolume dense(const Dims& dims, int channels, std::vector<float> numbers) {

@@ -6,6 +6,9 @@
 #include "tests/support/expect_error.h"
 
 namespace woodcock::test {
+
+using namespace convert;
+
 namespace {
 
 /// 2 x 3 x 4 floats 0, 1, 2, ... with x the fastest, voxels of 1 x 2 x 3 from (10, 20, 30).

@@ -11,6 +11,10 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
+
+using namespace convert;
+using namespace grid;
+
 namespace {
 
 constexpr float radius = 2, voxel = 0.1f;

@@ -10,6 +10,11 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
 namespace woodcock::test {
+
+using namespace convert;
+using namespace grid;
+using namespace mesh;
+
 namespace {
 
 TriangleMesh cube() { return cubeOf(1); }

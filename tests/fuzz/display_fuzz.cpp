@@ -22,8 +22,8 @@ std::string takeLine(std::string_view& text) {
     return line;
 }
 
-void show(const std::filesystem::path& config, const DisplaySettings& settings) {
-    const ColorConfig colour(config);
+void show(const std::filesystem::path& config, const image::DisplaySettings& settings) {
+    const image::ColorConfig colour(config);
     colour.chromaticities();
     std::array<float, 8> pixels{0.18f, 0.5f, 2.0f, 1.0f, 0.0f, -1.0f, 1e6f, 0.5f};
     colour.displayTransform(settings).apply(pixels);
@@ -33,7 +33,7 @@ void show(const std::filesystem::path& config, const DisplaySettings& settings) 
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string_view text(reinterpret_cast<const char*>(data), size);
-    DisplaySettings settings;
+    image::DisplaySettings settings;
     settings.display = takeLine(text);
     settings.view = takeLine(text);
     settings.look = takeLine(text);

@@ -23,15 +23,17 @@ std::vector<std::string> linesOf(std::string_view text) {
 }
 
 /// What has been parsed can be written, and parsed again to the same scene.
-void roundTrip(const SceneDescription& scene) {
+void roundTrip(const scene::SceneDescription& scene) {
     std::string text;
     try {
-        text = writeScene(scene);
+        text = scene::writeScene(scene);
     } catch (const Error& e) {
         if (e.kind() == ErrorKind::Usage) return;  // TOML cannot say it
         throw;
     }
-    if (sceneDigest(parseSceneText(text, "written", ".")) != sceneDigest(scene)) std::abort();
+    if (scene::sceneDigest(scene::parseSceneText(text, "written", ".")) !=
+        scene::sceneDigest(scene))
+        std::abort();
 }
 
 }  // namespace
@@ -39,10 +41,10 @@ void roundTrip(const SceneDescription& scene) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view input(reinterpret_cast<const char*>(data), size);
     const std::size_t end = std::min(input.find('\0'), size);
-    SceneDescription scene;
+    scene::SceneDescription scene;
     try {
-        scene = parseSceneText(input.substr(0, end), "fuzz", ".",
-                               end < size ? linesOf(input.substr(end + 1)) : linesOf(""));
+        scene = scene::parseSceneText(input.substr(0, end), "fuzz", ".",
+                                      end < size ? linesOf(input.substr(end + 1)) : linesOf(""));
     } catch (const Error&) {
         return 0;
     }

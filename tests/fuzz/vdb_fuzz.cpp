@@ -13,9 +13,10 @@ namespace {
 
 using namespace woodcock;
 
-void load(const VdbFile& file, const GridListing& grid) {
-    const LoadedGrid loaded = loadGrid(file, grid, {.use = GridUse::Colour, .repair = true});
-    majorantStatistics(loaded.field, MajorantGrid(loaded.field, {}), 16);
+void load(const grid::VdbFile& file, const grid::GridListing& grid) {
+    const grid::LoadedGrid loaded =
+        grid::loadGrid(file, grid, {.use = grid::GridUse::Colour, .repair = true});
+    grid::majorantStatistics(loaded.field, grid::MajorantGrid(loaded.field, {}), 16);
 }
 
 }  // namespace
@@ -25,8 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
     const test::MemoryFile input(data, size);
     try {
-        const VdbFile file = listGrids(input.path());
-        for (const GridListing& grid : file.grids) {
+        const grid::VdbFile file = grid::listGrids(input.path());
+        for (const grid::GridListing& grid : file.grids) {
             try {
                 load(file, grid);
             } catch (const Error&) {  // the next grid may be sound

@@ -5,10 +5,14 @@
 
 #include <cmath>
 
-#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/base/random.h"
+#include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 const std::array<float, 3> haze{0.25f, 0.125f, 0.5f};

@@ -9,6 +9,9 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+
 namespace {
 
 TEST(BlockTable, SparseAndDenseFindWhatWasSet) {

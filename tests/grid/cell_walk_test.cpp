@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/base/affine.h"
 #include "woodcock/base/random.h"
+#include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 class CellWalks : public ::testing::Test {

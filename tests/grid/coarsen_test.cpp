@@ -6,6 +6,10 @@
 #include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 const std::array<float, 3> haze{0.25f, 0.125f, 0.5f};

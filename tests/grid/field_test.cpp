@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/random.h"
 #include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/proof/support/statistics.h"
-#include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 const std::array<float, 3> zero{}, haze{0.25f, 0.125f, 0.5f};

@@ -9,15 +9,20 @@
 #include "tests/medium/media.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/plain_grid.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/grid/majorants.h"
 #include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/medium/optical_depth.h"
+#include "woodcock/proof/support/plain_grid.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 constexpr Storage fixedStorages[] = {Storage::Fixed16, Storage::Fixed8};

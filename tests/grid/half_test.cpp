@@ -8,6 +8,9 @@
 #include <vector>
 
 namespace woodcock::test {
+
+using namespace grid;
+
 namespace {
 
 /// All finite halves from 0 upwards, by their bits.

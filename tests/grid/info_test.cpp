@@ -9,6 +9,9 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 using Json = nlohmann::json;

@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/base/random.h"
 #include "woodcock/grid/block_ranges.h"
+#include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 const std::array<float, 3> haze{0.25f, 0.125f, 0.5f};

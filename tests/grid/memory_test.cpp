@@ -2,12 +2,17 @@
 // A field is no larger than the tree that it was read from.
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/oracles/vdb_values.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/proof/oracles/vdb_values.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace oracle;
+using namespace proof;
+
 namespace {
 
 void expectFrugal(const std::filesystem::path& file, const std::string& what) {

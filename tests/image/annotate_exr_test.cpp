@@ -8,6 +8,10 @@
 #include "woodcock/proof/support/read_back.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 TEST(AnnotateExr, KeepsPixelsAndAddsAttributes) {

@@ -114,12 +114,12 @@ protected:
     ConfigWithTables() {
         std::filesystem::create_directory(dir_ / "tables");
         // Doubles below 0.5, white above.
-        test::writeText(dir_ / "tables/filmic.spi1d",
-                        "Version 1\nFrom 0 1\nLength 3\nComponents 1\n{\n0\n1\n1\n}\n");
+        proof::writeText(dir_ / "tables/filmic.spi1d",
+                         "Version 1\nFrom 0 1\nLength 3\nComponents 1\n{\n0\n1\n1\n}\n");
     }
 
     std::filesystem::path write(const std::string& version, const std::string& extraView = "") {
-        test::writeText(
+        proof::writeText(
             dir_ / "config.ocio",
             fmt::format(R"(ocio_profile_version: {}
 
@@ -169,7 +169,7 @@ looks:
     }
 
     const test::EnvironmentVariable none_{"OCIO", std::nullopt};
-    const test::TempDir dir_;
+    const proof::TempDir dir_;
 };
 
 TEST_F(ConfigWithTables, FindsItsFilesAndLooks) {
@@ -216,7 +216,7 @@ TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
               "cannot read the OpenColorIO config '/nowhere/config.ocio': there is no such file");
     EXPECT_NE(message(write("3.0")).find("is of version 3.0; this build's OpenColorIO"),
               std::string::npos);
-    test::writeText(dir_ / "no.ocio", "ocio_profile_version: 2\nroles: [\n");
+    proof::writeText(dir_ / "no.ocio", "ocio_profile_version: 2\nroles: [\n");
     EXPECT_NE(message(dir_ / "no.ocio").find("no.ocio' cannot be used: "), std::string::npos);
 
     const test::EnvironmentVariable variable("OCIO", "/nowhere/config.ocio");
@@ -241,17 +241,17 @@ class HostileConfig : public testing::Test {
 protected:
     std::string refusal(const std::string& spaces, const std::string& looks = "",
                         const std::string& views = "") const {
-        test::writeText(dir_ / "c.ocio",
-                        "ocio_profile_version: 2\nenvironment: {}\n"
-                        "search_path: .\nroles: {default: lin, scene_linear: lin}\n"
-                        "file_rules:\n  - !<Rule> {name: Default, colorspace: lin}\n"
-                        "displays:\n  sRGB:\n    - !<View> {name: A, colorspace: "
-                        "lin}\n" +
-                            views + "looks:\n" + looks +
-                            "  - !<Look> {name: plain, process_space: lin}\n"
-                            "colorspaces:\n  - !<ColorSpace> {name: lin}\n"
-                            "  - !<ColorSpace> {name: log}\n" +
-                            spaces);
+        proof::writeText(dir_ / "c.ocio",
+                         "ocio_profile_version: 2\nenvironment: {}\n"
+                         "search_path: .\nroles: {default: lin, scene_linear: lin}\n"
+                         "file_rules:\n  - !<Rule> {name: Default, colorspace: lin}\n"
+                         "displays:\n  sRGB:\n    - !<View> {name: A, colorspace: "
+                         "lin}\n" +
+                             views + "looks:\n" + looks +
+                             "  - !<Look> {name: plain, process_space: lin}\n"
+                             "colorspaces:\n  - !<ColorSpace> {name: lin}\n"
+                             "  - !<ColorSpace> {name: log}\n" +
+                             spaces);
         return test::messageOf(ErrorKind::Input, [&] {
             const ColorConfig config(dir_ / "c.ocio");
             config.displayTransform({});
@@ -262,7 +262,7 @@ protected:
                            transform);
     }
     const test::EnvironmentVariable none_{"OCIO", std::nullopt};
-    const test::TempDir dir_;
+    const proof::TempDir dir_;
 };
 
 TEST_F(HostileConfig, CirclesAreRefused) {
@@ -340,21 +340,21 @@ TEST_F(HostileConfig, TablesAreRegularFiles) {
               std::string::npos);
     EXPECT_NE(refusal(space("t", "!<FileTransform> {src: zero.cube}")).find("it is a device"),
               std::string::npos);
-    test::writeText(dir_ / "a.ctf",
-                    "<ProcessList version=\"2\" id=\"a\"><Reference path=\"pipe.cube\" "
-                    "inBitDepth=\"32f\" outBitDepth=\"32f\"/></ProcessList>");
+    proof::writeText(dir_ / "a.ctf",
+                     "<ProcessList version=\"2\" id=\"a\"><Reference path=\"pipe.cube\" "
+                     "inBitDepth=\"32f\" outBitDepth=\"32f\"/></ProcessList>");
     EXPECT_NE(refusal(space("t", "!<FileTransform> {src: a.ctf}")).find("it is a pipe"),
               std::string::npos);
 }
 
 TEST_F(HostileConfig, NumbersBeyondAllBoundsAreRefusedInWords) {
     for (const std::string version : {"9223372036854775807", "99999999999999999999.5"}) {
-        test::writeText(dir_ / "v.ocio", "ocio_profile_version: " + version + "\n");
+        proof::writeText(dir_ / "v.ocio", "ocio_profile_version: " + version + "\n");
         test::expectError(ErrorKind::Input, "v.ocio' is of version ",
                           [&] { ColorConfig config(dir_ / "v.ocio"); });
     }
     // A million digits took all of the stack.
-    test::writeText(dir_ / "v.ocio", "ocio_profile_version: " + std::string(1000000, '1') + "\n");
+    proof::writeText(dir_ / "v.ocio", "ocio_profile_version: " + std::string(1000000, '1') + "\n");
     test::expectError(ErrorKind::Input, "v.ocio' is of version ",
                       [&] { ColorConfig config(dir_ / "v.ocio"); });
 }

@@ -14,6 +14,10 @@
 #include "woodcock/image/read_layers.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

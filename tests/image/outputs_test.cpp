@@ -8,8 +8,8 @@
 #include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/read_back.h"
 #include "woodcock/base/error.h"
+#include "woodcock/proof/support/read_back.h"
 
 namespace woodcock {
 namespace {
@@ -24,10 +24,10 @@ protected:
         settings_.display = {"sRGB", "Standard", "", 0};
     }
 
-    test::ReadBack write(const char* name) {
+    proof::ReadBack write(const char* name) {
         settings_.files = {dir_ / name};
         Outputs(settings_).write(film_, {});
-        return test::readBack(dir_ / name);
+        return proof::readBack(dir_ / name);
     }
 
     std::string refusal(std::vector<std::filesystem::path> files) {
@@ -36,13 +36,13 @@ protected:
     }
 
     const test::EnvironmentVariable none_{"OCIO", std::nullopt};
-    const test::TempDir dir_;
+    const proof::TempDir dir_;
     Film film_;
     OutputSettings settings_;
 };
 
 TEST_F(OutputsTest, PngIsOpaqueByDefault) {
-    const test::ReadBack image = write("a.png");
+    const proof::ReadBack image = write("a.png");
     EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
     EXPECT_EQ(image.width, 3);
     EXPECT_EQ(image.height, 1);
@@ -53,7 +53,7 @@ TEST_F(OutputsTest, PngIsOpaqueByDefault) {
 
 TEST_F(OutputsTest, PngAlphaIsStraight) {
     settings_.withAlpha = true;
-    const test::ReadBack image = write("a.png");
+    const proof::ReadBack image = write("a.png");
     EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     for (const char* channel : {"R", "G", "B"}) {
         EXPECT_EQ(image.at(0, 0, channel), 118.0f);
@@ -83,7 +83,7 @@ protected:
 };
 
 TEST_F(GlowingOutputs, RaiseAlphaToTheLight) {
-    const test::ReadBack image = write("a.png");
+    const proof::ReadBack image = write("a.png");
     const double colour[2][3]{{1, 0.5, 0.2}, {1, 0.5, 0.25}};  // over alphas of 1 and 0.4
     const char* const names[]{"R", "G", "B"};
     for (int x = 0; x < 2; ++x)
@@ -98,7 +98,7 @@ TEST_F(GlowingOutputs, RaiseAlphaToTheLight) {
 
 TEST_F(GlowingOutputs, CountExposure) {
     settings_.display.exposure = 1;
-    const test::ReadBack image = write("a.png");
+    const proof::ReadBack image = write("a.png");
     EXPECT_EQ(image.at(1, 0, "A"), 204.0f);                // 0.8
     EXPECT_NEAR(image.at(1, 0, "G"), srgbByte(0.5), 0.5);  // as before: twice the light and cover
     settings_.display.exposure = -1;
@@ -117,7 +117,7 @@ TEST_F(GlowingOutputs, SayWhatIsRaised) {
 }
 
 TEST_F(GlowingOutputs, LeaveExrAndWhatDoesNotGlowAsTheyAre) {
-    const test::ReadBack exr = write("a.exr");
+    const proof::ReadBack exr = write("a.exr");
     EXPECT_EQ(exr.at(0, 0, "A"), 0.0f);
     EXPECT_EQ(exr.at(0, 0, "G"), 0.5f);
     EXPECT_EQ(exr.at(1, 0, "A"), 0.1f);
@@ -127,21 +127,21 @@ TEST_F(GlowingOutputs, LeaveExrAndWhatDoesNotGlowAsTheyAre) {
 
 TEST_F(OutputsTest, TiffHas16BitsAndStraightAlpha) {
     settings_.withAlpha = true;
-    const test::ReadBack image = write("a.TIF");
+    const proof::ReadBack image = write("a.TIF");
     EXPECT_EQ(image.types.at("R"), "uint16");
     EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     // Within what the tables of OpenColorIO interpolate.
     for (int x = 0; x < 2; ++x) EXPECT_NEAR(image.at(x, 0, "R"), srgbByte(0.18) / 255, 5e-4) << x;
     EXPECT_NEAR(image.at(1, 0, "A"), 0.5, 1.0 / 65535);
     settings_.withAlpha = false;
-    const test::ReadBack opaque = write("b.tiff");
+    const proof::ReadBack opaque = write("b.tiff");
     EXPECT_EQ(opaque.channels.size(), 3u);
     EXPECT_NEAR(opaque.at(1, 0, "R"), srgbByte(0.09) / 255, 5e-4);
 }
 
 TEST_F(OutputsTest, WebPIsOnBlack) {
     settings_.withAlpha = true;
-    const test::ReadBack image = write("a.webp");
+    const proof::ReadBack image = write("a.webp");
     EXPECT_EQ(image.channels.size(), 3u);
     EXPECT_NEAR(image.at(0, 0, "R"), 118, 4);
     EXPECT_NEAR(image.at(1, 0, "R"), 85, 4);
@@ -150,7 +150,7 @@ TEST_F(OutputsTest, WebPIsOnBlack) {
 
 TEST_F(OutputsTest, JpegIsOnBlack) {
     settings_.withAlpha = true;
-    const test::ReadBack image = write("a.JPG");
+    const proof::ReadBack image = write("a.JPG");
     EXPECT_EQ(image.channels.size(), 3u);
     EXPECT_NEAR(image.at(0, 0, "R"), 118, 2);
     EXPECT_NEAR(image.at(1, 0, "R"), 85, 2);

@@ -7,8 +7,8 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/read_back.h"
 #include "woodcock/base/error.h"
+#include "woodcock/proof/support/read_back.h"
 
 namespace woodcock {
 namespace {
@@ -19,11 +19,11 @@ std::string refusalOf(const std::filesystem::path& file) {
 
 class ReadImage : public testing::Test {
 protected:
-    test::TempDir dir_;
+    proof::TempDir dir_;
 };
 
 TEST_F(ReadImage, KeepsFloatsAndOrder) {
-    test::writeFloats(dir_ / "a.exr", 2, 2, 3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1e-6f, 60000.5f});
+    proof::writeFloats(dir_ / "a.exr", 2, 2, 3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1e-6f, 60000.5f});
     const Image image = readImage(dir_ / "a.exr");
     EXPECT_EQ(image.width, 2);
     EXPECT_EQ(image.height, 2);
@@ -32,17 +32,17 @@ TEST_F(ReadImage, KeepsFloatsAndOrder) {
 }
 
 TEST_F(ReadImage, GreyFillsAllChannels) {
-    test::writeFloats(dir_ / "a.tif", 2, 1, 1, {0.25f, 7});
+    proof::writeFloats(dir_ / "a.tif", 2, 1, 1, {0.25f, 7});
     const Image image = readImage(dir_ / "a.tif");
     EXPECT_EQ(image.at(0, 0), Rgb(0.25f));
     EXPECT_EQ(image.at(1, 0), Rgb(7.0f));
 }
 
 TEST_F(ReadImage, IgnoresAlpha) {
-    test::writeFloats(dir_ / "a.exr", 1, 1, 4, {4, 5, 6, -1});
+    proof::writeFloats(dir_ / "a.exr", 1, 1, 4, {4, 5, 6, -1});
     EXPECT_EQ(readImage(dir_ / "a.exr").at(0, 0), Rgb(4, 5, 6));
     // OpenImageIO takes colours that are multiplied by alpha; PNG holds them as they were before.
-    test::writeFloats(dir_ / "a.png", 1, 1, 4, {0.2f, 0.1f, 0, 0.2f});
+    proof::writeFloats(dir_ / "a.png", 1, 1, 4, {0.2f, 0.1f, 0, 0.2f});
     EXPECT_EQ(readImage(dir_ / "a.png").at(0, 0)[0], 1);
     EXPECT_NEAR(readImage(dir_ / "a.png").at(0, 0)[1], 0.5, 0.01);
 }
@@ -50,8 +50,8 @@ TEST_F(ReadImage, IgnoresAlpha) {
 TEST_F(ReadImage, NamesCountAndPlaceOfWhatIsNoLight) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
-    test::writeFloats(dir_ / "a.exr", 3, 2, 3,
-                      {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, -2.5f, 1, nan, 1, inf});
+    proof::writeFloats(dir_ / "a.exr", 3, 2, 3,
+                       {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, -2.5f, 1, nan, 1, inf});
     const std::string message = refusalOf(dir_ / "a.exr");
     EXPECT_NE(message.find("3 negative, NaN or infinite values"), std::string::npos) << message;
     EXPECT_NE(message.find("-2.5 in green at column 1, row 1"), std::string::npos) << message;
@@ -62,17 +62,17 @@ TEST_F(ReadImage, NamesTheFileThatCannotBeRead) {
               "cannot read image '/nowhere/sky.exr': there is no such file");
     EXPECT_NE(refusalOf(dir_.path()).find("it is a directory"), std::string::npos);
 
-    test::writeText(dir_ / "text.exr", "this is no image");
+    proof::writeText(dir_ / "text.exr", "this is no image");
     EXPECT_NE(refusalOf(dir_ / "text.exr").find("text.exr"), std::string::npos);
 
-    test::writeFloats(dir_ / "whole.exr", 64, 64, 3, std::vector<float>(64 * 64 * 3, 0.3f));
-    const std::string bytes = test::readText(dir_ / "whole.exr");
-    test::writeText(dir_ / "cut.exr", bytes.substr(0, bytes.size() / 2));
+    proof::writeFloats(dir_ / "whole.exr", 64, 64, 3, std::vector<float>(64 * 64 * 3, 0.3f));
+    const std::string bytes = proof::readText(dir_ / "whole.exr");
+    proof::writeText(dir_ / "cut.exr", bytes.substr(0, bytes.size() / 2));
     EXPECT_NE(refusalOf(dir_ / "cut.exr").find("cut.exr"), std::string::npos);
 }
 
 TEST_F(ReadImage, RefusesSizesBeyondTheFile) {
-    test::writeText(dir_ / "vast.ppm", "P6 2000000 2000000 255\n");
+    proof::writeText(dir_ / "vast.ppm", "P6 2000000 2000000 255\n");
     const std::string message = refusalOf(dir_ / "vast.ppm");
     EXPECT_NE(message.find("its header says 2000000 x 2000000 pixels"), std::string::npos)
         << message;

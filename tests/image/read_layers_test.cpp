@@ -9,10 +9,14 @@
 
 #include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "tests/support/write_image.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 std::vector<std::string> names(const LayeredImage& image) {

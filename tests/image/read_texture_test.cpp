@@ -30,23 +30,23 @@ protected:
     }
 
     const ColorConfig config_;
-    test::TempDir dir_;
+    proof::TempDir dir_;
 };
 
 TEST_F(ReadTexture, TakesIntegersForPicturesAndFloatsForLight) {
     const float half = 128 / 255.0f;
-    test::writeFloats(dir_ / "a.png", 1, 1, 3, {half, 1, 0});
+    proof::writeFloats(dir_ / "a.png", 1, 1, 3, {half, 1, 0});
     const Rgb picture = read("a.png", "");
     EXPECT_NEAR(picture[0], linear(double{half}), 2e-5);
     EXPECT_NEAR(picture[1], 1, 2e-5);
     EXPECT_NEAR(picture[2], 0, 2e-5);
-    test::writeFloats(dir_ / "a.exr", 1, 1, 3, {0.5f, 7, 0});
+    proof::writeFloats(dir_ / "a.exr", 1, 1, 3, {0.5f, 7, 0});
     EXPECT_EQ(read("a.exr", ""), Rgb(0.5f, 7, 0));
     EXPECT_NEAR(read("a.exr", "sRGB texture")[0], linear(0.5), 2e-5);
 }
 
 TEST_F(ReadTexture, LeavesNumbersThatAreNoColours) {
-    test::writeFloats(dir_ / "a.png", 1, 1, 1, {0.2f});
+    proof::writeFloats(dir_ / "a.png", 1, 1, 1, {0.2f});
     for (const char* space : {"linear", "raw", "data", "Raw"})
         EXPECT_NEAR(read("a.png", space)[2], 0.2f, 1e-7) << space;
 }
@@ -54,17 +54,17 @@ TEST_F(ReadTexture, LeavesNumbersThatAreNoColours) {
 TEST_F(ReadTexture, TurnsPrimariesAndKeepsWithinTheGamut) {
     // ACEScg's green in Rec.709, with the white of D60 adapted to D65 (Bradford): its red is
     // negative.
-    test::writeFloats(dir_ / "a.exr", 1, 1, 3, {0, 1, 0});
+    proof::writeFloats(dir_ / "a.exr", 1, 1, 3, {0, 1, 0});
     const Rgb green = read("a.exr", "ACEScg");
     EXPECT_EQ(green[0], 0);
     EXPECT_NEAR(green[1], 1.1408, 1e-3);
     EXPECT_EQ(green[2], 0);
-    test::writeFloats(dir_ / "b.exr", 1, 1, 3, {0.5f, 0.5f, 0.5f});
+    proof::writeFloats(dir_ / "b.exr", 1, 1, 3, {0.5f, 0.5f, 0.5f});
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(read("b.exr", "acescg")[c], 0.5, 1e-4);
 }
 
 TEST_F(ReadTexture, NamesWhatItDoesNotKnow) {
-    test::writeFloats(dir_ / "a.png", 1, 1, 3, {0, 1, 0});
+    proof::writeFloats(dir_ / "a.png", 1, 1, 3, {0, 1, 0});
     const std::string message = refusal("a.png", "sRGB - Textur");
     for (const char* part : {"a.png", "'sRGB - Textur' not found", "it has: ", "sRGB texture"})
         EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -72,17 +72,17 @@ TEST_F(ReadTexture, NamesWhatItDoesNotKnow) {
 }
 
 TEST_F(ReadTexture, AsksForTheSpaceWhereTheConfigHasNone) {
-    test::writeText(dir_ / "config.ocio",
-                    "ocio_profile_version: 2\n"
-                    "roles: {default: plain, scene_linear: plain}\n"
-                    "file_rules: [!<Rule> {name: Default, colorspace: default}]\n"
-                    "displays:\n"
-                    "  screen:\n"
-                    "    - !<View> {name: as it is, colorspace: plain}\n"
-                    "colorspaces:\n"
-                    "  - !<ColorSpace> {name: plain}\n");
+    proof::writeText(dir_ / "config.ocio",
+                     "ocio_profile_version: 2\n"
+                     "roles: {default: plain, scene_linear: plain}\n"
+                     "file_rules: [!<Rule> {name: Default, colorspace: default}]\n"
+                     "displays:\n"
+                     "  screen:\n"
+                     "    - !<View> {name: as it is, colorspace: plain}\n"
+                     "colorspaces:\n"
+                     "  - !<ColorSpace> {name: plain}\n");
     const ColorConfig config(dir_ / "config.ocio");
-    test::writeFloats(dir_ / "a.png", 1, 1, 3, {0, 1, 0});
+    proof::writeFloats(dir_ / "a.png", 1, 1, 3, {0, 1, 0});
     test::expectError(ErrorKind::Input, "name the texture's colour space",
                       [&] { readTexture(dir_ / "a.png", "", config); });
     EXPECT_EQ(readTexture(dir_ / "a.png", "plain", config).at(0, 0), Rgb(0, 1, 0));

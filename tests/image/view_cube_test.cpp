@@ -9,6 +9,9 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace image;
+
 namespace {
 
 /// As a page's script interpolates.

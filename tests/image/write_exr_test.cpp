@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/read_back.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/version.h"
+#include "woodcock/proof/support/read_back.h"
 
 namespace woodcock {
 namespace {
@@ -24,18 +24,18 @@ protected:
         film_.add(1, 2, FilmSample{Rgb(3.2f, 0, 0), 0.75f});
     }
 
-    test::ReadBack write(const ExrSettings& settings) {
+    proof::ReadBack write(const ExrSettings& settings) {
         writeExr(dir_ / "a.exr", film_, metadata_, settings);
-        return test::readBack(dir_ / "a.exr");
+        return proof::readBack(dir_ / "a.exr");
     }
 
-    test::TempDir dir_;
+    proof::TempDir dir_;
     Film film_;
     RenderMetadata metadata_{16, 80, 0xfedcba9876543210u, 12.5, "digest", "woodcock render a"};
 };
 
 TEST_F(WriteExr, KeepsFloatsAndTheCropsPlace) {
-    const test::ReadBack image = write({});
+    const proof::ReadBack image = write({});
     EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     EXPECT_EQ(image.x, 1);
     EXPECT_EQ(image.y, 2);
@@ -58,7 +58,7 @@ TEST_F(WriteExr, HalfIsForColourAndFinite) {
     ExrSettings settings;
     settings.half = true;
     settings.layers.depth = settings.layers.error = true;
-    const test::ReadBack image = write(settings);
+    const proof::ReadBack image = write(settings);
     for (const char* channel : {"R", "G", "B", "A"}) EXPECT_EQ(image.types.at(channel), "half");
     for (const char* channel : {"Z", "error.R", "error.G", "error.B"})
         EXPECT_EQ(image.types.at(channel), "float");
@@ -69,7 +69,7 @@ TEST_F(WriteExr, HalfIsForColourAndFinite) {
 
 TEST_F(WriteExr, LayersOnRequest) {
     film_.add(2, 3, DepthSample{Rgb(0.5f, 0.25f, 0.125f), 6, 0.5f});
-    const test::ReadBack image =
+    const proof::ReadBack image =
         write({false, layersFromNames({"samples", "depth", "transmittance", "error"}), {}});
     EXPECT_EQ(image.at(2, 3, "Z"), 12.0f);
     EXPECT_EQ(image.at(1, 3, "Z"), Film::noDepth);
@@ -87,7 +87,7 @@ TEST_F(WriteExr, LayersForDenoisers) {
     film_ = Film(6, 4, {1, 2, 4, 4}, {.surfaces = false, .features = true});
     film_.add(2, 3, DepthSample{Rgb(0.0f), 1, 1, Rgb(0.5f, 0.25f, 0), {0, 0.5f, -1}});
     for (const float v : {1.0f, 3.0f}) film_.add(2, 3, FilmSample{Rgb(v, 2 * v, 0), 1});
-    const test::ReadBack image =
+    const proof::ReadBack image =
         write({true, layersFromNames({"albedo", "normal", "error", "variance"}), {}});
     EXPECT_EQ(image.at(2, 3, "albedo.R"), 0.5f);
     EXPECT_EQ(image.at(2, 3, "albedo.G"), 0.25f);

@@ -6,7 +6,7 @@
 
 namespace woodcock::test {
 
-using Triangle = MeshLight::Triangle;
+using Triangle = light::MeshLight::Triangle;
 using Triangles = std::vector<Triangle>;
 
 inline Vec3d direction(RandomStream& random) {
@@ -73,10 +73,10 @@ inline Triangles moved(Triangles t, double scale, Vec3d by) {
 }
 
 struct Sample {
-    LightSample light;
+    light::LightSample light;
     std::uint32_t triangle = 0;
 };
-inline Sample draw(const MeshLight& light, Vec3d from, RandomStream& random) {
+inline Sample draw(const light::MeshLight& light, Vec3d from, RandomStream& random) {
     Sample s;
     const double u0 = random.uniform();
     s.light = light.sample(from, u0, random.uniform(), s.triangle);

@@ -10,6 +10,9 @@
 #include "woodcock/light/light.h"
 
 namespace woodcock::test {
+
+using namespace light;
+
 namespace {
 
 EnvironmentMap image(int width, int height, const std::function<Rgb(int x, int y)>& pixel) {

@@ -8,6 +8,9 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace light;
+
 namespace {
 
 EnvironmentMap twoPixels() { return {2, 1, {1, 2, 3, 4, 5, 6}}; }

@@ -6,6 +6,9 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace light;
+
 namespace {
 
 TEST(Sun, WithoutAWidthIsADelta) {

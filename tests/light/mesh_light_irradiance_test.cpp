@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/light/emissive_triangles.h"
-#include "woodcock/proof/oracles/surfaces.h"
 #include "woodcock/base/statistics.h"
+#include "woodcock/proof/oracles/surfaces.h"
 
 namespace woodcock::test {
+
+using namespace light;
+
 namespace {
 
 /// The mean over samples of radiance / pdf times f(direction).

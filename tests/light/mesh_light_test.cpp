@@ -9,6 +9,9 @@
 #include "woodcock/light/light_set.h"
 
 namespace woodcock::test {
+
+using namespace light;
+
 namespace {
 
 constexpr double belowOne = 1 - 0x1p-53;

@@ -8,6 +8,11 @@
 #include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 double luminance(Rgb c) { return 0.2126390059 * c[0] + 0.7151686788 * c[1] + 0.0721923154 * c[2]; }

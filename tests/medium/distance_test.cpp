@@ -6,6 +6,10 @@
 #include "woodcock/medium/tracking.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

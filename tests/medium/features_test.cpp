@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/medium/medium.h"
+#include "woodcock/proof/support/plain_grid.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 /// Density falls evenly with the distance from the middle, in voxels of 0.1 x 0.1 x 0.3.

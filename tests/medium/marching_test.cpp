@@ -8,11 +8,15 @@
 #include "tests/medium/media.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_mean.h"
-#include "woodcock/proof/support/statistics.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/medium/similar_medium.h"
+#include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -12,6 +12,11 @@
 #include "woodcock/medium/tracking.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 /// The renderer's medium with nearest look-ups.

@@ -5,6 +5,10 @@
 #include "woodcock/medium/optical_depth.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

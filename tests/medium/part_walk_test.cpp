@@ -6,6 +6,11 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 std::vector<Segment> segments(const MediumPart& part, const TestRay& ray) {

@@ -6,6 +6,9 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+
 namespace {
 
 const std::vector<double> allG{0,   1e-7, -1e-7, 1e-3,  -1e-3,  0.3,    -0.5,

@@ -5,12 +5,17 @@
 #include <cmath>
 
 #include "tests/support/expect_mean.h"
-#include "woodcock/proof/support/plain_medium.h"
-#include "woodcock/proof/support/statistics.h"
 #include "woodcock/medium/refined_walk.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/proof/support/plain_medium.h"
+#include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 /// Zero but for single voxels of value 1 in the middle of a leaf.

@@ -9,6 +9,10 @@
 #include "woodcock/medium/tracking.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 /// Overlapping coloured parts, of which one has an albedo grid and scatters forwards: its

@@ -3,10 +3,14 @@
 
 #include "tests/medium/media.h"
 #include "tests/support/expect_mean.h"
-#include "woodcock/proof/support/statistics.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

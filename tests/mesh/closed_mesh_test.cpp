@@ -9,6 +9,9 @@
 #include "tests/support/expect_error.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+
 namespace {
 
 double total(const ClosedMesh& mesh) {

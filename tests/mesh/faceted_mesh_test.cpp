@@ -9,6 +9,9 @@
 #include "tests/support/mesh_volume.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+
 namespace {
 
 double areaOf(const TriangleMesh& m) {

@@ -4,11 +4,15 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/mesh/surface_mesh.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+using namespace proof;
+
 namespace {
 
 constexpr double radius = 10, band = 3;  // voxels

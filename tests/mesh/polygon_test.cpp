@@ -8,6 +8,9 @@
 #include "woodcock/mesh/polygon.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+
 namespace {
 
 double areaOfTriangles(const std::vector<Vec3d>& corners) {

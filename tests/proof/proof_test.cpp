@@ -9,6 +9,9 @@
 #include "tests/support/paths.h"
 
 namespace woodcock::proof {
+
+using namespace proof;
+
 namespace {
 
 Options quickly() {

@@ -9,6 +9,11 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 /// Fog under a sun fills a fifth of the picture; the rest is exactly black.

@@ -7,6 +7,10 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 const std::string around =

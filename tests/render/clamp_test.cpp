@@ -6,6 +6,11 @@
 #include "woodcock/render/path_tracer.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 const std::string fog = "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\n";

@@ -8,6 +8,15 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace camera;
+using namespace grid;
+using namespace image;
+using namespace light;
+using namespace medium;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 const std::string sky = "[[light]]\ntype = \"environment\"\nradiance = 1\n";

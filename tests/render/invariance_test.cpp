@@ -5,11 +5,18 @@
 
 #include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
+#include "woodcock/base/random.h"
 #include "woodcock/proof/support/render_scene.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace image;
+using namespace medium;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 /// A ragged ball of fog with holes, `factor` times as dense as it would be.

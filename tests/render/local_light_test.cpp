@@ -7,6 +7,11 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace light;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 double henyeyGreensteinByTheBook(double cosine, double g) {

@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/checks/measure.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
+#include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 RenderSettings settingsOf(int size, int samples, double step, bool jackknife = true) {

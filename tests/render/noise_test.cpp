@@ -7,6 +7,11 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 /// A ball of smoke in a box's fog under a sun, before a sky. `height`: of the picture, where the

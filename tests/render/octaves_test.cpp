@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/oracles/closed_forms.h"
-#include "woodcock/proof/oracles/quadrature.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
+#include "woodcock/proof/oracles/closed_forms.h"
+#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace render;
+
 namespace {
 
 const std::string camera = "[camera]\neye = [0, 0.5, 5]\nlook_at = [0, 0, 0]\nfov = 30\n";
@@ -160,7 +164,8 @@ TEST(Octaves, ContradictSimilarity) {
     RenderSettings s;
     s.approximations.octaves = 2;
     s.approximations.similarityAfter = 3;
-    expectError(ErrorKind::Usage, "octaves and similarity exclude each other", [&] { render(scene, s); });
+    expectError(ErrorKind::Usage, "octaves and similarity exclude each other",
+                [&] { render(scene, s); });
 }
 
 }  // namespace

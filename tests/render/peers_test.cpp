@@ -10,6 +10,14 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace light;
+using namespace medium;
+using namespace oracle;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 constexpr int size = 160, block = 8, blocks = size / block;

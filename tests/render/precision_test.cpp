@@ -12,6 +12,11 @@
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace render;
+using namespace scene;
+
 namespace {
 
 const std::string light = "[[light]]\ntype = \"environment\"\nradiance = 1\n";

@@ -10,6 +10,11 @@
 #include "woodcock/scene/quality.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace render;
+using namespace scene;
+
 namespace {
 
 constexpr const char* around = R"(

@@ -10,6 +10,11 @@
 #include "woodcock/base/random.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 constexpr int width = 9, height = 7, pilotSamples = 4;

@@ -9,6 +9,11 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 /// Fog with a lamp in it, a sun and a sky: everything that draws random numbers.
@@ -148,7 +153,7 @@ TEST(Session, StopsAtTheTimeLimit) {
 
 /// Fog of albedo 1 that fills all space: hardly a path ends.
 TEST(Session, StopsAtTheTimeLimitWhatHasNoEnd) {
-    const Scene scene = test::sceneFrom(
+    const Scene scene = proof::sceneFrom(
         "[[volume]]\nbox = { min = [-1e30, -1e30, -1e30], max = [1e30, 1e30, 1e30] }\n"
         "sigma_s = 1\nsigma_a = 0\n"
         "[[light]]\ntype = \"environment\"\n[camera]\neye = [0, 0, 0]\nlook_at = [0, 0, 1]\n");

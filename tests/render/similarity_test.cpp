@@ -11,6 +11,11 @@
 #include "woodcock/render/approximate_media.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 /// Everything that draws random numbers, in overlapping fog; with `surfaces` also over a ground,

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/checks/measure.h"
 #include "tests/support/expect_estimate.h"
-#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/support/read_back.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 const std::vector<double> even{1, 1, 1, 1};

@@ -7,6 +7,10 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 // A sun from straight above, so that a diffuse ground of albedo 0.5 sends out 0.5 x 2 / pi.

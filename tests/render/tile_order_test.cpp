@@ -9,6 +9,10 @@
 #include <set>
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace render;
+
 namespace {
 
 TEST(TileOrder, EveryPixelIsInOneTile) {

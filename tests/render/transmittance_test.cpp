@@ -3,16 +3,23 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/oracles/line_integral.h"
-#include "woodcock/proof/oracles/vdb_values.h"
 #include "tests/support/expect_estimate.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/render_scene.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/medium/optical_depth.h"
+#include "woodcock/proof/oracles/line_integral.h"
+#include "woodcock/proof/oracles/vdb_values.h"
+#include "woodcock/proof/support/render_scene.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace medium;
+using namespace oracle;
+using namespace proof;
+using namespace render;
+
 namespace {
 
 constexpr Box3i box{{-16, -8, 0}, {15, 15, 23}};

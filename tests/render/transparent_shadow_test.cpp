@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/expect_estimate.h"
 #include "woodcock/proof/oracles/adding_doubling.h"
 #include "woodcock/proof/oracles/plates.h"
-#include "tests/support/expect_estimate.h"
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace render;
+
 namespace {
 
 constexpr double sigma = 0.3, irradiance = 2, albedo = 0.5;

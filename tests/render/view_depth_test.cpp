@@ -11,7 +11,7 @@ namespace {
 /// Of a box from -1 to 1 with an even extinction, seen from `eye` towards -z, at 40 x 40 pixels.
 std::optional<ClosedView> viewOf(const std::string& scale, const std::string& eye,
                                  const std::string& more = "") {
-    const Scene scene = test::sceneFrom(
+    const Scene scene = proof::sceneFrom(
         "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nscale = " + scale +
         "\n[[light]]\ntype = \"environment\"\n[camera]\ntype = \"orthographic\"\nheight = 1\n"
         "eye = " +

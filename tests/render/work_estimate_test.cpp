@@ -11,6 +11,10 @@
 #include "woodcock/render/tile_order.h"
 
 namespace woodcock::test {
+
+using namespace image;
+using namespace render;
+
 namespace {
 
 using Costs = std::function<double(int x, int y)>;  // of a path in a tile

@@ -8,13 +8,19 @@
 #include "tests/scene/built_scene.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
+#include "woodcock/medium/optical_depth.h"
 #include "woodcock/proof/support/render_scene.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/medium/optical_depth.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+using namespace render;
+using namespace scene;
+
 namespace {
 
 constexpr double haze = 0.25;

@@ -6,6 +6,13 @@
 #include "woodcock/surface/bsdf.h"
 
 namespace woodcock::test {
+
+using namespace light;
+using namespace mesh;
+using namespace render;
+using namespace scene;
+using namespace surface;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

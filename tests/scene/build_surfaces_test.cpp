@@ -5,8 +5,8 @@
 
 #include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/error.h"
+#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
@@ -14,11 +14,11 @@
 namespace woodcock {
 namespace {
 
+using proof::TempDir;
+using proof::writeText;
 using test::buildLit;
 using test::buildMistake;
 using test::BuiltScene;
-using test::TempDir;
-using test::writeText;
 
 const std::string materials = R"(
 [[material]]

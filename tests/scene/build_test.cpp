@@ -5,22 +5,22 @@
 
 #include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/error.h"
 #include "woodcock/medium/optical_depth.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock {
 namespace {
 
+using proof::GridSpec;
+using proof::TempDir;
+using proof::writeVdb;
 using test::buildLit;
 using test::buildMistake;
 using test::BuiltScene;
-using test::GridSpec;
 using test::lightAndCamera;
-using test::TempDir;
-using test::writeVdb;
 
 constexpr Box3i block{{0, 0, 0}, {7, 7, 7}};
 
@@ -35,7 +35,7 @@ GridSpec even(const std::string& name, double value) {
 }
 GridSpec evenColour(const std::string& name, Vec3d value) {
     GridSpec grid = even(name, 0);
-    grid.type = test::VdbType::Vec3s;
+    grid.type = proof::VdbType::Vec3s;
     grid.value = nullptr;
     grid.colour = [value](Vec3i) { return value; };
     return grid;
@@ -203,7 +203,7 @@ void writeSky(const std::filesystem::path& file) {
             const float rgb[3] = {centre ? 1.0f : 0.0f, 0.0f, top ? 1.0f : 0.0f};
             bytes.append(reinterpret_cast<const char*>(rgb), sizeof rgb);
         }
-    test::writeText(file, bytes);
+    proof::writeText(file, bytes);
 }
 
 TEST(BuildScene, EnvironmentImagesTurnAboutTheUpAxis) {

@@ -22,16 +22,16 @@ look_at = [0, 0, 0]
 )";
 
 struct BuiltScene {
-    Scene scene;
-    LoadedScene loaded;
+    render::Scene scene;
+    scene::LoadedScene loaded;
 };
 
 /// Of a text without light and camera, beside the files of `base`.
 inline BuiltScene buildLit(const std::string& text, const std::filesystem::path& base = ".") {
-    const SceneDescription description =
-        parseSceneText(text + lightAndCamera, "scene.toml", base, {});
-    const LoadedScene loaded = loadScene(description);
-    return {buildScene(description, loaded), loaded};
+    const scene::SceneDescription description =
+        scene::parseSceneText(text + lightAndCamera, "scene.toml", base, {});
+    const scene::LoadedScene loaded = scene::loadScene(description);
+    return {scene::buildScene(description, loaded), loaded};
 }
 
 /// What is said of the input that is wrong; empty where nothing is.

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/medium/optical_depth.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"
@@ -13,9 +13,9 @@
 namespace woodcock {
 namespace {
 
-using test::GridSpec;
-using test::TempDir;
-using test::writeVdb;
+using proof::GridSpec;
+using proof::TempDir;
+using proof::writeVdb;
 
 /// A ball of even density, 24 voxels wide.
 GridSpec ball(const Affine3d& worldFromIndex) {

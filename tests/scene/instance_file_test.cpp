@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/base/error.h"
+#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock {
 namespace {
 
 std::vector<Affine3d> read(const std::string& text) {
-    const test::TempDir dir;
-    test::writeText(dir / "places.txt", text);
+    const proof::TempDir dir;
+    proof::writeText(dir / "places.txt", text);
     return readInstanceFile(dir / "places.txt");
 }
 /// Without the directory.

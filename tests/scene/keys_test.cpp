@@ -10,6 +10,10 @@
 #include "woodcock/scene/write.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 /// Without the places, which tell where a value was written and not what it is.

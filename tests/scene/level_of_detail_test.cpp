@@ -7,14 +7,20 @@
 #include <cmath>
 
 #include "tests/support/expect_estimate.h"
+#include "woodcock/base/random.h"
 #include "woodcock/proof/support/render_scene.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/base/random.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+using namespace render;
+using namespace scene;
+
 namespace {
 
 /// 64 voxels a side, each half a unit wide, from [0, 0, 0] on; nothing outside.

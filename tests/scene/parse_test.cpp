@@ -269,8 +269,8 @@ TEST(Parse, PathsAreRelativeToTheSceneAndExpanded) {
 }
 
 TEST(Parse, ReadsFiles) {
-    const test::TempDir dir;
-    test::writeText(dir / "scene.toml", "[[volume]]\nfile = \"a.vdb\"");
+    const proof::TempDir dir;
+    proof::writeText(dir / "scene.toml", "[[volume]]\nfile = \"a.vdb\"");
     const SceneDescription scene = parseScene(dir / "scene.toml");
     EXPECT_EQ(scene.volumes.at(0).file, dir / "a.vdb");
     EXPECT_EQ(scene.places.at("volume[0].file"), (dir / "scene.toml").string() + ":2:8");

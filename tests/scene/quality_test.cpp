@@ -10,6 +10,11 @@
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 SceneDescription parse(const std::string& render, const std::vector<std::string>& overrides = {},

@@ -3,15 +3,20 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/medium/blackbody.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/medium/blackbody.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/load.h"
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::test {
+
+using namespace medium;
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 GridSpec cube(const std::string& name, double value) {

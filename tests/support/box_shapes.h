@@ -10,8 +10,8 @@ namespace woodcock::test {
 enum class Facing { Outwards, Inwards };
 
 /// The box as 12 triangles of 8 points.
-inline TriangleMesh boxOf(const Box3d& box, Facing facing = Facing::Outwards) {
-    TriangleMesh mesh;
+inline mesh::TriangleMesh boxOf(const Box3d& box, Facing facing = Facing::Outwards) {
+    mesh::TriangleMesh mesh;
     for (int i = 0; i < 8; ++i) mesh.points.push_back(box.corner(i).as<float>());
     constexpr std::array<std::array<std::uint32_t, 4>, 6> sides{
         {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
@@ -25,14 +25,15 @@ inline TriangleMesh boxOf(const Box3d& box, Facing facing = Facing::Outwards) {
 }
 
 /// A cube about `centre`.
-inline TriangleMesh cubeOf(double halfSide, Facing facing = Facing::Outwards, Vec3d centre = {}) {
+inline mesh::TriangleMesh cubeOf(double halfSide, Facing facing = Facing::Outwards,
+                                 Vec3d centre = {}) {
     const Vec3d half = Vec3d{1, 1, 1} * halfSide;
     return boxOf({centre - half, centre + half}, facing);
 }
 
-inline TriangleMesh together(std::initializer_list<TriangleMesh> parts) {
-    TriangleMesh all;
-    for (const TriangleMesh& part : parts) {
+inline mesh::TriangleMesh together(std::initializer_list<mesh::TriangleMesh> parts) {
+    mesh::TriangleMesh all;
+    for (const mesh::TriangleMesh& part : parts) {
         const auto first = static_cast<std::uint32_t>(all.points.size());
         all.points.insert(all.points.end(), part.points.begin(), part.points.end());
         for (const auto& [a, b, c] : part.triangles)

@@ -7,6 +7,10 @@
 
 namespace woodcock::test {
 
+using namespace camera;
+using namespace oracle;
+using namespace proof;
+
 namespace {
 
 using Random = std::mt19937_64;

@@ -8,13 +8,16 @@
 #include <random>
 
 #include "tests/support/paths.h"
-#include "woodcock/grid/vdb/openvdb_trees.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/vdb/check_grid_head.h"
 #include "woodcock/grid/vdb/check_header.h"
 #include "woodcock/grid/vdb/check_tree.h"
+#include "woodcock/grid/vdb/openvdb_trees.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
 
 namespace {
 

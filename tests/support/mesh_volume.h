@@ -6,7 +6,7 @@
 namespace woodcock::test {
 
 /// Of the solid that the triangles enclose, by the divergence theorem.
-inline double volume(const TriangleMesh& mesh) {
+inline double volume(const mesh::TriangleMesh& mesh) {
     double six = 0;
     for (const auto& [a, b, c] : mesh.triangles)
         six += dot(mesh.points[a].as<double>(),

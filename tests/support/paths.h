@@ -7,9 +7,9 @@
 
 namespace woodcock::test {
 
-std::filesystem::path program();    ///< the `woodcock` program of this build
+std::filesystem::path program();            ///< the `woodcock` program of this build
 std::filesystem::path renderEachProgram();  ///< tests/programs/render_each
-std::filesystem::path sourceDir();  ///< top of the source tree
+std::filesystem::path sourceDir();          ///< top of the source tree
 
 /// Reference data that is not part of the repository, beside it; may be missing. A test that needs
 /// it says so: `if (!exists(sharedDir() / "...")) GTEST_SKIP() << "no ...";`

@@ -9,6 +9,10 @@
 
 namespace woodcock::test {
 
+using namespace proof;
+using namespace render;
+using namespace scene;
+
 namespace {
 
 using Json = nlohmann::json;

@@ -8,6 +8,6 @@
 namespace woodcock::test {
 
 /// A scene of `sharedDir()/images`, with the volumes of `sharedDir()/assets`.
-Scene peerScene(const std::string& name);
+render::Scene peerScene(const std::string& name);
 
 }  // namespace woodcock::test

@@ -13,6 +13,8 @@
 
 namespace woodcock::test {
 
+using namespace proof;
+
 namespace {
 
 /// In the child: becomes the program, or ends with 127.

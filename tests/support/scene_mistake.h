@@ -15,7 +15,7 @@ namespace woodcock::test {
 inline std::string mistakeIn(const std::string& text,
                              const std::vector<std::string>& overrides = {}) {
     try {
-        parseSceneText(text, "scene.toml", ".", overrides);
+        scene::parseSceneText(text, "scene.toml", ".", overrides);
     } catch (const Error& e) {
         EXPECT_EQ(e.kind(), ErrorKind::Input);
         return e.what();

@@ -20,14 +20,15 @@ struct ImageFile {
                                                                         std::size_t c) {
         return 0.1 + 0.01 * x + 0.02 * y + 0.1 * static_cast<double>(c);
     };
-    PixelType type = PixelType::Float;
+    image::PixelType type = image::PixelType::Float;
     std::string format = "openexr";
-    Film::Window window{0, 0, 0, 0};  ///< empty: all
-    std::vector<std::pair<std::string, ImageAttribute>> attributes{};
+    image::Film::Window window{0, 0, 0, 0};  ///< empty: all
+    std::vector<std::pair<std::string, image::ImageAttribute>> attributes{};
 };
 
 inline std::filesystem::path writeImage(const std::filesystem::path& file, const ImageFile& image) {
-    ImageHeader header{image.format, image.window, image.width, image.height, {}, image.attributes};
+    image::ImageHeader header{image.format, image.window, image.width,
+                              image.height, {},           image.attributes};
     if (header.window.width() == 0) header.window = {0, 0, image.width, image.height};
     for (const std::string& name : image.channels) header.channels.push_back({name, image.type});
     std::vector<float> pixels;
@@ -35,7 +36,7 @@ inline std::filesystem::path writeImage(const std::filesystem::path& file, const
         for (int x = header.window.x0; x < header.window.x1; ++x)
             for (std::size_t c = 0; c < image.channels.size(); ++c)
                 pixels.push_back(static_cast<float>(image.value(x, y, c)));
-    writeWholeFile(file, encodeImage(header, pixels));
+    writeWholeFile(file, image::encodeImage(header, pixels));
     return file;
 }
 

@@ -41,7 +41,7 @@ struct OracleHit {
 };
 
 /// All primitives against the ray, triangles in world space. Written apart from the library's.
-inline OracleHit bruteForce(const Geometry& geometry, Vec3d o, Vec3d d) {
+inline OracleHit bruteForce(const surface::Geometry& geometry, Vec3d o, Vec3d d) {
     OracleHit best;
     const auto offer = [&](double t, std::uint32_t i, std::uint32_t primitive, Vec3d normal,
                            double b1, double b2) {
@@ -51,7 +51,7 @@ inline OracleHit bruteForce(const Geometry& geometry, Vec3d o, Vec3d d) {
         }
     };
     for (std::uint32_t i = 0; i < geometry.instances().size(); ++i) {
-        const ShapeInstance& instance = geometry.instances()[i];
+        const surface::ShapeInstance& instance = geometry.instances()[i];
         const Affine3d& m = instance.worldFromObject;
         const Affine3d inverse = m.inverse();
         const Vec3d oo = inverse.point(o), od = inverse.vector(d);
@@ -59,13 +59,14 @@ inline OracleHit bruteForce(const Geometry& geometry, Vec3d o, Vec3d d) {
             return Vec3d{dot(inverse.column[0], n), dot(inverse.column[1], n),
                          dot(inverse.column[2], n)};
         };
-        const Shape& shape = geometry.shapes()[instance.shape];
-        if (std::holds_alternative<UnitSphere>(shape)) {
+        const surface::Shape& shape = geometry.shapes()[instance.shape];
+        if (std::holds_alternative<surface::UnitSphere>(shape)) {
             const double a = dot(od, od), b = dot(oo, od), c = dot(oo, oo) - 1;
             const double root = std::sqrt(b * b - a * c);
             for (const double t : {(-b - root) / a, (-b + root) / a})
                 offer(t, i, 0, normalOf(oo + od * t), 0, 0);
-        } else if (const auto* mesh = std::get_if<std::shared_ptr<const SurfaceMesh>>(&shape)) {
+        } else if (const auto* mesh =
+                       std::get_if<std::shared_ptr<const mesh::SurfaceMesh>>(&shape)) {
             for (std::uint32_t p = 0; p < (*mesh)->mesh.triangles.size(); ++p) {
                 const auto& t = (*mesh)->mesh.triangles[p];
                 const auto corner = [&](std::size_t k) {
@@ -84,7 +85,7 @@ inline OracleHit bruteForce(const Geometry& geometry, Vec3d o, Vec3d d) {
         } else {
             const double t = -oo.y / od.y;
             const Vec3d p = oo + od * t;
-            const bool disk = std::holds_alternative<UnitDisk>(shape);
+            const bool disk = std::holds_alternative<surface::UnitDisk>(shape);
             if (!disk || p.x * p.x + p.z * p.z <= 1) offer(t, i, 0, normalOf({0, 1, 0}), 0, 0);
         }
     }

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/surface/one_bsdf.h"
 #include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/proof/support/statistics.h"
-#include "tests/surface/one_bsdf.h"
 #include "woodcock/surface/fresnel.h"
 
 namespace woodcock {
@@ -226,7 +226,7 @@ void expectSampling(const Bsdf& bsdf, Vec3d out, Side side, Vec3d axis, double w
         for (int c = 0; c < 3; ++c)
             ASSERT_NEAR(double{s.weight[c]} * s.pdf, double{value.value[c]}, 1e-5 * s.pdf) << what;
     }
-    EXPECT_GT(test::chiSquareProbability(counts, expected), test::leastProbability) << what;
+    EXPECT_GT(proof::chiSquareProbability(counts, expected), proof::leastProbability) << what;
 }
 
 /// Even cells for what is as rough as can be, whose rows end at the horizon; else as narrow as the

@@ -5,6 +5,10 @@
 #include "woodcock/surface/geometry.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+using namespace surface;
+
 namespace {
 
 using Instances = std::vector<std::uint32_t>;

@@ -7,6 +7,10 @@
 #include "woodcock/surface/geometry.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+using namespace surface;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -9,6 +9,10 @@
 #include "tests/surface/brute_force_rays.h"
 
 namespace woodcock::test {
+
+using namespace mesh;
+using namespace surface;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

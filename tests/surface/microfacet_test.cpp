@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/statistics.h"
 #include "woodcock/base/random.h"
+#include "woodcock/proof/support/statistics.h"
 
 namespace woodcock {
 namespace {
@@ -44,7 +44,7 @@ TEST(Ggx, VisibleFacetsFillTheirSurface) {
         for (const double cosine : {1.0, 0.7, 0.1, 1e-3}) {
             const Vec3d out = at(cosine, 1);
             // In the angle's tangent over alpha, mapped to [0, 1), and by midpoints around.
-            const double sum = test::integrate(0, 1, 200, [&](double x) {
+            const double sum = proof::integrate(0, 1, 200, [&](double x) {
                 const double tangent = alpha * x / (1 - x),
                              z = 1 / std::sqrt(1 + tangent * tangent);
                 const double slope = alpha / ((1 - x) * (1 - x));
@@ -98,7 +98,7 @@ TEST(Ggx, SamplesWhatIsVisible) {
                     std::min(columns - 1, static_cast<int>((turn < 0 ? turn + 1 : turn) * columns));
                 ++counts[static_cast<std::size_t>(r * columns + c)];
             }
-            EXPECT_GT(test::chiSquareProbability(counts, expected), test::leastProbability)
+            EXPECT_GT(proof::chiSquareProbability(counts, expected), proof::leastProbability)
                 << alpha << " " << cosine;
         }
 }

@@ -10,22 +10,25 @@
 namespace woodcock::test {
 
 /// A point whose normal is +z.
-inline BsdfPoint flatPoint(double iorOutside = 1, double iorInside = 1) {
+inline surface::BsdfPoint flatPoint(double iorOutside = 1, double iorInside = 1) {
     return {{0, 0, 1}, {0, 0, 1}, 0, 0, iorOutside, iorInside};
 }
 
-inline Bsdf bsdfOf(const Material& material, const BsdfPoint& point = flatPoint()) {
-    return Bsdf(std::vector<Material>{material}, 0, point);
+inline surface::Bsdf bsdfOf(const surface::Material& material,
+                            const surface::BsdfPoint& point = flatPoint()) {
+    return surface::Bsdf(std::vector<surface::Material>{material}, 0, point);
 }
 
-inline Material diffuse(float albedo) { return DiffuseMaterial{Rgb(albedo)}; }
-inline Material whiteMetal(double roughness) {
-    ConductorMaterial metal;
+inline surface::Material diffuse(float albedo) { return surface::DiffuseMaterial{Rgb(albedo)}; }
+inline surface::Material whiteMetal(double roughness) {
+    surface::ConductorMaterial metal;
     metal.fresnelColour = Rgb(1.0f);
     metal.roughness = roughness;
     return metal;
 }
-inline Material glass(double roughness) { return DielectricMaterial{1.5, roughness}; }
+inline surface::Material glass(double roughness) {
+    return surface::DielectricMaterial{1.5, roughness};
+}
 
 /// A unit vector at this cosine to +z.
 inline Vec3d at(double cosine, double phi) {

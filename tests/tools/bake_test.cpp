@@ -17,6 +17,12 @@
 #include "woodcock/image/read_image.h"
 
 namespace woodcock::test {
+
+using namespace bake;
+using namespace grid;
+using namespace image;
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -14,6 +14,10 @@
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 namespace fs = std::filesystem;

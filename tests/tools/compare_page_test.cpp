@@ -9,6 +9,9 @@
 #include "tests/support/write_image.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 double reference(int x, int y, std::size_t channel) {

@@ -15,6 +15,9 @@
 #include "tests/support/write_image.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

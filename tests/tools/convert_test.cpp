@@ -8,14 +8,19 @@
 #include <tuple>
 
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/mesh/triangle_mesh.h"
+#include "woodcock/proof/support/read_back.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace mesh;
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

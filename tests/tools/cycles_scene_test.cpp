@@ -6,13 +6,17 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/expect_error.h"
+#include "tests/tools/fog_scene.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "tests/tools/fog_scene.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 /// What the scene for Cycles is made of.

@@ -8,14 +8,19 @@
 
 #include "tests/support/environment_variable.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "tests/tools/fog_scene.h"
 #include "woodcock/camera/camera.h"
+#include "woodcock/proof/support/read_back.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace camera;
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -11,6 +11,9 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -15,6 +15,9 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 const std::vector<std::string> commands{"render",  "bake",  "convert", "info",

@@ -5,12 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/read_back.h"
 #include "tests/support/run_program.h"
+#include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace scene;
+
 namespace {
 
 namespace fs = std::filesystem;

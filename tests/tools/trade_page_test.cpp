@@ -10,6 +10,10 @@
 #include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace trade;
+
 namespace {
 
 using nlohmann::json;

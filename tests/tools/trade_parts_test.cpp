@@ -8,6 +8,9 @@
 #include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 using nlohmann::json;

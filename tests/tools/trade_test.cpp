@@ -10,6 +10,9 @@
 #include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -8,10 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "tools/verify/report.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace tool;
+
 namespace {
 
 namespace fs = std::filesystem;

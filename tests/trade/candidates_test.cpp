@@ -8,6 +8,11 @@
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace scene;
+using namespace trade;
+
 namespace {
 
 const std::string fog = R"(

@@ -11,6 +11,9 @@
 #include "woodcock/base/vec.h"
 
 namespace woodcock::test {
+
+using namespace trade;
+
 namespace {
 
 /// By Box and Muller.

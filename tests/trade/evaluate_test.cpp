@@ -8,6 +8,9 @@
 #include "tests/support/expect_error.h"
 
 namespace woodcock::test {
+
+using namespace trade;
+
 namespace {
 
 constexpr PictureSize size{20, 10};

@@ -8,6 +8,11 @@
 #include "woodcock/proof/support/render_scene.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+using namespace render;
+using namespace trade;
+
 namespace {
 
 constexpr const char* camera = R"(

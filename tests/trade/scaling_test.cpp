@@ -10,6 +10,11 @@
 #include "woodcock/trade/scaling_runs.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+using namespace trade;
+
 namespace {
 
 const ScalingCloud& cloudOf(int side) {

@@ -49,17 +49,17 @@ struct BakeOptions {
 
 std::vector<std::string> presetNames() {
     std::vector<std::string> names;
-    for (const auto& preset : presets()) names.push_back(preset.first);
+    for (const auto& preset : bake::presets()) names.push_back(preset.first);
     return names;
 }
 
 /// A preset by its name, a recipe's file, or a VDB file, whose grids are sampled anew.
-RecipeText findRecipe(const std::string& input) {
-    if (const auto preset = presets().find(input); preset != presets().end())
+bake::RecipeText findRecipe(const std::string& input) {
+    if (const auto preset = bake::presets().find(input); preset != bake::presets().end())
         return {std::string(preset->second), input, ""};
     const fs::path file = input;
-    if (file.extension() == ".toml") return readRecipe(file);
-    if (file.extension() == ".vdb" || file.extension() == ".nvdb") return recipeOfGrids(file);
+    if (file.extension() == ".toml") return bake::readRecipe(file);
+    if (file.extension() == ".vdb" || file.extension() == ".nvdb") return bake::recipeOfGrids(file);
     if (fs::exists(file))
         throw usageError(
             "'{}' is neither a recipe (.toml) nor a volume (.vdb); to convert other "
@@ -70,8 +70,8 @@ RecipeText findRecipe(const std::string& input) {
                      suggestName(input, "presets", names));
 }
 
-std::vector<ParameterSetting> settingsOf(const BakeOptions& options, const BakeFrame& frame) {
-    std::vector<ParameterSetting> settings;
+std::vector<bake::ParameterSetting> settingsOf(const BakeOptions& options, const BakeFrame& frame) {
+    std::vector<bake::ParameterSetting> settings;
     for (const std::string& text : options.settings) {
         const std::string origin = "--set " + text;
         const std::size_t equals = text.find('=');
@@ -91,15 +91,16 @@ std::vector<ParameterSetting> settingsOf(const BakeOptions& options, const BakeF
 }
 
 void printPresets() {
-    for (const auto& [name, text] : presets())
-        print("{:<20} {}\n", name, recipeAbout({std::string(text), name, ""}));
+    for (const auto& [name, text] : bake::presets())
+        print("{:<20} {}\n", name, bake::recipeAbout({std::string(text), name, ""}));
     print("woodcock bake NAME --describe lists a recipe's parameters.\n");
 }
 
-void printParameters(const RecipeText& recipe, const std::vector<ParameterSetting>& settings) {
-    print("{}: {}\n", recipe.name, recipeAbout(recipe));
-    const ParameterSet set = recipeParameters(recipe, settings);
-    for (const Parameter& p : set.all()) {
+void printParameters(const bake::RecipeText& recipe,
+                     const std::vector<bake::ParameterSetting>& settings) {
+    print("{}: {}\n", recipe.name, bake::recipeAbout(recipe));
+    const bake::ParameterSet set = bake::recipeParameters(recipe, settings);
+    for (const bake::Parameter& p : set.all()) {
         const std::string range =
             p.lower ? fmt::format(" [{:g} to {:g}]", *p.lower, *p.upper) : std::string();
         print("  {:<16} {:<10g} {}{}\n", p.name, p.value, p.about, range);
@@ -107,7 +108,7 @@ void printParameters(const RecipeText& recipe, const std::vector<ParameterSettin
 }
 
 /// - is stdout.
-void writeRecipe(const fs::path& file, const RecipeText& text) {
+void writeRecipe(const fs::path& file, const bake::RecipeText& text) {
     if (file == "-") return printData(text.text);
     refuseOverwriting(std::array{file}, std::array{fs::path(text.name)});
     checkWritable(file);
@@ -116,46 +117,46 @@ void writeRecipe(const fs::path& file, const RecipeText& text) {
 }
 
 /// Nothing that is read may be written over.
-void checkFiles(const Recipe& recipe, const BakeOptions& options, const BakeFrame& frame) {
+void checkFiles(const bake::Recipe& recipe, const BakeOptions& options, const BakeFrame& frame) {
     std::vector<fs::path> read = recipe.files;
     read.insert(read.end(), {options.input, options.like});
     std::vector<fs::path> written =
-        bakedFiles(frameFile(options.output, frame), options.levels.value_or(0));
+        bake::bakedFiles(frameFile(options.output, frame), options.levels.value_or(0));
     written.push_back(frameFile(options.preview, frame));
     refuseOverwriting(written, read);
 }
 
-BakeSettings settingsFor(const Recipe& recipe, const BakeOptions& options) {
-    BakeSettings settings;
+bake::BakeSettings settingsFor(const bake::Recipe& recipe, const BakeOptions& options) {
+    bake::BakeSettings settings;
     if (!options.like.empty()) {
-        settings.worldFromIndex = transformOf(options.like, options.likeGrid);
+        settings.worldFromIndex = bake::transformOf(options.like, options.likeGrid);
     } else {
         const Vec3d size = recipe.bounds.size();
         const double longest = std::max({size.x, size.y, size.z});
         const double voxel = options.voxel.value_or(
             (longest > 0 ? longest : 1) / std::max(1, options.resolution.value_or(256) - 1));
-        settings = cubicVoxels(voxel);
+        settings = bake::cubicVoxels(voxel);
         if (!options.voxel)
             spdlog::info("voxels of {:.4g} world units: {} along the recipe's longest side", voxel,
                          options.resolution.value_or(256));
     }
     double bytes = 0;  // of a voxel in all grids, with its share of the tree
-    for (const RecipeOutput& output : recipe.outputs) bytes += 4.2 * output.channels;
+    for (const bake::RecipeOutput& output : recipe.outputs) bytes += 4.2 * output.channels;
     settings.mostVoxels =
         options.mostVoxels.value_or(static_cast<double>(memoryLimit()) * 0.8 / bytes);
     settings.threads = options.threads.value_or(0);
     return settings;
 }
 
-std::string describeParameters(const Recipe& recipe) {
+std::string describeParameters(const bake::Recipe& recipe) {
     std::string text;
-    for (const Parameter& p : recipe.parameters.all())
+    for (const bake::Parameter& p : recipe.parameters.all())
         text += fmt::format("{}{}={}", text.empty() ? "" : " ", p.name, tomlNumber(p.value));
     return text;
 }
 
-void refuseBeyondHalf(const Bake& bake) {
-    for (const BakedGridStatistics& grid : bake.statistics)
+void refuseBeyondHalf(const bake::Bake& bake) {
+    for (const bake::BakedGridStatistics& grid : bake.statistics)
         if (std::max(std::abs(grid.least), std::abs(grid.greatest)) > 65504)
             throw inputError(
                 "output '{}' has values up to {:g}, and half precision ends at 65504; bake with "
@@ -165,35 +166,36 @@ void refuseBeyondHalf(const Bake& bake) {
 
 /// Bakes one frame, or what is all there is; the JSON of --json. Nothing where it was interrupted
 /// before anything of this frame was written.
-std::optional<nlohmann::ordered_json> bakeFrame(const RecipeText& text, const BakeOptions& options,
-                                                const BakeFrame& frame, ProgressStyle style) {
-    Recipe recipe = makeRecipe(text, settingsOf(options, frame));
+std::optional<nlohmann::ordered_json> bakeFrame(const bake::RecipeText& text,
+                                                const BakeOptions& options, const BakeFrame& frame,
+                                                ProgressStyle style) {
+    bake::Recipe recipe = bake::makeRecipe(text, settingsOf(options, frame));
     checkFiles(recipe, options, frame);
     if (options.tolerance)
-        for (RecipeOutput& output : recipe.outputs) output.tolerance = *options.tolerance;
+        for (bake::RecipeOutput& output : recipe.outputs) output.tolerance = *options.tolerance;
     const fs::path volume = frameFile(options.output, frame),
                    preview = frameFile(options.preview, frame);
     if (!preview.empty()) checkPreview(preview, recipe);
-    const BakeSettings how = settingsFor(recipe, options);
-    std::optional<Bake> bake;
+    const bake::BakeSettings how = settingsFor(recipe, options);
+    std::optional<bake::Bake> bake;
     {
         WorkProgress progress(style, "bake");
-        bake = bakeRecipe(recipe, how, [&](double done) {
+        bake = bake::bakeRecipe(recipe, how, [&](double done) {
             progress.update(done);
             return !interrupted();
         });
     }
     if (!bake || interrupted()) return std::nullopt;
     reportBake(*bake);
-    VdbWriteOptions writing;
+    grid::VdbWriteOptions writing;
     writing.half = options.half;
-    writing.compression = compressionNamed(options.compression);
+    writing.compression = bake::compressionNamed(options.compression);
     writing.metadata = {{"creator", fmt::format("woodcock {} bake", version())},
                         {"recipe", text.name},
                         {"parameters", describeParameters(recipe)}};
     if (options.half) refuseBeyondHalf(*bake);
     const std::vector<fs::path> files =
-        writeBake(volume, *bake, writing, options.levels.value_or(0));
+        bake::writeBake(volume, *bake, writing, options.levels.value_or(0));
     for (const fs::path& file : files)
         spdlog::info("wrote {} ({:.1f} MB)", file.string(),
                      static_cast<double>(bytesOfFile(file)) / 1e6);
@@ -251,7 +253,7 @@ void run(const BakeOptions& options) {
         throw usageError("name a preset ({}), a recipe (.toml) or a volume (.vdb)",
                          joinNames(presetNames()));
     const std::vector<BakeFrame> frames = bakeFrames(options.frames);
-    const RecipeText text = findRecipe(options.input);
+    const bake::RecipeText text = findRecipe(options.input);
     if (options.describe) return printParameters(text, settingsOf(options, frames.front()));
     if (!options.writeRecipe.empty()) {
         if (options.writeRecipe != "-") prepareFolder(options.writeRecipe, options.mkdir);

@@ -25,11 +25,11 @@ namespace woodcock::tool {
 
 namespace {
 
-Outputs previewOutputs(const std::filesystem::path& picture) {
-    ColorConfig colour("");
-    OutputSettings settings{.colour = std::move(colour)};
+image::Outputs previewOutputs(const std::filesystem::path& picture) {
+    image::ColorConfig colour("");
+    image::OutputSettings settings{.colour = std::move(colour)};
     settings.files = {picture};
-    return Outputs(std::move(settings));
+    return image::Outputs(std::move(settings));
 }
 
 /// A low sun from the left of where the camera is put, and a dark sky, against which both sides of
@@ -47,20 +47,20 @@ type = "environment"
 radiance = [0.07, 0.11, 0.19]
 )";
 
-std::string quoted(const GridListing& grid) { return tomlText(grid.uniqueName); }
+std::string quoted(const grid::GridListing& grid) { return tomlText(grid.uniqueName); }
 
 /// The largest value that was baked.
-double greatestOf(const Bake& bake, const GridListing& grid) {
-    for (const BakedGridStatistics& statistics : bake.statistics)
+double greatestOf(const bake::Bake& bake, const grid::GridListing& grid) {
+    for (const bake::BakedGridStatistics& statistics : bake.statistics)
         if (statistics.name == grid.name) return statistics.greatest;
     return 0;
 }
 
 /// Fire, whose brightest voxels shine some times brighter than lit smoke through their own depth.
-std::string fireLines(const VdbFile& file, const Bake& bake, double length) {
+std::string fireLines(const grid::VdbFile& file, const bake::Bake& bake, double length) {
     constexpr double hot = 2000, radiance = 2, depths = 20;  // kelvins; depths across the whole
-    if (hasRole(file, GridRole::Temperature)) {
-        const GridListing grid = findGrid(file, GridRole::Temperature).grid;
+    if (grid::hasRole(file, grid::GridRole::Temperature)) {
+        const grid::GridListing grid = grid::findGrid(file, grid::GridRole::Temperature).grid;
         const double greatest = greatestOf(bake, grid);
         if (!(greatest > 0)) return "";
         const double kelvins = greatest > 100 ? 1 : hot / greatest;
@@ -69,8 +69,8 @@ std::string fireLines(const VdbFile& file, const Bake& bake, double length) {
                            quoted(grid), tomlNumber(kelvins),
                            tomlNumber(radiance * depths / length / emitted));
     }
-    if (hasRole(file, GridRole::Emission)) {
-        const GridListing grid = findGrid(file, GridRole::Emission).grid;
+    if (grid::hasRole(file, grid::GridRole::Emission)) {
+        const grid::GridListing grid = grid::findGrid(file, grid::GridRole::Emission).grid;
         const double greatest = greatestOf(bake, grid);
         if (!(greatest > 0)) return "";
         const double each = radiance * depths / length / greatest;
@@ -80,12 +80,12 @@ std::string fireLines(const VdbFile& file, const Bake& bake, double length) {
     return "";
 }
 
-std::string sceneOfGrids(const Recipe& recipe, const Bake& bake,
+std::string sceneOfGrids(const bake::Recipe& recipe, const bake::Bake& bake,
                          const std::filesystem::path& volume) {
-    const VdbFile file = listGrids(volume);
+    const grid::VdbFile file = grid::listGrids(volume);
     const auto has = [&](std::string_view name) {
         return std::any_of(file.grids.begin(), file.grids.end(),
-                           [&](const GridListing& grid) { return grid.name == name; });
+                           [&](const grid::GridListing& grid) { return grid.name == name; });
     };
     std::string text = fmt::format("[[volume]]\nfile = {}\n", tomlText(escapePath(volume)));
     if (has("sigma_a") || has("sigma_s")) {
@@ -96,30 +96,30 @@ std::string sceneOfGrids(const Recipe& recipe, const Bake& bake,
         const std::string fire = fireLines(file, bake, std::max({size.x, size.y, size.z}));
         // Bright smoke would hold the fire's light until it comes out white.
         const std::string albedo = fire.empty() ? "albedo = 0.98\n" : "albedo = 0.5\n";
-        text +=
-            hasRole(file, GridRole::Colour)
-                ? fmt::format("albedo_grid = {}\n", quoted(findGrid(file, GridRole::Colour).grid))
-                : albedo;
+        text += grid::hasRole(file, grid::GridRole::Colour)
+                    ? fmt::format("albedo_grid = {}\n",
+                                  quoted(grid::findGrid(file, grid::GridRole::Colour).grid))
+                    : albedo;
         text += "g = 0.4\n" + fire;
     }
     return text + lights;
 }
 
-SceneDescription describe(const Recipe& recipe, const std::string& text,
-                          const PreviewSettings& settings) {
+scene::SceneDescription describe(const bake::Recipe& recipe, const std::string& text,
+                                 const PreviewSettings& settings) {
     const std::filesystem::path directory = std::filesystem::path(recipe.name).parent_path();
     const auto parse = [&] {
-        return parseSceneText(
+        return scene::parseSceneText(
             text, "preview", recipe.preview.empty() ? "" : directory,
             {fmt::format("render.resolution=[{}, {}]", settings.width, settings.height),
              "render.quality=draft"});
     };
-    return recipe.preview.empty() ? parse() : inPlace(recipe.previewPlace, parse);
+    return recipe.preview.empty() ? parse() : scene::inPlace(recipe.previewPlace, parse);
 }
 
-std::string ownScene(const Recipe& recipe, const std::filesystem::path& volume) {
+std::string ownScene(const bake::Recipe& recipe, const std::filesystem::path& volume) {
     std::string text = recipe.preview;
-    const std::string_view name = previewVolume;
+    const std::string_view name = bake::previewVolume;
     const std::string quotedPath = tomlText(escapePath(std::filesystem::absolute(volume)));
     const std::string path = quotedPath.substr(1, quotedPath.size() - 2);  // it stands in quotes
     for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos; at += path.size())
@@ -129,43 +129,44 @@ std::string ownScene(const Recipe& recipe, const std::filesystem::path& volume) 
 
 }  // namespace
 
-std::string previewScene(const Recipe& recipe, const Bake& bake,
+std::string previewScene(const bake::Recipe& recipe, const bake::Bake& bake,
                          const std::filesystem::path& volume) {
     return recipe.preview.empty() ? sceneOfGrids(recipe, bake, volume) : ownScene(recipe, volume);
 }
 
-void checkPreview(const std::filesystem::path& picture, const Recipe& recipe) {
+void checkPreview(const std::filesystem::path& picture, const bake::Recipe& recipe) {
     previewOutputs(picture);
     if (!recipe.preview.empty()) describe(recipe, ownScene(recipe, "preview.vdb"), {});
 }
 
-std::optional<Film> renderPreview(const Recipe& recipe, const Bake& bake,
-                                  const std::filesystem::path& volume,
-                                  const PreviewSettings& previewSettings, ProgressStyle style) {
-    SceneDescription description =
+std::optional<image::Film> renderPreview(const bake::Recipe& recipe, const bake::Bake& bake,
+                                         const std::filesystem::path& volume,
+                                         const PreviewSettings& previewSettings,
+                                         ProgressStyle style) {
+    scene::SceneDescription description =
         describe(recipe, previewScene(recipe, bake, volume), previewSettings);
-    LoadedScene loaded = loadScene(description);
+    scene::LoadedScene loaded = scene::loadScene(description);
     for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
-    for (const std::string& choice : completeScene(description, loaded))
+    for (const std::string& choice : scene::completeScene(description, loaded))
         spdlog::debug("preview: {}", choice);
-    const Scene scene = buildScene(description, std::move(loaded));
+    const render::Scene scene = scene::buildScene(description, std::move(loaded));
 
-    RenderSettings settings = renderSettings(description.render);
+    render::RenderSettings settings = scene::renderSettings(description.render);
     settings.firstSample = 0;
     settings.endSample = 256;
     settings.timeLimit = previewSettings.seconds;
     settings.threads = previewSettings.threads;
-    RenderResult result = renderWithProgress(scene, settings, style);
+    render::RenderResult result = renderWithProgress(scene, settings, style);
     if (result.film.mostSamples() == 0) return std::nullopt;
     spdlog::debug("preview: {} samples a pixel in {:.2f} s", result.endSample, result.seconds);
     return std::move(result.film);
 }
 
-bool writePreview(const Recipe& recipe, const Bake& bake, const std::filesystem::path& volume,
-                  const std::filesystem::path& picture, const PreviewSettings& settings,
-                  ProgressStyle style) {
-    const Outputs outputs = previewOutputs(picture);
-    const std::optional<Film> film = renderPreview(recipe, bake, volume, settings, style);
+bool writePreview(const bake::Recipe& recipe, const bake::Bake& bake,
+                  const std::filesystem::path& volume, const std::filesystem::path& picture,
+                  const PreviewSettings& settings, ProgressStyle style) {
+    const image::Outputs outputs = previewOutputs(picture);
+    const std::optional<image::Film> film = renderPreview(recipe, bake, volume, settings, style);
     if (film) {
         outputs.write(*film, {});
         spdlog::info("wrote {}", picture.string());

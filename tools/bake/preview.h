@@ -20,23 +20,23 @@ struct PreviewSettings {
 
 /// Throws what renderPreview() would throw for the picture's name and the recipe's own scene, at
 /// once.
-void checkPreview(const std::filesystem::path& picture, const Recipe& recipe);
+void checkPreview(const std::filesystem::path& picture, const bake::Recipe& recipe);
 
 /// The scene that shows a baked file: the recipe's own, or one that follows from the file's grids.
 /// `Cd` colours the smoke, `temperature` or `flame` is fire, `sigma_a` and `sigma_s` are taken as
 /// they are.
-std::string previewScene(const Recipe& recipe, const Bake& bake,
+std::string previewScene(const bake::Recipe& recipe, const bake::Bake& bake,
                          const std::filesystem::path& volume);
 
 /// Nothing where it was interrupted before there was anything to see.
-std::optional<Film> renderPreview(const Recipe& recipe, const Bake& bake,
-                                  const std::filesystem::path& volume,
-                                  const PreviewSettings& settings, ProgressStyle style);
+std::optional<image::Film> renderPreview(const bake::Recipe& recipe, const bake::Bake& bake,
+                                         const std::filesystem::path& volume,
+                                         const PreviewSettings& settings, ProgressStyle style);
 
 /// Renders a baked file to a small picture. Returns false when it was interrupted (what was
 /// rendered so far is written).
-bool writePreview(const Recipe& recipe, const Bake& bake, const std::filesystem::path& volume,
-                  const std::filesystem::path& picture, const PreviewSettings& settings,
-                  ProgressStyle style);
+bool writePreview(const bake::Recipe& recipe, const bake::Bake& bake,
+                  const std::filesystem::path& volume, const std::filesystem::path& picture,
+                  const PreviewSettings& settings, ProgressStyle style);
 
 }  // namespace woodcock::tool

@@ -35,7 +35,7 @@ public:
     int width() const { return columns * cellWidth; }
     int height() const { return rows_ * cellHeight; }
 
-    void put(int index, const Film& film) {
+    void put(int index, const image::Film& film) {
         const int left = index % columns * cellWidth, top = index / columns * cellHeight;
         for (int y = 0; y < cellHeight; ++y)
             for (int x = 0; x < cellWidth; ++x) {
@@ -48,19 +48,20 @@ public:
 
     std::vector<unsigned char> encoded(const std::filesystem::path& picture) const {
         std::vector<float> rgba = rgba_;
-        ColorConfig("").displayTransform({}).apply(rgba);
+        image::ColorConfig("").displayTransform({}).apply(rgba);
         std::vector<float> rgb;
         for (std::size_t i = 0; i < rgba.size(); i += 4)
             rgb.insert(rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
-        ImageHeader header{imageFormat(picture) == ImageFormat::Jpeg ? "jpeg" : "png",
-                           {0, 0, width(), height()},
-                           width(),
-                           height(),
-                           {},
-                           {{"CompressionQuality", 90}}};
+        image::ImageHeader header{
+            image::imageFormat(picture) == image::ImageFormat::Jpeg ? "jpeg" : "png",
+            {0, 0, width(), height()},
+            width(),
+            height(),
+            {},
+            {{"CompressionQuality", 90}}};
         for (const char* name : {"R", "G", "B"})
-            header.channels.push_back({name, PixelType::UInt8});
-        return encodeImage(header, rgb);
+            header.channels.push_back({name, image::PixelType::UInt8});
+        return image::encodeImage(header, rgb);
     }
 
 private:
@@ -71,7 +72,7 @@ private:
 }  // namespace
 
 void checkSheet(const std::filesystem::path& picture) {
-    if (imageFormat(picture) == ImageFormat::Exr)
+    if (image::imageFormat(picture) == image::ImageFormat::Exr)
         throw usageError("--sheet {}: a sheet is a PNG or JPEG picture", picture.string());
     checkWritable(picture);
 }
@@ -80,25 +81,25 @@ bool writeSheet(const std::filesystem::path& picture, const SheetSettings& setti
                 ProgressStyle style) {
     const ScratchDirectory scratch;
     const std::filesystem::path volume = scratch.path() / "preset.vdb";
-    Sheet sheet(presets().size());
+    Sheet sheet(bake::presets().size());
     WorkProgress progress(style, "sheet");
     std::vector<std::string> names;
-    for (const auto& [name, text] : presets()) {
+    for (const auto& [name, text] : bake::presets()) {
         const auto index = static_cast<int>(names.size());
         names.push_back(name);
-        const Recipe recipe = makeRecipe({std::string(text), name, ""}, {});
+        const bake::Recipe recipe = bake::makeRecipe({std::string(text), name, ""}, {});
         const Vec3d size = recipe.bounds.size();
-        BakeSettings how =
-            cubicVoxels(std::max({size.x, size.y, size.z}) / std::max(1, settings.resolution - 1));
+        bake::BakeSettings how = bake::cubicVoxels(std::max({size.x, size.y, size.z}) /
+                                                   std::max(1, settings.resolution - 1));
         how.threads = settings.threads;
-        const double share = 1.0 / static_cast<double>(presets().size());
-        const std::optional<Bake> bake = bakeRecipe(recipe, how, [&](double done) {
+        const double share = 1.0 / static_cast<double>(bake::presets().size());
+        const std::optional<bake::Bake> bake = bake::bakeRecipe(recipe, how, [&](double done) {
             progress.update(share * (index + 0.3 * done));
             return !interrupted();
         });
         if (!bake) return false;
-        writeBake(volume, *bake, {}, 0);
-        const std::optional<Film> film = renderPreview(
+        bake::writeBake(volume, *bake, {}, 0);
+        const std::optional<image::Film> film = renderPreview(
             recipe, *bake, volume, {cellWidth, cellHeight, cellSeconds, settings.threads},
             ProgressStyle::None);
         if (!film || interrupted()) return false;

@@ -11,9 +11,9 @@
 
 namespace woodcock::tool {
 
-void reportBake(const Bake& bake) {
+void reportBake(const bake::Bake& bake) {
     constexpr const char* sides[]{"-x", "+x", "-y", "+y", "-z", "+z"};
-    for (const BakedGridStatistics& grid : bake.statistics) {
+    for (const bake::BakedGridStatistics& grid : bake.statistics) {
         spdlog::info(
             "{}: {} active voxels ({:.2g} % of the box) in {} leaves and {} tiles, {}, values {:g} "
             "to {:g}",
@@ -37,20 +37,21 @@ void reportBake(const Bake& bake) {
                  static_cast<double>(bake.evaluatedVoxels) / seconds / 1e6, bake.boxVoxels);
 }
 
-nlohmann::ordered_json bakeJson(const Recipe& recipe, const Bake& bake, const BakeFrame& frame,
+nlohmann::ordered_json bakeJson(const bake::Recipe& recipe, const bake::Bake& bake,
+                                const BakeFrame& frame,
                                 const std::vector<std::filesystem::path>& files) {
     using Json = nlohmann::ordered_json;
     Json json = Json::object();
     if (frame.number) json["frame"] = *frame.number;
     json["recipe"] = recipe.name;
-    for (const Parameter& p : recipe.parameters.all()) json["parameters"][p.name] = p.value;
+    for (const bake::Parameter& p : recipe.parameters.all()) json["parameters"][p.name] = p.value;
     for (const std::filesystem::path& file : files) {
         std::error_code unknown;
         const std::uintmax_t bytes = std::filesystem::file_size(file, unknown);
         json["files"].push_back(
             {{"file", file.string()}, {"bytes", unknown ? Json() : Json(bytes)}});
     }
-    for (const BakedGridStatistics& grid : bake.statistics)
+    for (const bake::BakedGridStatistics& grid : bake.statistics)
         json["grids"].push_back({{"name", grid.name},
                                  {"active_voxels", grid.activeVoxels},
                                  {"leaves", grid.leaves},

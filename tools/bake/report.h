@@ -11,10 +11,11 @@
 namespace woodcock::tool {
 
 /// Tells the log what was baked, and warns of what was cut off.
-void reportBake(const Bake& bake);
+void reportBake(const bake::Bake& bake);
 
 /// What --json says of a bake and of the files that it wrote.
-nlohmann::ordered_json bakeJson(const Recipe& recipe, const Bake& bake, const BakeFrame& frame,
+nlohmann::ordered_json bakeJson(const bake::Recipe& recipe, const bake::Bake& bake,
+                                const BakeFrame& frame,
                                 const std::vector<std::filesystem::path>& files);
 
 }  // namespace woodcock::tool

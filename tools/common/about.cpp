@@ -81,7 +81,7 @@ std::string aboutProgram() {
         WOODCOCK_NATIVE_BUILD ? "for one machine's processor (WOODCOCK_NATIVE)"
                               : "for any processor of the architecture",
         compiledFeatures(), std::thread::hardware_concurrency(), machineFeatures(),
-        WOODCOCK_LIBRARIES, imageLibraries());
+        WOODCOCK_LIBRARIES, image::imageLibraries());
 }
 
 }  // namespace woodcock::tool

@@ -44,7 +44,7 @@ void prepareOutput(const std::filesystem::path& file, bool make, const std::stri
     if (file.empty() || file == "-") return;
     checkNoPattern(file, place);
     prepareFolder(file, make, place);
-    inPlace(place, [&] { checkWritable(file); });
+    scene::inPlace(place, [&] { checkWritable(file); });
 }
 
 void prepareReport(const std::filesystem::path& folder, const std::vector<std::string>& names) {

@@ -30,7 +30,7 @@ class RenderProgressReport {
 public:
     explicit RenderProgressReport(ProgressStyle style) : style_(style) {}
 
-    void start(const RenderSettings& settings) {
+    void start(const render::RenderSettings& settings) {
         if (style_ == ProgressStyle::Json)
             printLine({{"event", "start"},
                        {"width", settings.width},
@@ -40,7 +40,7 @@ public:
                        {"seed", settings.seed}});
     }
 
-    void update(const RenderProgress& progress) {
+    void update(const render::RenderProgress& progress) {
         spdlog::trace("render: {:.1f} %, {} samples a pixel, {} left", 100 * progress.fraction,
                       progress.samples, formatDuration(progress.secondsLeft));
         if (style_ == ProgressStyle::Json) {
@@ -60,7 +60,7 @@ public:
         }
     }
 
-    void finish(const RenderResult& result) {
+    void finish(const render::RenderResult& result) {
         if (style_ == ProgressStyle::Json)
             printLine({{"event", "done"},
                        {"reason", stopReasonName(result.reason)},
@@ -85,14 +85,16 @@ ProgressStyle progressStyle(const std::string& name) {
     return ProgressStyle::None;
 }
 
-RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
-                                ProgressStyle style) {
+render::RenderResult renderWithProgress(const render::Scene& scene,
+                                        const render::RenderSettings& settings,
+                                        ProgressStyle style) {
     RenderProgressReport report(style);
     report.start(settings);
-    RenderResult result = render(scene, settings, [&](const RenderProgress& now) {
-        report.update(now);
-        return !interrupted();
-    });
+    render::RenderResult result =
+        render::render(scene, settings, [&](const render::RenderProgress& now) {
+            report.update(now);
+            return !interrupted();
+        });
     report.finish(result);
     return result;
 }
@@ -125,15 +127,15 @@ std::string noiseText(double noise) {
     return std::isfinite(noise) ? fmt::format("noise {:.2f} %", 100 * noise) : "noise unknown";
 }
 
-std::string stopReasonName(StopReason reason) {
+std::string stopReasonName(render::StopReason reason) {
     switch (reason) {
-        case StopReason::Complete:
+        case render::StopReason::Complete:
             return "complete";
-        case StopReason::TimeLimit:
+        case render::StopReason::TimeLimit:
             return "time-limit";
-        case StopReason::NoiseReached:
+        case render::StopReason::NoiseReached:
             return "noise-reached";
-        case StopReason::Interrupted:
+        case render::StopReason::Interrupted:
             return "interrupted";
     }
     return {};

@@ -14,8 +14,9 @@ enum class ProgressStyle { None, Bar, Json };
 ProgressStyle progressStyle(const std::string& name);
 
 /// Renders, shows on stderr how far it is, and stops early where interrupted().
-RenderResult renderWithProgress(const Scene& scene, const RenderSettings& settings,
-                                ProgressStyle style);
+render::RenderResult renderWithProgress(const render::Scene& scene,
+                                        const render::RenderSettings& settings,
+                                        ProgressStyle style);
 
 /// Shows how other work goes on, on stderr, no more often than can be read.
 class WorkProgress {
@@ -38,6 +39,6 @@ private:
 std::string noiseText(double noise);
 
 /// complete, time-limit, noise-reached or interrupted.
-std::string stopReasonName(StopReason reason);
+std::string stopReasonName(render::StopReason reason);
 
 }  // namespace woodcock::tool

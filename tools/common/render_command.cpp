@@ -25,22 +25,22 @@ RenderCommand::RenderCommand(const SceneInput& input, bool namesOutput)
     for (const std::string& set : input.overrides) sets_ += " --set " + shellWord(set);
 }
 
-std::string optionsOf(const Candidate& candidate) {
+std::string optionsOf(const trade::Candidate& candidate) {
     std::string text;
     if (!candidate.quality.empty()) text += " --quality " + candidate.quality;
     for (const std::string& choice : candidate.choices) text += " --set " + shellWord(choice);
     return text;
 }
 
-std::string RenderCommand::of(const Candidate& candidate) const {
+std::string RenderCommand::of(const trade::Candidate& candidate) const {
     return start_ + sets_ + optionsOf(candidate) + end_;
 }
 
-std::string RenderCommand::ofSamples(const Candidate& candidate, double samples) const {
+std::string RenderCommand::ofSamples(const trade::Candidate& candidate, double samples) const {
     return fmt::format("{} --spp {:.0f}", of(candidate), samples);
 }
 
-std::string RenderCommand::ofSeconds(const Candidate& candidate, double seconds) const {
+std::string RenderCommand::ofSeconds(const trade::Candidate& candidate, double seconds) const {
     return fmt::format("{} --spp {} --time-limit {:g}", of(candidate), endlessSamples, seconds);
 }
 

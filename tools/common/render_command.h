@@ -15,7 +15,7 @@ inline constexpr int endlessSamples = 1000000;
 std::string shellWord(const std::string& word);
 
 /// What a candidate adds to a command: " --quality draft --set render.clamp=10".
-std::string optionsOf(const Candidate& candidate);
+std::string optionsOf(const trade::Candidate& candidate);
 
 /// Commands to copy: "woodcock render scene.toml --set ... -o scene.exr".
 class RenderCommand {
@@ -23,11 +23,11 @@ public:
     /// Repeats what `input` says. `namesOutput`: the scene does not, so that -o must.
     RenderCommand(const SceneInput& input, bool namesOutput);
 
-    std::string of(const Candidate& candidate) const;
+    std::string of(const trade::Candidate& candidate) const;
     /// The same, for so many samples per pixel.
-    std::string ofSamples(const Candidate& candidate, double samples) const;
+    std::string ofSamples(const trade::Candidate& candidate, double samples) const;
     /// The same, for so many seconds.
-    std::string ofSeconds(const Candidate& candidate, double seconds) const;
+    std::string ofSeconds(const trade::Candidate& candidate, double seconds) const;
 
 private:
     std::string start_, sets_, end_;

@@ -19,41 +19,44 @@ namespace woodcock::tool {
 
 namespace {
 
-SceneDescription parseWith(const SceneInput& input, const std::vector<std::string>& overrides) {
-    if (isSceneFile(input.files.front())) return parseScene(input.files.front(), overrides);
+scene::SceneDescription parseWith(const SceneInput& input,
+                                  const std::vector<std::string>& overrides) {
+    if (isSceneFile(input.files.front())) return scene::parseScene(input.files.front(), overrides);
     const std::string name = "command line";
-    SceneDescription scene = parseSceneText(defaultSceneText(input.files), name, "", overrides);
+    scene::SceneDescription scene =
+        scene::parseSceneText(scene::defaultSceneText(input.files), name, "", overrides);
     std::erase_if(scene.places, [&](const auto& place) { return place.second.starts_with(name); });
     return scene;
 }
 
 /// The up axis that the camera of a scene suggests.
-UpAxis upOfCamera(const CameraDescription& camera) {
+scene::UpAxis upOfCamera(const scene::CameraDescription& camera) {
     Vec3d up = camera.given.up.value_or(Vec3d{0, 1, 0});
-    if (camera.pose) up = worldFromCamera(*camera.pose).column[1];
-    return std::abs(up.z) > std::abs(up.y) ? UpAxis::Z : UpAxis::Y;
+    if (camera.pose) up = scene::worldFromCamera(*camera.pose).column[1];
+    return std::abs(up.z) > std::abs(up.y) ? scene::UpAxis::Z : scene::UpAxis::Y;
 }
 
 /// What --sun sets in a scene.
-std::vector<std::string> sunOverrides(const SceneDescription& scene,
+std::vector<std::string> sunOverrides(const scene::SceneDescription& scene,
                                       std::pair<double, double> place) {
     std::size_t index = 0;  // of the chosen lights, where there are none
-    const SunDescription* sun = nullptr;
+    const scene::SunDescription* sun = nullptr;
     while (index < scene.lights.size() &&
-           !(sun = std::get_if<SunDescription>(&scene.lights[index].light)))
+           !(sun = std::get_if<scene::SunDescription>(&scene.lights[index].light)))
         ++index;
     if (!scene.lights.empty() && !sun)
         throw usageError(
             "--sun: the scene has no sun to be moved; give it a [[light]] of type = \"sun\"");
     std::vector<std::string> set{fmt::format("light[{}].elevation={}", index, place.first),
                                  fmt::format("light[{}].azimuth={}", index, place.second)};
-    if (sun && !sun->place && upOfCamera(scene.camera) == UpAxis::Z)
+    if (sun && !sun->place && upOfCamera(scene.camera) == scene::UpAxis::Z)
         set.push_back(fmt::format("light[{}].up=z", index));
     return set;
 }
 
-SceneDescription parseAtAnySize(const SceneInput& input, std::vector<std::string> overrides) {
-    SceneDescription scene = parseWith(input, overrides);
+scene::SceneDescription parseAtAnySize(const SceneInput& input,
+                                       std::vector<std::string> overrides) {
+    scene::SceneDescription scene = parseWith(input, overrides);
     if (!input.sun) return scene;
     for (std::string& set : sunOverrides(scene, *input.sun)) overrides.push_back(std::move(set));
     return parseWith(input, overrides);
@@ -84,8 +87,8 @@ CLI::Option* addOverlay(CLI::App& command, bool& overlay) {
 
 // The size goes through the scene file, where cameras depend on it. What it replaces is checked
 // all the same.
-SceneDescription parseInput(const SceneInput& input) {
-    SceneDescription scene = parseAtAnySize(input, input.overrides);
+scene::SceneDescription parseInput(const SceneInput& input) {
+    scene::SceneDescription scene = parseAtAnySize(input, input.overrides);
     if (!input.size) return scene;
     const int width = input.size->width;
     const double shape = double(scene.render.height) / scene.render.width;
@@ -100,16 +103,17 @@ SceneDescription parseInput(const SceneInput& input) {
     return scene;
 }
 
-std::vector<std::filesystem::path> filesRead(const SceneInput& input, SceneDescription scene) {
+std::vector<std::filesystem::path> filesRead(const SceneInput& input,
+                                             scene::SceneDescription scene) {
     std::vector<std::filesystem::path> files = input.files;
-    for (const std::filesystem::path* file : sceneFiles(scene)) files.push_back(*file);
+    for (const std::filesystem::path* file : scene::sceneFiles(scene)) files.push_back(*file);
     files.push_back(scene.ocio);
     return files;
 }
 
 namespace {
 
-void tellOfVelocities(const SceneDescription& scene, const LoadedScene& loaded) {
+void tellOfVelocities(const scene::SceneDescription& scene, const scene::LoadedScene& loaded) {
     std::set<std::filesystem::path> told;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         if (const std::string& grid = loaded.volumes[i].velocities;
@@ -122,11 +126,12 @@ void tellOfVelocities(const SceneDescription& scene, const LoadedScene& loaded) 
 
 }  // namespace
 
-LoadedScene loadAndComplete(SceneDescription& description) {
-    LoadedScene loaded = loadScene(description);
+scene::LoadedScene loadAndComplete(scene::SceneDescription& description) {
+    scene::LoadedScene loaded = scene::loadScene(description);
     for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
-    for (const std::string& choice : completeScene(description, loaded)) spdlog::info("{}", choice);
-    loadChosenImages(description, loaded);
+    for (const std::string& choice : scene::completeScene(description, loaded))
+        spdlog::info("{}", choice);
+    scene::loadChosenImages(description, loaded);
     tellOfVelocities(description, loaded);
     return loaded;
 }

@@ -32,12 +32,13 @@ bool isSceneFile(const std::filesystem::path& file);
 void checkInput(const SceneInput& input);
 
 /// The scene, at the size that is asked for.
-SceneDescription parseInput(const SceneInput& input);
+scene::SceneDescription parseInput(const SceneInput& input);
 
 /// All files that are read for a scene: those that were given, and those that it names.
-std::vector<std::filesystem::path> filesRead(const SceneInput& input, SceneDescription scene);
+std::vector<std::filesystem::path> filesRead(const SceneInput& input,
+                                             scene::SceneDescription scene);
 
 /// Loads what the scene names and fills in what it leaves open; the log tells.
-LoadedScene loadAndComplete(SceneDescription& description);
+scene::LoadedScene loadAndComplete(scene::SceneDescription& description);
 
 }  // namespace woodcock::tool

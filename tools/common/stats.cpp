@@ -17,13 +17,13 @@ std::uint64_t peakMemoryBytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kilobytes
 }
 
-std::string statsText(const RenderResult& result, const RenderSettings& settings,
+std::string statsText(const render::RenderResult& result, const render::RenderSettings& settings,
                       const std::string& sceneDigest, double loadSeconds,
                       const std::vector<std::filesystem::path>& files) {
     std::vector<std::string> names;
     for (const std::filesystem::path& file : files) names.push_back(file.string());
-    const Film::Window crop = result.film.crop();
-    const RenderCounters& counters = result.counters;
+    const image::Film::Window crop = result.film.crop();
+    const render::RenderCounters& counters = result.counters;
     const nlohmann::ordered_json stats{{"version", version()},
                                        {"files", names},
                                        {"scene_digest", sceneDigest},

@@ -14,7 +14,7 @@ namespace woodcock::tool {
 std::uint64_t peakMemoryBytes();
 
 /// The JSON of --stats and --json. `files` are the images that the render wrote.
-std::string statsText(const RenderResult& result, const RenderSettings& settings,
+std::string statsText(const render::RenderResult& result, const render::RenderSettings& settings,
                       const std::string& sceneDigest, double loadSeconds,
                       const std::vector<std::filesystem::path>& files);
 

@@ -24,18 +24,18 @@ constexpr int fewestSeeds = 2;
     endWith(exitInterrupted);
 }
 
-double renderOurs(const Scene& scene, const SceneDescription& description,
+double renderOurs(const render::Scene& scene, const scene::SceneDescription& description,
                   const std::filesystem::path& file, const std::string& commandLine,
                   ProgressStyle style) {
-    OutputSettings outputSettings;
+    image::OutputSettings outputSettings;
     outputSettings.files = {file};
-    outputSettings.layers = layersFromNames({"error"});
-    const Outputs outputs(std::move(outputSettings));
-    const RenderSettings settings = renderSettings(description.render);
-    const RenderResult result = renderWithProgress(scene, settings, style);
-    if (result.reason == StopReason::Interrupted) stop();
+    outputSettings.layers = image::layersFromNames({"error"});
+    const image::Outputs outputs(std::move(outputSettings));
+    const render::RenderSettings settings = scene::renderSettings(description.render);
+    const render::RenderResult result = renderWithProgress(scene, settings, style);
+    if (result.reason == render::StopReason::Interrupted) stop();
     outputs.write(result.film, {0, result.endSample, settings.seed, result.seconds,
-                                sceneDigest(description), commandLine});
+                                scene::sceneDigest(description), commandLine});
     return result.seconds;
 }
 
@@ -52,9 +52,10 @@ std::vector<std::filesystem::path> picturesOf(const std::filesystem::path& direc
     return files;
 }
 
-CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene& loaded,
-                          const BothOptions& o, const std::filesystem::path& file,
-                          const std::string& commandLine, ProgressStyle style) {
+CyclesResult renderTheirs(const scene::SceneDescription& description,
+                          const scene::LoadedScene& loaded, const BothOptions& o,
+                          const std::filesystem::path& file, const std::string& commandLine,
+                          ProgressStyle style) {
     CyclesOptions cycles;
     cycles.settings.mode = o.mode.value_or("");
     cycles.settings.interpolation = o.interpolation.value_or("");
@@ -72,18 +73,20 @@ CyclesResult renderTheirs(const SceneDescription& description, const LoadedScene
 
 }  // namespace
 
-std::vector<PictureSource> renderBoth(const BothOptions& o, const std::filesystem::path& directory,
-                                      const std::string& commandLine, ProgressStyle style) {
+std::vector<compare::PictureSource> renderBoth(const BothOptions& o,
+                                               const std::filesystem::path& directory,
+                                               const std::string& commandLine,
+                                               ProgressStyle style) {
     catchInterrupts();
     checkInput(o.input);
-    SceneDescription description = parseInput(o.input);
+    scene::SceneDescription description = parseInput(o.input);
     description.render.spp = o.spp.value_or(description.render.spp);
     const int seeds = o.seeds.value_or(fewestSeeds);
     refuseOverwriting(picturesOf(directory, seeds), filesRead(o.input, description));
-    const LoadedScene loaded = loadAndComplete(description);
-    const Scene scene = buildScene(description, loaded);
+    const scene::LoadedScene loaded = loadAndComplete(description);
+    const render::Scene scene = scene::buildScene(description, loaded);
 
-    std::vector<PictureSource> sources(2);
+    std::vector<compare::PictureSource> sources(2);
     double ours = 0, theirs = 0;
     CyclesResult last;
     const std::uint64_t firstSeed = description.render.seed;

@@ -23,8 +23,8 @@ struct BothOptions {
 /// Renders the scene by Woodcock (A) and by Blender's Cycles (B), with several seeds each, into
 /// `directory`, and returns the pictures' files; the log tells the times. Throws Error, and
 /// ends the command where it was interrupted.
-std::vector<PictureSource> renderBoth(const BothOptions& options,
-                                      const std::filesystem::path& directory,
-                                      const std::string& commandLine, ProgressStyle style);
+std::vector<compare::PictureSource> renderBoth(const BothOptions& options,
+                                               const std::filesystem::path& directory,
+                                               const std::string& commandLine, ProgressStyle style);
 
 }  // namespace woodcock::tool

@@ -27,14 +27,15 @@ namespace {
 /// A number for a whole image that is 0 where it equals the reference.
 struct Metric {
     std::string name;
-    std::function<double(const ImageComparison&)> value;
+    std::function<double(const compare::ImageComparison&)> value;
 };
 
 /// The largest over channels.
-std::function<double(const ImageComparison&)> worst(double (*of)(const ChannelComparison&)) {
-    return [of](const ImageComparison& image) {
+std::function<double(const compare::ImageComparison&)> worst(
+    double (*of)(const compare::ChannelComparison&)) {
+    return [of](const compare::ImageComparison& image) {
         double most = 0;
-        for (const ChannelComparison& c : image.channels) {
+        for (const compare::ChannelComparison& c : image.channels) {
             const double v = of(c);
             // A ratio to a mean of 0 is beyond any limit.
             most = std::isnan(v) ? std::numeric_limits<double>::infinity() : std::max(most, v);
@@ -44,7 +45,7 @@ std::function<double(const ImageComparison&)> worst(double (*of)(const ChannelCo
 }
 
 const std::vector<Metric>& metrics() {
-    using C = ChannelComparison;
+    using C = compare::ChannelComparison;
     static const std::vector<Metric> all{
         {"bias", worst([](const C& c) { return std::abs(c.bias.value); })},
         {"ratio", worst([](const C& c) {
@@ -56,12 +57,13 @@ const std::vector<Metric>& metrics() {
              const auto& l = c.metrics.largest;
              return l.empty() ? 0 : std::abs(l.front().b - l.front().a);
          })},
-        {"flip", [](const ImageComparison& i) { return i.flip ? i.flip->ldr : 0; }},
-        {"hdr-flip", [](const ImageComparison& i) { return i.flip ? i.flip->hdr : 0; }},
+        {"flip", [](const compare::ImageComparison& i) { return i.flip ? i.flip->ldr : 0; }},
+        {"hdr-flip", [](const compare::ImageComparison& i) { return i.flip ? i.flip->hdr : 0; }},
         {"non-finite", worst([](const C& c) {
              return static_cast<double>(c.metrics.nonFiniteA + c.metrics.nonFiniteB);
          })},
-        {"tiles", [](const ImageComparison& i) { return static_cast<double>(i.differentTiles); }}};
+        {"tiles",
+         [](const compare::ImageComparison& i) { return static_cast<double>(i.differentTiles); }}};
     return all;
 }
 
@@ -90,11 +92,11 @@ Limit parseLimit(const std::string& text) {
 }
 
 /// Says which limits are exceeded.
-bool exceeds(const Comparison& comparison, const std::vector<std::string>& limits) {
+bool exceeds(const compare::Comparison& comparison, const std::vector<std::string>& limits) {
     bool any = false;
     for (const std::string& text : limits) {
         const Limit limit = parseLimit(text);
-        for (const ImageComparison& image : comparison.images) {
+        for (const compare::ImageComparison& image : comparison.images) {
             const std::string& letter = comparison.pictures[image.image].letter;
             const double value = limit.metric ? limit.metric->value(image) : image.differ;
             if (value <= limit.value) continue;
@@ -112,8 +114,8 @@ bool exceeds(const Comparison& comparison, const std::vector<std::string>& limit
 // ---- options
 
 struct CompareOptions {
-    std::vector<PictureSource> sources;
-    CompareSettings settings;
+    std::vector<compare::PictureSource> sources;
+    compare::CompareSettings settings;
     std::vector<std::string> failAbove;  ///< "rmse=0.01", "differ"
     std::filesystem::path report;        ///< a directory; empty: none
     std::filesystem::path ocio;          ///< empty: $OCIO or the shipped one
@@ -123,8 +125,8 @@ struct CompareOptions {
 const std::vector<std::string> reportFiles{"compare.json", "compare.html"};
 
 /// "B=word" to the image of that letter.
-std::pair<PictureSource*, std::string> forImage(std::vector<PictureSource>& sources,
-                                                const char* option, const std::string& text) {
+std::pair<compare::PictureSource*, std::string> forImage(
+    std::vector<compare::PictureSource>& sources, const char* option, const std::string& text) {
     const std::size_t index = text.size() > 2 && text[1] == '=' && text[0] >= 'A'
                                   ? static_cast<std::size_t>(text[0] - 'A')
                                   : sources.size();
@@ -179,7 +181,7 @@ struct CompareWords {
 void refuseOverwritingInputs(const CompareOptions& o) {
     if (o.report.empty()) return;
     std::vector<std::filesystem::path> read{o.ocio}, written;
-    for (const PictureSource& source : o.sources) {
+    for (const compare::PictureSource& source : o.sources) {
         read.push_back(source.file);
         read.insert(read.end(), source.more.begin(), source.more.end());
     }
@@ -191,11 +193,11 @@ void refuseOverwritingInputs(const CompareOptions& o) {
 /// so.
 ExitCode runCompare(const CompareOptions& o) {
     for (const std::string& limit : o.failAbove) parseLimit(limit);
-    const ColorConfig config(o.ocio);
-    LoadedPictures loaded = loadPictures(o.sources, o.settings.resample, config);
+    const image::ColorConfig config(o.ocio);
+    compare::LoadedPictures loaded = compare::loadPictures(o.sources, o.settings.resample, config);
     refuseOverwritingInputs(o);
     prepareReport(o.report, reportFiles);  // images that cannot be compared leave no directory
-    const Comparison comparison = compare(std::move(loaded), o.settings);
+    const compare::Comparison comparison = compare::compare(std::move(loaded), o.settings);
     if (!o.report.empty() && !config.note().empty()) spdlog::warn("{}", config.note());
     for (const std::string& note : comparison.notes) spdlog::warn("{}", note);
     if (o.reports.json)

@@ -12,23 +12,23 @@ namespace woodcock::tool {
 
 /// Where the noise of the tests is known from: "standard errors (R) and the scatter inside tiles
 /// (A)".
-std::string noiseFrom(const ImageComparison& image);
+std::string noiseFrom(const compare::ImageComparison& image);
 
 /// A table of metrics and a verdict for each image.
-std::string compareText(const Comparison& comparison);
+std::string compareText(const compare::Comparison& comparison);
 /// {"version", "images", "comparisons", ...}; numbers that are not finite are null.
-std::string compareJson(const Comparison& comparison);
+std::string compareJson(const compare::Comparison& comparison);
 
 /// A view of the config, for the page to show.
 struct BakedView {
     std::string name;
-    ViewCube cube;
+    image::ViewCube cube;
 };
 /// Of the config's default display, those that this build can show; the plain numbers not among
 /// them.
-std::vector<BakedView> bakeViews(const ColorConfig& config);
+std::vector<BakedView> bakeViews(const image::ColorConfig& config);
 
 /// A page that needs no other file: the images with their pixels' values, plots and tables.
-std::string compareHtml(const Comparison& comparison, const std::vector<BakedView>& views);
+std::string compareHtml(const compare::Comparison& comparison, const std::vector<BakedView>& views);
 
 }  // namespace woodcock::tool

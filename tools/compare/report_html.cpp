@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 /// The planes that are shown: the colour, or else what comes first.
-std::vector<std::size_t> shownPlanes(const Picture& p) {
+std::vector<std::size_t> shownPlanes(const compare::Picture& p) {
     std::vector<std::size_t> shown;
     for (const char* name : {"R", "G", "B"})
         for (std::size_t i = 0; i < p.planes.size(); ++i)
@@ -33,28 +33,28 @@ std::vector<std::size_t> shownPlanes(const Picture& p) {
 }
 
 /// What the page draws, beside what the JSON says.
-Json pixelsJson(const Comparison& all, const std::vector<BakedView>& views) {
-    const Picture& reference = all.pictures.front();
+Json pixelsJson(const compare::Comparison& all, const std::vector<BakedView>& views) {
+    const compare::Picture& reference = all.pictures.front();
     Json names = Json::array(), images = Json::array(), flip = Json::array(), cubes = Json::array(),
          tiles = Json::array();
     const std::vector<std::size_t> shown = shownPlanes(reference);
     for (const std::size_t i : shown) names.push_back(reference.planes[i].name);
-    for (const Picture& p : all.pictures) {
+    for (const compare::Picture& p : all.pictures) {
         std::vector<float> values;
         for (const std::size_t i : shown)
             values.insert(values.end(), p.planes[i].values.begin(), p.planes[i].values.end());
-        images.push_back(packFloats(values));
+        images.push_back(compare::packFloats(values));
     }
-    const Tiles grid(reference.width, reference.height, all.settings.tile);
-    for (const ImageComparison& image : all.images) {
+    const compare::Tiles grid(reference.width, reference.height, all.settings.tile);
+    for (const compare::ImageComparison& image : all.images) {
         std::vector<unsigned char> map;
         if (image.flip)
             for (const float v : image.flip->hdrMap)
                 map.push_back(
                     static_cast<unsigned char>(std::lround(255 * std::clamp(v, 0.0f, 1.0f))));
-        flip.push_back(image.flip ? Json(packBytes(map)) : Json());
+        flip.push_back(image.flip ? Json(compare::packBytes(map)) : Json());
         std::set<std::size_t> different;
-        for (const TileDifference& t : image.tiles) different.insert(t.tile);
+        for (const compare::TileDifference& t : image.tiles) different.insert(t.tile);
         tiles.push_back(different);
     }
     for (const BakedView& view : views)
@@ -62,7 +62,7 @@ Json pixelsJson(const Comparison& all, const std::vector<BakedView>& views) {
                          {"side", view.cube.side},
                          {"low", view.cube.low},
                          {"high", view.cube.high},
-                         {"rgb", packBytes(view.cube.rgb)}});
+                         {"rgb", compare::packBytes(view.cube.rgb)}});
     return {{"channels", names},
             {"images", images},
             {"flip", flip},
@@ -74,14 +74,14 @@ Json pixelsJson(const Comparison& all, const std::vector<BakedView>& views) {
 
 }  // namespace
 
-std::vector<BakedView> bakeViews(const ColorConfig& config) {
+std::vector<BakedView> bakeViews(const image::ColorConfig& config) {
     std::vector<BakedView> baked;
     for (const std::string& name : config.views()) {
         if (name == "Raw") continue;  // the page draws that itself
-        DisplaySettings settings;
+        image::DisplaySettings settings;
         settings.view = name;
         try {
-            baked.push_back({name, bakeView(config.displayTransform(settings))});
+            baked.push_back({name, image::bakeView(config.displayTransform(settings))});
         } catch (const Error&) {
             // A view of a later OpenColorIO: `render --view` says which; the others are shown.
         }
@@ -89,7 +89,8 @@ std::vector<BakedView> bakeViews(const ColorConfig& config) {
     return baked;
 }
 
-std::string compareHtml(const Comparison& comparison, const std::vector<BakedView>& views) {
+std::string compareHtml(const compare::Comparison& comparison,
+                        const std::vector<BakedView>& views) {
     const Json pixels = pixelsJson(comparison, views);
     return makePage(
         {"woodcock compare",

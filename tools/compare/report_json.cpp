@@ -17,7 +17,7 @@ constexpr std::size_t mostTiles = 100;  // of each image: what a reader may look
 
 Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
-Json pictureJson(const Picture& p) {
+Json pictureJson(const compare::Picture& p) {
     Json files = Json::array();
     for (const auto& file : p.files) files.push_back(file.string());
     return {{"letter", p.letter},
@@ -28,10 +28,10 @@ Json pictureJson(const Picture& p) {
             {"errors_from", p.errorsFrom.empty() ? Json() : Json(p.errorsFrom)}};
 }
 
-Json channelJson(const ChannelComparison& c, const Picture& at) {
-    const DifferenceMetrics& m = c.metrics;
+Json channelJson(const compare::ChannelComparison& c, const compare::Picture& at) {
+    const compare::DifferenceMetrics& m = c.metrics;
     Json largest = Json::array();
-    for (const PixelDifference& d : m.largest)
+    for (const compare::PixelDifference& d : m.largest)
         largest.push_back(
             {{"x", at.x0 + d.x}, {"y", at.y0 + d.y}, {"reference", d.a}, {"image", d.b}});
     return {{"name", c.name},
@@ -52,12 +52,13 @@ Json channelJson(const ChannelComparison& c, const Picture& at) {
             {"largest", largest}};
 }
 
-Json imageJson(const ImageComparison& image, const Comparison& all) {
-    const Picture& at = all.pictures.front();
+Json imageJson(const compare::ImageComparison& image, const compare::Comparison& all) {
+    const compare::Picture& at = all.pictures.front();
     Json channels = Json::array(), tiles = Json::array();
-    for (const ChannelComparison& c : image.channels) channels.push_back(channelJson(c, at));
+    for (const compare::ChannelComparison& c : image.channels)
+        channels.push_back(channelJson(c, at));
     for (std::size_t i = 0; i < std::min(mostTiles, image.tiles.size()); ++i) {
-        const TileDifference& t = image.tiles[i];
+        const compare::TileDifference& t = image.tiles[i];
         tiles.push_back({{"channel", image.channels[t.channel].name},
                          {"x0", at.x0 + t.place.x0},
                          {"y0", at.y0 + t.place.y0},
@@ -81,11 +82,12 @@ Json imageJson(const ImageComparison& image, const Comparison& all) {
 
 }  // namespace
 
-std::string compareJson(const Comparison& all) {
+std::string compareJson(const compare::Comparison& all) {
     Json images = Json::array(), comparisons = Json::array();
-    for (const Picture& p : all.pictures) images.push_back(pictureJson(p));
-    for (const ImageComparison& image : all.images) comparisons.push_back(imageJson(image, all));
-    const Picture& reference = all.pictures.front();
+    for (const compare::Picture& p : all.pictures) images.push_back(pictureJson(p));
+    for (const compare::ImageComparison& image : all.images)
+        comparisons.push_back(imageJson(image, all));
+    const compare::Picture& reference = all.pictures.front();
     const Json json{{"version", version()},
                     {"width", reference.width},
                     {"height", reference.height},
@@ -94,7 +96,7 @@ std::string compareJson(const Comparison& all) {
                     {"tile_side", all.settings.tile},
                     {"tiles", all.tiles},
                     {"false_alarm_rate", all.settings.falseAlarms},
-                    {"relmse_epsilon", relMseEpsilon},
+                    {"relmse_epsilon", compare::relMseEpsilon},
                     {"images", images},
                     {"comparisons", comparisons},
                     {"notes", all.notes}};

@@ -11,7 +11,7 @@ namespace woodcock::tool {
 
 namespace {
 
-std::string pictureLine(const Picture& p) {
+std::string pictureLine(const compare::Picture& p) {
     std::vector<std::string> files, facts;
     for (const auto& file : p.files) files.push_back(file.string());
     if (!p.madeBy.empty()) facts.push_back(p.madeBy);
@@ -22,11 +22,12 @@ std::string pictureLine(const Picture& p) {
                        fmt::join(facts, ", "));
 }
 
-std::string channelLine(const ChannelComparison& c, const Picture& at, std::size_t nameWidth) {
-    const DifferenceMetrics& m = c.metrics;
+std::string channelLine(const compare::ChannelComparison& c, const compare::Picture& at,
+                        std::size_t nameWidth) {
+    const compare::DifferenceMetrics& m = c.metrics;
     std::string largest = "none";
     if (!m.largest.empty()) {
-        const PixelDifference& d = m.largest.front();
+        const compare::PixelDifference& d = m.largest.front();
         largest = fmt::format("{:.4g} at {},{}", d.b - d.a, at.x0 + d.x, at.y0 + d.y);
     }
     const double z = c.bias.value == 0 ? 0 : c.bias.value / c.bias.error;
@@ -37,18 +38,20 @@ std::string channelLine(const ChannelComparison& c, const Picture& at, std::size
         m.rmse, m.relMse, m.psnr, largest);
 }
 
-std::string imageText(const ImageComparison& image, const Comparison& all) {
-    const Picture& reference = all.pictures.front();
+std::string imageText(const compare::ImageComparison& image, const compare::Comparison& all) {
+    const compare::Picture& reference = all.pictures.front();
     const std::string& letter = all.pictures[image.image].letter;
     std::size_t width = 7;
-    for (const ChannelComparison& c : image.channels) width = std::max(width, c.name.size());
+    for (const compare::ChannelComparison& c : image.channels)
+        width = std::max(width, c.name.size());
     std::string text = fmt::format(
         "\n{:{}}  {:>10} {:>10} {:>9} {:>8} {:>10} {:>8} {:>7} {:>9} {:>9} {:>6}  {}\n", "channel",
         width, "mean " + reference.letter, "mean " + letter, letter + "/" + reference.letter, "+-",
         "bias", "+-", "z", "RMSE", "relMSE", "PSNR", "largest difference");
-    for (const ChannelComparison& c : image.channels) text += channelLine(c, reference, width);
-    for (const ChannelComparison& c : image.channels)
-        if (const DifferenceMetrics& m = c.metrics; m.nonFiniteA + m.nonFiniteB > 0)
+    for (const compare::ChannelComparison& c : image.channels)
+        text += channelLine(c, reference, width);
+    for (const compare::ChannelComparison& c : image.channels)
+        if (const compare::DifferenceMetrics& m = c.metrics; m.nonFiniteA + m.nonFiniteB > 0)
             text += fmt::format("{}: NaN or infinite: {} in {}, {} in {}\n", c.name, m.nonFiniteA,
                                 reference.letter, m.nonFiniteB, letter);
     if (image.flip)
@@ -58,7 +61,7 @@ std::string imageText(const ImageComparison& image, const Comparison& all) {
                         image.differ ? "differ" : "same within noise", image.differ ? ": " : "",
                         image.reason, image.tests, noiseFrom(image), all.settings.falseAlarms);
     if (!image.tiles.empty()) {
-        const TileDifference& t = image.tiles.front();
+        const compare::TileDifference& t = image.tiles.front();
         text += fmt::format(
             "   worst tile: {} in [{}, {}) x [{}, {}): {:.3g} +- {:.1g}, p = {:.1g}\n",
             image.channels[t.channel].name, reference.x0 + t.place.x0, reference.x0 + t.place.x1,
@@ -70,9 +73,9 @@ std::string imageText(const ImageComparison& image, const Comparison& all) {
 
 }  // namespace
 
-std::string noiseFrom(const ImageComparison& image) {
+std::string noiseFrom(const compare::ImageComparison& image) {
     std::vector<std::string> known, scattered;
-    for (const ChannelComparison& c : image.channels)
+    for (const compare::ChannelComparison& c : image.channels)
         if (c.tested) (c.errorsKnown ? known : scattered).push_back(c.name);
     if (scattered.empty()) return "standard errors";
     if (known.empty()) return "the scatter inside tiles";
@@ -80,12 +83,12 @@ std::string noiseFrom(const ImageComparison& image) {
                        fmt::join(known, ", "), fmt::join(scattered, ", "));
 }
 
-std::string compareText(const Comparison& all) {
-    const Picture& reference = all.pictures.front();
+std::string compareText(const compare::Comparison& all) {
+    const compare::Picture& reference = all.pictures.front();
     std::string text = fmt::format("{} x {} pixels, {} tiles; {} is the reference\n",
                                    reference.width, reference.height, all.tiles, reference.letter);
-    for (const Picture& p : all.pictures) text += pictureLine(p);
-    for (const ImageComparison& image : all.images) text += imageText(image, all);
+    for (const compare::Picture& p : all.pictures) text += pictureLine(p);
+    for (const compare::ImageComparison& image : all.images) text += imageText(image, all);
     return text;
 }
 

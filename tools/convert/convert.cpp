@@ -60,7 +60,7 @@ std::vector<std::int64_t> wholeNumbers(std::string_view text, std::size_t count,
                                        const char* example) {
     std::vector<std::int64_t> whole;
     for (const double value : numbers(text, count, example)) {
-        if (value != std::floor(value) || std::abs(value) > double(mostVoxelsOfSide))
+        if (value != std::floor(value) || std::abs(value) > double(convert::mostVoxelsOfSide))
             throw usageError("'{}' is not {} whole numbers such as {}", text, count, example);
         whole.push_back(static_cast<std::int64_t>(value));
     }
@@ -78,7 +78,7 @@ void ifGiven(const char* option, const std::optional<std::string>& text, Use use
     }
 }
 
-Dims parseDims(const std::string& text) {
+convert::Dims parseDims(const std::string& text) {
     const auto n = wholeNumbers(text, 3, "64,64,32");
     if (n[0] < 1 || n[1] < 1 || n[2] < 1) throw usageError("'{}' has a side below 1", text);
     return {n[0], n[1], n[2]};
@@ -119,7 +119,7 @@ void readSides(const std::string& text, std::optional<double>& one, std::optiona
     each = Vec3d{sides[0], sides[1], sides[2]};
 }
 
-void readValueWords(const ConvertWords& words, ValueOptions& values) {
+void readValueWords(const ConvertWords& words, convert::ValueOptions& values) {
     const auto number = [](double& to) {
         return [&to](const std::string& t) { to = parseNumber(t, -largest, largest); };
     };
@@ -137,14 +137,14 @@ void readValueWords(const ConvertWords& words, ValueOptions& values) {
     values.repair = words.repair;
 }
 
-ConvertOptions readWords(const ConvertWords& words) {
-    ConvertOptions options;
+convert::ConvertOptions readWords(const ConvertWords& words) {
+    convert::ConvertOptions options;
     options.from = words.from;
     options.grid = words.grid;
     options.name = words.name;
     ifGiven("--dims", words.dims, [&](const std::string& t) { options.dims = parseDims(t); });
     ifGiven("--type", words.type,
-            [&](const std::string& t) { options.type = sampleTypeFromName(t); });
+            [&](const std::string& t) { options.type = convert::sampleTypeFromName(t); });
     ifGiven("--channels", words.channels, [&](const std::string& t) {
         options.channels = static_cast<int>(parseCount(t, 1, 1024));
     });
@@ -157,8 +157,9 @@ ConvertOptions readWords(const ConvertWords& words) {
     ifGiven("--channel", words.channel, [&](const std::string& t) {
         options.channel = static_cast<int>(parseCount(t, 0, 1023));
     });
-    ifGiven("--axes", words.axes, [&](const std::string& t) { options.axes = parseAxisOrder(t); });
-    Placement& placement = options.placement;
+    ifGiven("--axes", words.axes,
+            [&](const std::string& t) { options.axes = convert::parseAxisOrder(t); });
+    convert::Placement& placement = options.placement;
     ifGiven("--voxel", words.voxel,
             [&](const std::string& t) { readSides(t, placement.voxel, placement.voxelSides); });
     ifGiven("--size", words.size,
@@ -178,17 +179,18 @@ ConvertOptions readWords(const ConvertWords& words) {
         throw usageError("--voxel and --size both say how large the volume is; give one");
     readValueWords(words, options.values);
     ifGiven("--precision", words.precision, [&](const std::string& t) {
-        options.precision = oneOf<Precision>(t, {{"half", Precision::Half},
-                                                 {"float", Precision::Float},
-                                                 {"double", Precision::Double}});
+        options.precision = oneOf<convert::Precision>(t, {{"half", convert::Precision::Half},
+                                                          {"float", convert::Precision::Float},
+                                                          {"double", convert::Precision::Double}});
     });
     ifGiven("--compression", words.compression, [&](const std::string& t) {
-        options.compression = oneOf<VdbCompression>(t, {{"none", VdbCompression::None},
-                                                        {"zip", VdbCompression::Zip},
-                                                        {"blosc", VdbCompression::Blosc}});
+        options.compression =
+            oneOf<grid::VdbCompression>(t, {{"none", grid::VdbCompression::None},
+                                            {"zip", grid::VdbCompression::Zip},
+                                            {"blosc", grid::VdbCompression::Blosc}});
     });
     ifGiven("--out-type", words.outType,
-            [&](const std::string& t) { options.outputType = sampleTypeFromName(t); });
+            [&](const std::string& t) { options.outputType = convert::sampleTypeFromName(t); });
     ifGiven("--bounds", words.bounds,
             [&](const std::string& t) { options.bounds = parseBounds(t); });
     return options;
@@ -234,7 +236,7 @@ nlohmann::ordered_json resultJson(const ConvertWords& words, const std::vector<s
 void run(const ConvertWords& words) {
     const ProgressStyle style = words.reports.start();
     catchInterrupts();
-    ConvertOptions options = readWords(words);
+    convert::ConvertOptions options = readWords(words);
     Stages bar(style);
     std::vector<std::string> notes, warnings;
     options.info = [&](const std::string& text) {
@@ -263,7 +265,8 @@ void run(const ConvertWords& words) {
             words.files.back().string(), pattern);
     prepareFolder(words.files.back(), words.mkdir);
     const auto start = std::chrono::steady_clock::now();
-    convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(), options);
+    convert::convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(),
+                     options);
     if (!words.reports.json) return;
     bar.clear();
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
@@ -335,7 +338,7 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
     add("Output", "--bounds", words->bounds, "X0,Y0,Z0,X1,Y1,Z1",
         "First and last voxel of a dense file. Without it: the box of the active voxels");
     words->reports.addTo(command, "Print a JSON object about what is written, on stdout");
-    command.footer("Formats:\n" + describeFormats() + "\n" +
+    command.footer("Formats:\n" + convert::describeFormats() + "\n" +
                    examplesText({"woodcock convert teapot.obj teapot.vdb --voxel 0.01",
                                  "woodcock convert slice.####.png scan.vdb --voxel 0.5"}));
     command.callback([words] { run(*words); });

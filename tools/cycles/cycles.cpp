@@ -57,11 +57,11 @@ void run(const Options& options, const std::string& commandLine) {
     const ProgressStyle style = options.reports.start();
     check(options);
     catchInterrupts();
-    SceneDescription scene = parseInput(options.input);
+    scene::SceneDescription scene = parseInput(options.input);
     scene.render.spp = options.spp.value_or(scene.render.spp);
     scene.render.seed = options.seed.value_or(scene.render.seed);
     refuseOverwriting(std::array{options.image, options.blend}, filesRead(options.input, scene));
-    const LoadedScene loaded = loadAndComplete(scene);
+    const scene::LoadedScene loaded = loadAndComplete(scene);
 
     CyclesOptions cycles;
     cycles.settings.mode = options.mode.value_or("");

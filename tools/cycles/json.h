@@ -23,7 +23,7 @@ inline nlohmann::json toJson(const Affine3d& m) {
 
 /// Radiance per unit of length, evenly or times a grid; null where there is none.
 inline nlohmann::json emissionJson(Rgb emission, const std::string& grid = "") {
-    const CyclesColour glow = cyclesColour(emission);
+    const scene::CyclesColour glow = scene::cyclesColour(emission);
     if (!(glow.strength > 0)) return nullptr;
     return {{"strength", glow.strength}, {"colour", toJson(glow.colour)}, {"grid", grid}};
 }
@@ -32,7 +32,7 @@ inline nlohmann::json emissionJson(Rgb emission, const std::string& grid = "") {
 inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters,
                                  Rgb emission = Rgb(0)) {
     if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
-    const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
+    const scene::CyclesMedium medium = scene::cyclesMedium(sigmaA, sigmaS);
     return {{"sigma_a", toJson(medium.sigmaA)},
             {"sigma_s", toJson(medium.sigmaS)},
             {"density", medium.density},

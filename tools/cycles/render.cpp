@@ -71,9 +71,9 @@ void save(const fs::path& made, const fs::path& target) {
     file.commit();
 }
 
-void writeImage(const fs::path& drawn, const SceneDescription& scene, const CyclesOptions& options,
-                const CyclesResult& result) {
-    std::vector<std::pair<std::string, ImageAttribute>> attributes{
+void writeImage(const fs::path& drawn, const scene::SceneDescription& scene,
+                const CyclesOptions& options, const CyclesResult& result) {
+    std::vector<std::pair<std::string, image::ImageAttribute>> attributes{
         {"Software", fmt::format("Blender {} Cycles, by woodcock {}", result.version, version())},
         {"woodcock/version", std::string(version())},
         {"woodcock/renderer", "cycles"},
@@ -82,20 +82,20 @@ void writeImage(const fs::path& drawn, const SceneDescription& scene, const Cycl
         {"woodcock/cyclesInterpolation", result.interpolation},
         {"woodcock/samples", scene.render.spp},
         {"woodcock/seed", fmt::format("{}", scene.render.seed)},
-        {"woodcock/sceneDigest", sceneDigest(scene)},
+        {"woodcock/sceneDigest", scene::sceneDigest(scene)},
         {"woodcock/renderSeconds", static_cast<float>(result.seconds)}};
     if (result.mode == "biased")
         attributes.emplace_back("woodcock/cyclesStepRate",
                                 static_cast<float>(options.settings.stepRate));
     if (!options.commandLine.empty())
         attributes.emplace_back("woodcock/commandLine", options.commandLine);
-    annotateExr(drawn, options.image, attributes);
+    image::annotateExr(drawn, options.image, attributes);
 }
 
 }  // namespace
 
-CyclesResult renderWithCycles(const SceneDescription& scene, const LoadedScene& loaded,
-                              const CyclesOptions& options) {
+CyclesResult renderWithCycles(const scene::SceneDescription& scene,
+                              const scene::LoadedScene& loaded, const CyclesOptions& options) {
     CyclesSettings settings = options.settings;
     settings.draw = !options.image.empty();
     settings.save = !options.blend.empty();

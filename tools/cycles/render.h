@@ -30,7 +30,7 @@ struct CyclesResult {
 /// Draws a complete scene (see completeScene) with Blender's Cycles; the image's header says by
 /// which version, and how. Throws Error: Usage where there is no Blender, Input that names what
 /// this version's Cycles cannot express, Failure with the last lines of a Blender that failed.
-CyclesResult renderWithCycles(const SceneDescription& scene, const LoadedScene& loaded,
-                              const CyclesOptions& options);
+CyclesResult renderWithCycles(const scene::SceneDescription& scene,
+                              const scene::LoadedScene& loaded, const CyclesOptions& options);
 
 }  // namespace woodcock::tool

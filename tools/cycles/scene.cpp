@@ -20,7 +20,8 @@ using nlohmann::json;
 
 class VolumeWriter {
 public:
-    VolumeWriter(const SceneDescription& scene, const LoadedScene& loaded, std::size_t index)
+    VolumeWriter(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
+                 std::size_t index)
         : volume_(scene.volumes[index]),
           loaded_(loaded.volumes[index]),
           places_(scene.places),
@@ -28,9 +29,9 @@ public:
           scatters_(scene.render.maxScatterings != 0) {}
 
     void addTo(json& list) const {
-        if (std::abs(volume_.g) > cyclesLargestG)
+        if (std::abs(volume_.g) > scene::cyclesLargestG)
             throw cyclesRefusal(place("g"), "a g of {}: it clamps g to +-{}", volume_.g,
-                                cyclesLargestG);
+                                scene::cyclesLargestG);
         if (!volume_.inside.empty())
             throw cyclesRefusal(place("inside"), "a volume inside the surface '{}'",
                                 volume_.inside);
@@ -38,7 +39,7 @@ public:
             throw cyclesRefusal(place("repair"),
                                 "a volume that is repaired as it is loaded: it reads the "
                                 "file as it is; save it repaired with woodcock convert --repair");
-        if (!volume_.file.empty() && listGrids(volume_.file).nanoVdb)
+        if (!volume_.file.empty() && grid::listGrids(volume_.file).nanoVdb)
             throw cyclesRefusal(place("file"),
                                 "a file of NanoVDB: Blender reads none; `woodcock convert {} "
                                 "x.vdb` makes a VDB of it",
@@ -53,9 +54,11 @@ public:
     }
 
 private:
-    std::string place(const char* key) const { return findPlace(places_, name_ + "." + key); }
+    std::string place(const char* key) const {
+        return scene::findPlace(places_, name_ + "." + key);
+    }
 
-    json fileJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
+    json fileJson(const scene::LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
         json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
         grid["file"] = std::filesystem::absolute(volume_.file).string();
         grid["matrix"] = toJson(volume_.worldFromObject);
@@ -65,7 +68,7 @@ private:
     }
 
     /// The object among this volume's whose voxels are those of a grid; a new one without any.
-    json& sharing(json& list, std::size_t first, const LoadedField& field) const {
+    json& sharing(json& list, std::size_t first, const scene::LoadedField& field) const {
         for (std::size_t i = first; i < list.size(); ++i)
             if (list[i]["object_from_index"] == toJson(field.objectFromIndex)) return list[i];
         list.push_back(fileJson(field, Rgb(0), Rgb(0)));
@@ -73,7 +76,7 @@ private:
     }
 
     json blackbodyJson() const {
-        const BlackbodyDescription& b = *volume_.blackbody;
+        const scene::BlackbodyDescription& b = *volume_.blackbody;
         if (b.offset != 0)
             throw cyclesRefusal(place("blackbody.offset"),
                                 "an offset of temperatures, {}: it can only multiply them",
@@ -86,14 +89,14 @@ private:
                                 "the background {} of the temperature grid '{}': it would glow "
                                 "there, too",
                                 loaded_.ambient, loaded_.blackbody.grid);
-        const CyclesBlackbody blackbody = cyclesBlackbody(b);
+        const scene::CyclesBlackbody blackbody = scene::cyclesBlackbody(b);
         return {{"grid", loaded_.blackbody.grid},
                 {"temperature", blackbody.temperature},
                 {"intensity", blackbody.intensity},
                 {"tint", toJson(blackbody.tint)}};
     }
 
-    json gridJson(const LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
+    json gridJson(const scene::LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
         for (int c = 0; c < field.field->channels(); ++c)
             if (field.field->background(c) != 0)
                 throw cyclesRefusal(place("file"),
@@ -106,8 +109,8 @@ private:
         return grid;
     }
 
-    void add(json& list, const DensityCoefficients& c) const {
-        const auto [sigmaA, sigmaS] = splitByAlbedo(*c.scale, c.albedo);
+    void add(json& list, const scene::DensityCoefficients& c) const {
+        const auto [sigmaA, sigmaS] = scene::splitByAlbedo(*c.scale, c.albedo);
         json grid = gridJson(loaded_.density, sigmaA, sigmaS);
         if (loaded_.albedo && scatters_) {
             grid["albedo_grid"] = loaded_.albedo.grid;
@@ -116,7 +119,7 @@ private:
         }
         list.push_back(std::move(grid));
     }
-    void add(json& list, const SeparateCoefficients& c) const {
+    void add(json& list, const scene::SeparateCoefficients& c) const {
         const Rgb none(0);
         const bool sameGrid = c.sigmaA && c.sigmaS && loaded_.sigmaA.field == loaded_.sigmaS.field;
         if (sameGrid)
@@ -124,7 +127,7 @@ private:
         if (c.sigmaA) list.push_back(gridJson(loaded_.sigmaA, c.sigmaA->scale, none));
         if (c.sigmaS) list.push_back(gridJson(loaded_.sigmaS, none, c.sigmaS->scale));
     }
-    void add(json& list, const HomogeneousBox& c) const {
+    void add(json& list, const scene::HomogeneousBox& c) const {
         json box = mediumJson(c.sigmaA, c.sigmaS, volume_.g, scatters_,
                               volume_.emission ? volume_.emission->scale : Rgb(0));
         box["box"] = {toJson(c.box.lower), toJson(c.box.upper)};
@@ -132,45 +135,45 @@ private:
         list.push_back(std::move(box));
     }
 
-    const VolumeDescription& volume_;
-    const LoadedVolume& loaded_;
-    const Places& places_;
+    const scene::VolumeDescription& volume_;
+    const scene::LoadedVolume& loaded_;
+    const scene::Places& places_;
     std::string name_;
     bool scatters_;
 };
 
 // ---- lights
 
-json lightJson(const SunDescription& sun, const std::string& place) {
+json lightJson(const scene::SunDescription& sun, const std::string& place) {
     if (sun.visible)
         throw cyclesRefusal(place, "a sun that the camera sees; leave out its 'visible'");
-    const CyclesColour light = cyclesColour(sun.irradiance);
+    const scene::CyclesColour light = scene::cyclesColour(sun.irradiance);
     return {{"type", "sun"},
             {"direction", toJson(normalize(sun.direction))},
             {"strength", light.strength},
             {"colour", toJson(light.colour)},
             {"angle", sun.angularDiameter * pi / 180}};
 }
-json lightJson(const EnvironmentDescription& environment, const std::string&) {
+json lightJson(const scene::EnvironmentDescription& environment, const std::string&) {
     json light{{"type", "environment"},
                {"radiance", toJson(environment.radiance)},
                {"visible", environment.visible},
                {"image", nullptr}};
     if (!environment.image.empty()) {
         light["image"] = std::filesystem::absolute(environment.image).string();
-        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
+        light["image_from_world"] = toJson(scene::cyclesImageFromWorld(environment));
     }
     return light;
 }
-json lightJson(const PointDescription& point, const std::string&) {
-    const CyclesColour light = cyclesPoint(point.intensity);
+json lightJson(const scene::PointDescription& point, const std::string&) {
+    const scene::CyclesColour light = scene::cyclesPoint(point.intensity);
     return {{"type", "point"},
             {"position", toJson(point.position)},
             {"power", light.strength},
             {"colour", toJson(light.colour)}};
 }
-json lightJson(const SphereDescription& sphere, const std::string&) {
-    const CyclesColour light = cyclesColour(sphere.radiance);
+json lightJson(const scene::SphereDescription& sphere, const std::string&) {
+    const scene::CyclesColour light = scene::cyclesColour(sphere.radiance);
     return {{"type", "sphere"},
             {"position", toJson(sphere.position)},
             {"radius", sphere.radius},
@@ -181,11 +184,11 @@ json lightJson(const SphereDescription& sphere, const std::string&) {
 
 // ---- camera and settings
 
-json cameraJson(const SceneDescription& scene) {
-    const CameraDescription& camera = scene.camera;
-    const bool orthographic = camera.kind == CameraDescription::Kind::Orthographic;
+json cameraJson(const scene::SceneDescription& scene) {
+    const scene::CameraDescription& camera = scene.camera;
+    const bool orthographic = camera.kind == scene::CameraDescription::Kind::Orthographic;
     json out{{"type", orthographic ? "orthographic" : "perspective"},
-             {"matrix", toJson(worldFromCamera(*camera.pose))},
+             {"matrix", toJson(scene::worldFromCamera(*camera.pose))},
              {"shift", camera.shift},
              {"clip_start", 1e-6},
              {"clip_end", 1e9}};
@@ -197,18 +200,20 @@ json cameraJson(const SceneDescription& scene) {
 }
 
 /// Cycles bounds diffuse, glossy and transmitted bounces each by itself, or all kinds together.
-json bouncesJson(const SceneDescription& scene) {
-    const RenderDescription& render = scene.render;
+json bouncesJson(const scene::SceneDescription& scene) {
+    const scene::RenderDescription& render = scene.render;
     bool media = !scene.volumes.empty();
-    for (const SurfaceDescription& surface : scene.surfaces) media |= surface.interior.has_value();
-    json out{{"volume", render.maxScatterings == 0 ? 0 : cyclesBounces(render.maxScatterings)},
-             {"surface", cyclesMostBounces},
-             {"all", cyclesMostBounces}};
+    for (const scene::SurfaceDescription& surface : scene.surfaces)
+        media |= surface.interior.has_value();
+    json out{
+        {"volume", render.maxScatterings == 0 ? 0 : scene::cyclesBounces(render.maxScatterings)},
+        {"surface", scene::cyclesMostBounces},
+        {"all", scene::cyclesMostBounces}};
     if (scene.surfaces.empty() || !render.maxBounces) return out;
-    const std::string place = findPlace(scene.places, "render.max_bounces");
+    const std::string place = scene::findPlace(scene.places, "render.max_bounces");
     if (*render.maxBounces == 0)
         throw cyclesRefusal(place, "surfaces that reflect nothing, max_bounces = 0");
-    out["surface"] = cyclesBounces(render.maxBounces);
+    out["surface"] = scene::cyclesBounces(render.maxBounces);
     if (media)
         spdlog::warn(
             "{}: Cycles bounds diffuse, glossy and transmitted bounces by {} each, not "
@@ -219,9 +224,9 @@ json bouncesJson(const SceneDescription& scene) {
     return out;
 }
 
-json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
+json renderJson(const scene::SceneDescription& scene, const CyclesSettings& settings) {
     constexpr std::uint64_t seeds = 0x7fffffff;
-    const RenderDescription& render = scene.render;
+    const scene::RenderDescription& render = scene.render;
     return {{"resolution", {render.width, render.height}},
             {"spp", render.spp},
             {"seed", render.seed % seeds},
@@ -235,16 +240,17 @@ json renderJson(const SceneDescription& scene, const CyclesSettings& settings) {
 
 }  // namespace
 
-std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded,
+std::string cyclesScene(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
                         const CyclesSettings& settings) {
     if (scene.render.approximations.transparentShadows)
-        throw cyclesRefusal(findPlace(scene.places, "render.transparent_shadows"),
+        throw cyclesRefusal(scene::findPlace(scene.places, "render.transparent_shadows"),
                             "Woodcock's transparent shadows");
     json volumes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         VolumeWriter(scene, loaded, i).addTo(volumes);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const std::string place = findPlace(scene.places, fmt::format("light[{}].visible", i));
+        const std::string place =
+            scene::findPlace(scene.places, fmt::format("light[{}].visible", i));
         lights.push_back(std::visit([&](const auto& light) { return lightJson(light, place); },
                                     scene.lights[i].light));
     }

@@ -19,7 +19,7 @@ struct CyclesSettings {
 
 /// A complete scene (see completeScene) as JSON for tools/blender/render_in_cycles.py: everything
 /// resolved and in Cycles' terms. Throws Error{Input} that names what Cycles cannot express.
-std::string cyclesScene(const SceneDescription& scene, const LoadedScene& loaded,
+std::string cyclesScene(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
                         const CyclesSettings& settings);
 
 }  // namespace woodcock::tool

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr int sphereRings = 128, diskSectors = 512;
 
-json textureJson(const TextureDescription& texture, const std::string& place) {
+json textureJson(const scene::TextureDescription& texture, const std::string& place) {
     json out{{"colour", toJson(texture.colour)}, {"image", nullptr}};
     if (texture.image.empty()) return out;
     if (!texture.colourSpace.empty() && texture.colourSpace != "data")
@@ -29,13 +29,14 @@ json textureJson(const TextureDescription& texture, const std::string& place) {
 
 class MaterialWriter {
 public:
-    explicit MaterialWriter(const SceneDescription& scene) : scene_(scene) {}
+    explicit MaterialWriter(const scene::SceneDescription& scene) : scene_(scene) {}
 
     json write(const std::string& name) const {
-        if (name.empty()) return kind(DiffuseDescription(), "");
+        if (name.empty()) return kind(scene::DiffuseDescription(), "");
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             if (scene_.materials[i].name != name) continue;
-            const std::string place = findPlace(scene_.places, fmt::format("material[{}].type", i));
+            const std::string place =
+                scene::findPlace(scene_.places, fmt::format("material[{}].type", i));
             return std::visit([&](const auto& m) { return kind(m, place); },
                               scene_.materials[i].material);
         }
@@ -43,10 +44,10 @@ public:
     }
 
 private:
-    json kind(const DiffuseDescription& m, const std::string& place) const {
+    json kind(const scene::DiffuseDescription& m, const std::string& place) const {
         return {{"type", "diffuse"}, {"colour", textureJson(m.colour, place)}};
     }
-    json kind(const ConductorDescription& m, const std::string& place) const {
+    json kind(const scene::ConductorDescription& m, const std::string& place) const {
         json out{{"type", "conductor"},
                  {"colour", textureJson(m.colour, place)},
                  {"roughness", m.roughness},
@@ -54,19 +55,19 @@ private:
         if (m.etaK) out["eta"] = toJson(m.etaK->first), out["k"] = toJson(m.etaK->second);
         return out;
     }
-    json kind(const DielectricDescription& m, const std::string&) const {
+    json kind(const scene::DielectricDescription& m, const std::string&) const {
         return {{"type", "dielectric"}, {"ior", m.ior}, {"roughness", m.roughness}};
     }
-    json kind(const InterfaceDescription&, const std::string&) const {
+    json kind(const scene::InterfaceDescription&, const std::string&) const {
         return {{"type", "interface"}};
     }
-    json kind(const EmissiveDescription& m, const std::string& place) const {
+    json kind(const scene::EmissiveDescription& m, const std::string& place) const {
         return {{"type", "emissive"},
                 {"radiance", textureJson(m.radiance, place)},
                 {"both_sides", m.bothSides}};
     }
-    json kind(const MixDescription& m, const std::string& place) const {
-        TextureDescription weight = m.weight;
+    json kind(const scene::MixDescription& m, const std::string& place) const {
+        scene::TextureDescription weight = m.weight;
         if (weight.colourSpace.empty()) weight.colourSpace = "data";
         return {{"type", "mix"},
                 {"first", write(m.first)},
@@ -74,7 +75,7 @@ private:
                 {"weight", textureJson(weight, place)}};
     }
 
-    const SceneDescription& scene_;
+    const scene::SceneDescription& scene_;
 };
 
 bool overlap(const Box3d& a, const Box3d& b) {
@@ -84,20 +85,20 @@ bool overlap(const Box3d& a, const Box3d& b) {
 }
 
 /// What holds something replaces what is around it, where Cycles adds: refused where that differs.
-void refuseReplacement(const SceneDescription& scene, const LoadedScene& loaded, std::size_t index,
-                       const std::string& place) {
-    const Box3d bounds = surfaceBounds(scene.surfaces[index], loaded.surfaces[index]);
+void refuseReplacement(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
+                       std::size_t index, const std::string& place) {
+    const Box3d bounds = scene::surfaceBounds(scene.surfaces[index], loaded.surfaces[index]);
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
-        if (i != index && natureOf(scene, i).encloses &&
-            overlap(bounds, surfaceBounds(scene.surfaces[i], loaded.surfaces[i])))
+        if (i != index && scene::natureOf(scene, i).encloses &&
+            overlap(bounds, scene::surfaceBounds(scene.surfaces[i], loaded.surfaces[i])))
             throw cyclesRefusal(place, "what one surface holds inside another, surface[{}]", i);
     const auto boundsOf = [&](std::size_t i) {
-        const VolumeDescription& volume = scene.volumes[i];
-        if (const auto* box = std::get_if<HomogeneousBox>(&volume.coefficients))
+        const scene::VolumeDescription& volume = scene.volumes[i];
+        if (const auto* box = std::get_if<scene::HomogeneousBox>(&volume.coefficients))
             return volume.worldFromObject.box(box->box);
         Box3d all;
-        const LoadedVolume& v = loaded.volumes[i];
-        for (const LoadedField* field :
+        const scene::LoadedVolume& v = loaded.volumes[i];
+        for (const scene::LoadedField* field :
              {&v.density, &v.sigmaA, &v.sigmaS, &v.emission, &v.blackbody})
             if (*field) {
                 const Box3d part =
@@ -107,35 +108,37 @@ void refuseReplacement(const SceneDescription& scene, const LoadedScene& loaded,
         return all;
     };
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (overlap(bounds, boundsOf(i)))
+        if (overlap(bounds, mesh::boundsOf(i)))
             throw cyclesRefusal(place, "a surface that replaces volume[{}] inside it", i);
 }
 
-json surfaceJson(const SceneDescription& scene, const LoadedScene& loaded, std::size_t index) {
-    const SurfaceDescription& surface = scene.surfaces[index];
-    const LoadedSurface& mesh = loaded.surfaces[index];
+json surfaceJson(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
+                 std::size_t index) {
+    const scene::SurfaceDescription& surface = scene.surfaces[index];
+    const scene::LoadedSurface& mesh = loaded.surfaces[index];
     const auto place = [&](const char* key) {
-        return findPlace(scene.places, fmt::format("surface[{}].{}", index, key));
+        return scene::findPlace(scene.places, fmt::format("surface[{}].{}", index, key));
     };
     if (surface.holdout) throw cyclesRefusal(place("holdout"), "a holdout as Woodcock does");
     if (surface.shadowCatcher)
         throw cyclesRefusal(place("shadow_catcher"), "a shadow catcher as Woodcock does");
     if (surface.matte) throw cyclesRefusal(place("matte"), "a matte surface");
     if (surface.priority != 0) throw cyclesRefusal(place("priority"), "priorities of surfaces");
-    const auto* plane = std::get_if<PlaneShape>(&surface.shape);
+    const auto* plane = std::get_if<scene::PlaneShape>(&surface.shape);
     if (plane && !plane->size)
         throw cyclesRefusal(place("plane"), "an infinite plane; give it a size");
-    if (natureOf(scene, index).encloses) refuseReplacement(scene, loaded, index, place("material"));
+    if (scene::natureOf(scene, index).encloses)
+        refuseReplacement(scene, loaded, index, place("material"));
 
     json out{{"material", MaterialWriter(scene).write(surface.material)},
              {"camera_visible", surface.cameraVisible},
              {"medium", nullptr},
              {"instances", json::array()}};
     if (surface.interior)
-        out["medium"] = mediumJson(
-            surface.interior->sigmaA, surface.interior->sigmaS, surface.interior->g,
-            scene.render.maxScatterings != 0,
-            cyclesEmissionWithin(surface.interior->emission, natureOf(scene, index).ior));
+        out["medium"] = mediumJson(surface.interior->sigmaA, surface.interior->sigmaS,
+                                   surface.interior->g, scene.render.maxScatterings != 0,
+                                   scene::cyclesEmissionWithin(surface.interior->emission,
+                                                               scene::natureOf(scene, index).ior));
     for (const Affine3d& instance : mesh.instances)
         out["instances"].push_back(
             toJson(surface.worldFromObject * instance * mesh.objectFromMesh));
@@ -147,7 +150,7 @@ void append(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-void writeMesh(const std::filesystem::path& file, const SurfaceMesh& mesh) {
+void writeMesh(const std::filesystem::path& file, const mesh::SurfaceMesh& mesh) {
     std::string bytes;
     for (const std::size_t count : {mesh.mesh.points.size(), mesh.mesh.triangles.size(),
                                     mesh.normals.size(), mesh.uvs.size()})
@@ -161,23 +164,23 @@ void writeMesh(const std::filesystem::path& file, const SurfaceMesh& mesh) {
 
 }  // namespace
 
-json cyclesSurfaces(const SceneDescription& scene, const LoadedScene& loaded) {
+json cyclesSurfaces(const scene::SceneDescription& scene, const scene::LoadedScene& loaded) {
     json surfaces = json::array();
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
         surfaces.push_back(surfaceJson(scene, loaded, i));
     return surfaces;
 }
 
-void writeCyclesMeshes(const std::filesystem::path& directory, const SceneDescription& scene,
-                       const LoadedScene& loaded) {
+void writeCyclesMeshes(const std::filesystem::path& directory, const scene::SceneDescription& scene,
+                       const scene::LoadedScene& loaded) {
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
         const auto file = directory / fmt::format("surface{}.mesh", i);
         if (loaded.surfaces[i].mesh)
             writeMesh(file, *loaded.surfaces[i].mesh);
-        else if (std::holds_alternative<SphereShape>(scene.surfaces[i].shape))
-            writeMesh(file, sphereMesh(sphereRings));
+        else if (std::holds_alternative<scene::SphereShape>(scene.surfaces[i].shape))
+            writeMesh(file, scene::sphereMesh(sphereRings));
         else
-            writeMesh(file, diskMesh(diskSectors));
+            writeMesh(file, scene::diskMesh(diskSectors));
     }
 }
 

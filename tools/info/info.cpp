@@ -32,15 +32,15 @@ FileInfo inspectFile(const std::filesystem::path& path, const std::string& gridN
     FileInfo info;
     info.path = path;
     try {
-        const VdbFile file = listGrids(path);
+        const grid::VdbFile file = grid::listGrids(path);
         info.version = file.version;
         info.warning = file.warning;
         info.bytes = std::filesystem::file_size(path);
         if (!gridName.empty()) {
-            info.grids.push_back(inspectGrid(file, findGrid(file, gridName).grid));
+            info.grids.push_back(grid::inspectGrid(file, grid::findGrid(file, gridName).grid));
         } else {
-            for (const GridListing& grid : file.grids)
-                info.grids.push_back(inspectGrid(file, grid));
+            for (const grid::GridListing& grid : file.grids)
+                info.grids.push_back(grid::inspectGrid(file, grid));
         }
     } catch (const Error& e) {
         if (e.kind() != ErrorKind::Input) throw;
@@ -55,7 +55,7 @@ void report(const FileInfo& file, bool quiet) {
     if (file.error.empty() && !quiet) printText(infoText(file));
     std::fflush(stdout);  // keeps the order where both streams end on one terminal
     if (!file.error.empty()) spdlog::error("{}", file.error);
-    for (const GridInfo& grid : file.grids)
+    for (const grid::GridInfo& grid : file.grids)
         if (!grid.error.empty()) spdlog::error("{}", grid.error);
 }
 

@@ -17,7 +17,7 @@ struct FileInfo {
     std::string version;
     std::string warning;  ///< of a format newer than any that is known; usually empty
     std::uintmax_t bytes = 0;
-    std::vector<GridInfo> grids;
+    std::vector<grid::GridInfo> grids;
 
     bool sound() const;  ///< the file and all of its voxels could be read
 };

@@ -29,14 +29,14 @@ Json matrix(const Affine3d& m) {
     return rows;
 }
 
-Json json(const VoxelCount& voxels) {
+Json json(const grid::VoxelCount& voxels) {
     if (voxels.count == 0) return {{"count", 0}};
     return {{"count", voxels.count}, {"first", json(voxels.first)}};
 }
 
-void addContents(const GridInfo::Contents& contents, int channels, Json& to) {
-    const GridStatistics& statistics = contents.statistics;
-    const VoxelScan& voxels = statistics.voxels;
+void addContents(const grid::GridInfo::Contents& contents, int channels, Json& to) {
+    const grid::GridStatistics& statistics = contents.statistics;
+    const grid::VoxelScan& voxels = statistics.voxels;
     if (const Box3i& box = statistics.activeBounds; !box.empty())
         to["index_bounds"] = {json(box.lower), json(box.upper)};
     if (contents.worldBounds)
@@ -56,9 +56,9 @@ void addContents(const GridInfo::Contents& contents, int channels, Json& to) {
     to["negative"] = json(voxels.negative);
     to["openvdb_bytes"] = statistics.openVdbBytes;
     to["field_bytes"] = contents.fieldBytes;
-    to["field_storage"] = contents.fieldStorage == Storage::Half ? "half" : "float";
+    to["field_storage"] = contents.fieldStorage == grid::Storage::Half ? "half" : "float";
     if (const auto& majorants = contents.majorants)
-        to["majorants"] = {{"optical_depth", GridInfo::opticalDepth},
+        to["majorants"] = {{"optical_depth", grid::GridInfo::opticalDepth},
                            {"rays", majorants->rays},
                            {"segments_per_ray", majorants->segmentsPerRay},
                            {"segments_per_ray_error", majorants->segmentsError},
@@ -66,12 +66,12 @@ void addContents(const GridInfo::Contents& contents, int channels, Json& to) {
                            {"majorant_over_mean_error", majorants->majorantOverMeanError}};
 }
 
-Json json(const GridInfo& info) {
-    const GridListing& grid = info.listing;
+Json json(const grid::GridInfo& info) {
+    const grid::GridListing& grid = info.listing;
     Json j{{"name", grid.name},
            {"unique_name", grid.uniqueName},
            {"type", grid.valueType},
-           {"class", gridClassName(grid.gridClass)},
+           {"class", grid::gridClassName(grid.gridClass)},
            {"usable", grid.usable()}};
     if (!grid.usable()) j["unusable"] = grid.unusable;
     if (grid.worldFromIndex) {
@@ -102,7 +102,7 @@ nlohmann::ordered_json infoJson(const std::vector<FileInfo>& files) {
             if (!file.warning.empty()) j["warning"] = file.warning;
             j["bytes"] = file.bytes;
             j["grids"] = Json::array();
-            for (const GridInfo& grid : file.grids) j["grids"].push_back(json(grid));
+            for (const grid::GridInfo& grid : file.grids) j["grids"].push_back(json(grid));
         }
         list.push_back(std::move(j));
     }

@@ -49,10 +49,11 @@ std::string value(const std::array<T, 3>& v, int channels) {
 
 class GridText {
 public:
-    explicit GridText(const GridInfo& info) : info_(info), grid_(info.listing) {
-        text_ = fmt::format(
-            "\n  {}  {}, {}\n", grid_.uniqueName, grid_.valueType,
-            grid_.gridClass == GridClass::Unknown ? "no class" : gridClassName(grid_.gridClass));
+    explicit GridText(const grid::GridInfo& info) : info_(info), grid_(info.listing) {
+        text_ = fmt::format("\n  {}  {}, {}\n", grid_.uniqueName, grid_.valueType,
+                            grid_.gridClass == grid::GridClass::Unknown
+                                ? "no class"
+                                : grid::gridClassName(grid_.gridClass));
         describeTransform();
         if (info.contents) describeContents(*info.contents);
         describeMetadata();
@@ -86,9 +87,9 @@ private:
                              m.column[1][row], m.column[2][row], m.translation[row]));
     }
 
-    void describeContents(const GridInfo::Contents& contents) {
-        const GridStatistics& statistics = contents.statistics;
-        const VoxelScan& voxels = statistics.voxels;
+    void describeContents(const grid::GridInfo::Contents& contents) {
+        const grid::GridStatistics& statistics = contents.statistics;
+        const grid::VoxelScan& voxels = statistics.voxels;
         const Box3i& box = statistics.activeBounds;
         std::string share;
         if (!box.empty()) {
@@ -126,13 +127,13 @@ private:
              fmt::format("{}{} in OpenVDB, {} in Woodcock ({})",
                          grid_.fileBytes ? memory(grid_.fileBytes) + " in the file, " : "",
                          memory(statistics.openVdbBytes), memory(contents.fieldBytes),
-                         contents.fieldStorage == Storage::Half ? "half" : "float"));
+                         contents.fieldStorage == grid::Storage::Half ? "half" : "float"));
         if (contents.majorants)
             line("majorants",
                  fmt::format("{:.3g} segments per ray, mean majorant {:.3g} x the mean value "
                              "(at an optical depth of {:g})",
                              contents.majorants->segmentsPerRay,
-                             contents.majorants->majorantOverMean, GridInfo::opticalDepth));
+                             contents.majorants->majorantOverMean, grid::GridInfo::opticalDepth));
     }
 
     void describeMetadata() {
@@ -146,16 +147,17 @@ private:
         }
     }
 
-    const GridInfo& info_;
-    const GridListing& grid_;
+    const grid::GridInfo& info_;
+    const grid::GridListing& grid_;
     std::string text_;
 };
 
 }  // namespace
 
 bool FileInfo::sound() const {
-    return error.empty() && std::all_of(grids.begin(), grids.end(),
-                                        [](const GridInfo& grid) { return grid.error.empty(); });
+    return error.empty() && std::all_of(grids.begin(), grids.end(), [](const grid::GridInfo& grid) {
+               return grid.error.empty();
+           });
 }
 
 std::string infoText(const FileInfo& file) {
@@ -163,7 +165,7 @@ std::string infoText(const FileInfo& file) {
                                    memory(file.bytes), counted(file.grids.size(), "grid"));
     if (!file.warning.empty()) text += fmt::format("    ! {}\n", file.warning);
     if (file.grids.empty()) text += "    ! it holds nothing to be drawn\n";
-    for (const GridInfo& grid : file.grids) text += GridText(grid).take();
+    for (const grid::GridInfo& grid : file.grids) text += GridText(grid).take();
     return text + "\n";
 }
 

@@ -7,20 +7,20 @@ namespace woodcock::tool {
 
 namespace {
 
-std::string describe(const SunDescription& sun) {
+std::string describe(const scene::SunDescription& sun) {
     return sun.place ? fmt::format("a sun {:g} degrees high at azimuth {:g}", sun.place->elevation,
                                    sun.place->azimuth)
                      : "a sun";
 }
-std::string describe(const EnvironmentDescription&) { return "an even sky"; }
-std::string describe(const PointDescription&) { return "a point light"; }
-std::string describe(const SphereDescription&) { return "a sphere light"; }
+std::string describe(const scene::EnvironmentDescription&) { return "an even sky"; }
+std::string describe(const scene::PointDescription&) { return "a point light"; }
+std::string describe(const scene::SphereDescription&) { return "a sphere light"; }
 
-void describeVolumes(const Openings& open, const SceneDescription& complete,
+void describeVolumes(const Openings& open, const scene::SceneDescription& complete,
                      std::vector<std::string>& parts) {
     for (std::size_t i = 0; i < complete.volumes.size(); ++i) {
-        const VolumeDescription& volume = complete.volumes[i];
-        const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+        const scene::VolumeDescription& volume = complete.volumes[i];
+        const auto* c = std::get_if<scene::DensityCoefficients>(&volume.coefficients);
         if (!c) continue;
         const std::string file = volume.file.filename().string();
         if (open.density[i]) parts.push_back(fmt::format("the grid '{}' of {}", c->density, file));
@@ -31,10 +31,10 @@ void describeVolumes(const Openings& open, const SceneDescription& complete,
 
 }  // namespace
 
-Openings openingsOf(const SceneDescription& scene) {
+Openings openingsOf(const scene::SceneDescription& scene) {
     Openings open;
-    for (const VolumeDescription& volume : scene.volumes) {
-        const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+    for (const scene::VolumeDescription& volume : scene.volumes) {
+        const auto* c = std::get_if<scene::DensityCoefficients>(&volume.coefficients);
         open.density.push_back(c && c->density.empty());
         open.scale.push_back(c && !c->scale);
     }
@@ -43,12 +43,12 @@ Openings openingsOf(const SceneDescription& scene) {
     return open;
 }
 
-std::string describeChoices(const Openings& open, const SceneDescription& complete) {
+std::string describeChoices(const Openings& open, const scene::SceneDescription& complete) {
     std::vector<std::string> parts;
     describeVolumes(open, complete, parts);
     if (open.camera) parts.push_back("a camera that frames what is there");
     if (open.lights)
-        for (const LightDescription& light : complete.lights)
+        for (const scene::LightDescription& light : complete.lights)
             parts.push_back(std::visit([](const auto& l) { return describe(l); }, light.light));
     if (parts.empty()) return "the scene with every value that it uses; nothing was left to choose";
     return fmt::format(

@@ -13,10 +13,10 @@ struct Openings {
     std::vector<bool> density, scale;  ///< of each volume
     bool camera = false, lights = false;
 };
-Openings openingsOf(const SceneDescription& scene);
+Openings openingsOf(const scene::SceneDescription& scene);
 
 /// What was chosen, in one sentence: "chosen were the density scale 51 of smoke.vdb, a camera that
 /// frames it, and ...".
-std::string describeChoices(const Openings& open, const SceneDescription& complete);
+std::string describeChoices(const Openings& open, const scene::SceneDescription& complete);
 
 }  // namespace woodcock::tool

@@ -22,7 +22,7 @@ void addOutput(CLI::App& command, RenderOptions& o) {
                 "pictures to look at")
             ->type_name("FILE"),
         addList(command, "--layers", o.layers,
-                "More layers for EXR files: " + joinNames(layerNames()))
+                "More layers for EXR files: " + joinNames(image::layerNames()))
             ->delimiter(',')
             ->type_name("LAYER,..."),
         command.add_flag("--half", o.half, "Write the colour of EXR files in half precision"),
@@ -49,7 +49,7 @@ void addOutput(CLI::App& command, RenderOptions& o) {
 }
 
 void addRendering(CLI::App& command, RenderOptions& o) {
-    std::vector<std::string> qualities(qualityNames.begin(), qualityNames.end());
+    std::vector<std::string> qualities(scene::qualityNames.begin(), scene::qualityNames.end());
     qualities.push_back("auto");
     std::vector<CLI::Option*> options{
         addChoice(command, "--quality", o.quality, qualities,
@@ -110,7 +110,8 @@ void addScene(CLI::App& command, RenderOptions& o) {
             ->type_name("FILE"),
         command.add_flag("--repair", o.repair,
                          "Set NaN, infinite and negative voxels to zero instead of stopping"),
-        addEnum(command, "--storage", o.storage, storageNames, "Precision of voxels in memory:")
+        addEnum(command, "--storage", o.storage, grid::storageNames,
+                "Precision of voxels in memory:")
             ->type_name("KIND")};
     for (CLI::Option* option : options) option->group("Scene");
 }

@@ -32,7 +32,7 @@ struct RenderOptions {
     std::vector<std::string> overrides;
     std::optional<std::pair<double, double>> sun;  ///< elevation, azimuth; degrees
     std::optional<double> orbit;                   ///< degrees
-    std::optional<Storage> storage;
+    std::optional<grid::Storage> storage;
     bool repair = false, overlay = false;
 
     std::optional<std::string> display, view, look;

@@ -16,12 +16,12 @@ namespace woodcock::tool {
 
 namespace {
 
-Rgb brightnessOf(const SunDescription& sun) { return sun.irradiance; }
-Rgb brightnessOf(const EnvironmentDescription& environment) { return environment.radiance; }
-Rgb brightnessOf(const PointDescription& point) { return point.intensity; }
-Rgb brightnessOf(const SphereDescription& sphere) { return sphere.radiance; }
+Rgb brightnessOf(const scene::SunDescription& sun) { return sun.irradiance; }
+Rgb brightnessOf(const scene::EnvironmentDescription& environment) { return environment.radiance; }
+Rgb brightnessOf(const scene::PointDescription& point) { return point.intensity; }
+Rgb brightnessOf(const scene::SphereDescription& sphere) { return sphere.radiance; }
 
-bool anyLightShines(const SceneDescription& scene) {
+bool anyLightShines(const scene::SceneDescription& scene) {
     return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& light) {
         return std::visit([](const auto& l) { return brightnessOf(l).maximum() > 0; }, light.light);
     });
@@ -31,9 +31,9 @@ struct Brightest {
     float light = 0, alpha = 0;
 };
 
-Brightest brightestOf(const Film& film) {
+Brightest brightestOf(const image::Film& film) {
     Brightest most;
-    const Film::Window crop = film.crop();
+    const image::Film::Window crop = film.crop();
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
             most.light = std::max(most.light, film.radiance(x, y).maximum());
@@ -44,8 +44,9 @@ Brightest brightestOf(const Film& film) {
 
 }  // namespace
 
-PictureWarnings::PictureWarnings(const SceneDescription& description, const LoadedScene& loaded)
-    : description_(description), volumesOfParts_(volumesOfParts(description, loaded, "")) {}
+PictureWarnings::PictureWarnings(const scene::SceneDescription& description,
+                                 const scene::LoadedScene& loaded)
+    : description_(description), volumesOfParts_(scene::volumesOfParts(description, loaded, "")) {}
 
 std::string PictureWarnings::volumeName(std::size_t part) const {
     if (part >= volumesOfParts_.size()) return "a volume";
@@ -54,8 +55,9 @@ std::string PictureWarnings::volumeName(std::size_t part) const {
     return fmt::format("volume[{}] ({})", index, file.empty() ? "a box" : file);
 }
 
-std::string PictureWarnings::ofCamera(const Scene& scene) {
-    const auto view = findClosedView(scene, description_.render.width, description_.render.height);
+std::string PictureWarnings::ofCamera(const render::Scene& scene) {
+    const auto view =
+        render::findClosedView(scene, description_.render.width, description_.render.height);
     if (!view) return {};
     camera_ = "the camera stands inside " + volumeName(view->part);
     return fmt::format(
@@ -66,9 +68,9 @@ std::string PictureWarnings::ofCamera(const Scene& scene) {
         camera_, view->meanFreePath, view->depth);
 }
 
-std::string PictureWarnings::whyNoLight(const Scene& scene, const RenderResult& result,
-                                        float alpha) const {
-    const bool glow = anyVolumeOrSurfaceGlows(description_);
+std::string PictureWarnings::whyNoLight(const render::Scene& scene,
+                                        const render::RenderResult& result, float alpha) const {
+    const bool glow = scene::anyVolumeOrSurfaceGlows(description_);
     if (!anyLightShines(description_) && !glow)
         return "the scene has no light: give a [[light]] that shines";
     if (alpha == 0)
@@ -84,7 +86,8 @@ std::string PictureWarnings::whyNoLight(const Scene& scene, const RenderResult& 
            "and little comes out of deep media that absorb";
 }
 
-std::string PictureWarnings::ofPicture(const Scene& scene, const RenderResult& result) const {
+std::string PictureWarnings::ofPicture(const render::Scene& scene,
+                                       const render::RenderResult& result) const {
     const Brightest most = brightestOf(result.film);
     if (most.light == 0) return "the picture is black: " + whyNoLight(scene, result, most.alpha);
     // Half a step of a byte in the straight part of sRGB's curve.
@@ -92,7 +95,7 @@ std::string PictureWarnings::ofPicture(const Scene& scene, const RenderResult& r
     const auto& files = description_.output.files;
     const double shown = double{most.light} * std::exp2(description_.output.exposure);
     if (shown >= darkest || std::none_of(files.begin(), files.end(), [](const auto& file) {
-            return imageFormat(file) != ImageFormat::Exr;
+            return image::imageFormat(file) != image::ImageFormat::Exr;
         }))
         return {};
     return fmt::format(
@@ -101,7 +104,7 @@ std::string PictureWarnings::ofPicture(const Scene& scene, const RenderResult& r
         most.light, description_.output.exposure, std::round(std::log2(0.5 / most.light)));
 }
 
-std::string noiseOf(const RenderResult& result) {
+std::string noiseOf(const render::RenderResult& result) {
     const double noise = result.film.noise();
     if (std::isfinite(noise)) return noiseText(noise);
     return result.film.mostSamples() < 2 ? "noise unknown (it takes two samples a pixel)"

@@ -15,23 +15,24 @@ namespace woodcock::tool {
 class PictureWarnings {
 public:
     /// `loaded` is what `scene` will be built of; both as long as this.
-    PictureWarnings(const SceneDescription& description, const LoadedScene& loaded);
+    PictureWarnings(const scene::SceneDescription& description, const scene::LoadedScene& loaded);
 
     /// That the camera stands inside of something dense; empty: it does not.
-    std::string ofCamera(const Scene& scene);
+    std::string ofCamera(const render::Scene& scene);
     /// That the finished picture is black, and the likeliest reason; empty: it is not.
-    std::string ofPicture(const Scene& scene, const RenderResult& result) const;
+    std::string ofPicture(const render::Scene& scene, const render::RenderResult& result) const;
 
 private:
-    std::string whyNoLight(const Scene& scene, const RenderResult& result, float alpha) const;
+    std::string whyNoLight(const render::Scene& scene, const render::RenderResult& result,
+                           float alpha) const;
     std::string volumeName(std::size_t part) const;
 
-    const SceneDescription& description_;
+    const scene::SceneDescription& description_;
     std::vector<std::size_t> volumesOfParts_;
     std::string camera_;  // where it stands, once it is known to be inside
 };
 
 /// "noise 1.25 %", or why it is unknown.
-std::string noiseOf(const RenderResult& result);
+std::string noiseOf(const render::RenderResult& result);
 
 }  // namespace woodcock::tool

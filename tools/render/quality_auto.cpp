@@ -22,11 +22,11 @@ struct Goal {
     std::optional<double> seconds;
     double error = 0;  ///< relMSE
 
-    std::optional<Winner> best(const std::vector<TradeModel>& models) const {
-        return seconds ? bestAt(models, *seconds) : fastestTo(models, error);
+    std::optional<trade::Winner> best(const std::vector<trade::TradeModel>& models) const {
+        return seconds ? trade::bestAt(models, *seconds) : trade::fastestTo(models, error);
     }
     /// Of a model: "relMSE 1.2e-04 in 54 s".
-    std::string promise(const TradeModel& model) const {
+    std::string promise(const trade::TradeModel& model) const {
         if (seconds) {
             const auto e = model.errorAt(*seconds);
             return e ? fmt::format("relMSE {:.2g} in {}", e->value, formatDuration(*seconds))
@@ -39,14 +39,14 @@ struct Goal {
 };
 
 /// The command with the choice in the place of --quality auto.
-std::string repeated(std::string command, const Candidate& candidate, bool endless) {
+std::string repeated(std::string command, const trade::Candidate& candidate, bool endless) {
     for (const std::string word : {" --quality auto", " --quality=auto"})
         if (const std::size_t at = command.find(word); at != std::string::npos)
             command.replace(at, word.size(), optionsOf(candidate));
     return command + (endless ? fmt::format(" --spp {}", endlessSamples) : "");
 }
 
-ParseScene parser(const RenderOptions& options) {
+trade::ParseScene parser(const RenderOptions& options) {
     return [&options](const std::vector<std::string>& more) {
         SceneInput input = options.sceneInput();
         input.overrides.insert(input.overrides.end(), more.begin(), more.end());
@@ -55,50 +55,50 @@ ParseScene parser(const RenderOptions& options) {
 }
 
 /// Absent where interrupted; nothing in it where the budget was too small.
-std::optional<TradeResult> measure(const SceneDescription& scene, const RenderOptions& options,
-                                   double budget) {
+std::optional<trade::TradeResult> measure(const scene::SceneDescription& scene,
+                                          const RenderOptions& options, double budget) {
     WorkProgress progress(
         options.reports.quiet ? ProgressStyle::None : progressStyle(options.reports.progress),
         "choose");
-    TradeSettings settings;
+    trade::TradeSettings settings;
     settings.budget = budget;
     settings.threads = options.threads.value_or(0);
     settings.seed = scene.render.seed;
-    settings.extent = Extent::Few;
+    settings.extent = trade::Extent::Few;
     settings.onProgress = [&](double fraction, const std::string&) {
         progress.update(fraction);
         return !interrupted();
     };
     try {
-        return runTrade(scene, parser(options), {}, settings);
+        return trade::runTrade(scene, parser(options), {}, settings);
     } catch (const Error& e) {
         if (e.kind() != ErrorKind::Usage) throw;
         spdlog::debug("{}", e.what());
-        return TradeResult();
+        return trade::TradeResult();
     }
 }
 
 }  // namespace
 
-bool chooseQuality(SceneDescription& scene, const RenderOptions& options,
+bool chooseQuality(scene::SceneDescription& scene, const RenderOptions& options,
                    const std::string& commandLine) {
-    const Stopwatch watch;
-    RenderDescription& render = scene.render;
+    const trade::Stopwatch watch;
+    scene::RenderDescription& render = scene.render;
     const double limit = render.timeLimit;
     const double budget = limit > 0 ? std::min(pilotShare * limit, longestPilot) : noisePilot;
-    const std::optional<TradeResult> result = measure(scene, options, budget);
+    const std::optional<trade::TradeResult> result = measure(scene, options, budget);
     if (!result) return false;
 
-    Candidate chosen{"final", "final", {}};
+    trade::Candidate chosen{"final", "final", {}};
     double allowed = render.noise;
     // --noise leaves plain background out, and relMSE is a mean over all of the picture.
     const double share = result->reference.noiseShare;
     Goal goal{std::nullopt, render.noise * render.noise / share};
     if (limit > 0) goal.seconds = std::max(0.5 * limit, limit - watch.seconds());
-    std::vector<TradeModel> models;
-    for (const CandidateResult& c : result->candidates) models.push_back(c.model.careful());
+    std::vector<trade::TradeModel> models;
+    for (const trade::CandidateResult& c : result->candidates) models.push_back(c.model.careful());
     if (const auto winner = goal.best(models)) {
-        const TradeModel& model = models[winner->best];
+        const trade::TradeModel& model = models[winner->best];
         chosen = result->candidates[winner->best].candidate;
         if (limit <= 0) allowed = std::sqrt(share * (goal.error - model.biasError()));
         spdlog::info(
@@ -111,7 +111,7 @@ bool chooseQuality(SceneDescription& scene, const RenderOptions& options,
     const bool endless = !options.spp;
     spdlog::info("the same again: {}", repeated(commandLine, chosen, endless));
 
-    scene = withChoices(scene, parser(options)(chosen.overrides()));
+    scene = trade::withChoices(scene, parser(options)(chosen.overrides()));
     if (endless) scene.render.spp = endlessSamples;
     if (limit > 0) scene.render.timeLimit = std::max(0.5 * limit, limit - watch.seconds());
     scene.render.noise = allowed;

@@ -11,7 +11,7 @@ namespace woodcock::tool {
 /// the time limit or half a minute at most, and gives it those that promise the least error in the
 /// time that is left, or the least time to the noise that is asked for. The log tells which and
 /// why. False where the user interrupted it.
-bool chooseQuality(SceneDescription& scene, const RenderOptions& options,
+bool chooseQuality(scene::SceneDescription& scene, const RenderOptions& options,
                    const std::string& commandLine);
 
 }  // namespace woodcock::tool

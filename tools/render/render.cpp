@@ -37,20 +37,20 @@ namespace woodcock::tool {
 
 namespace {
 
-SceneDescription describeScene(const RenderOptions& options) {
-    SceneDescription scene = parseInput(options.sceneInput());
-    for (VolumeDescription& volume : scene.volumes) {
+scene::SceneDescription describeScene(const RenderOptions& options) {
+    scene::SceneDescription scene = parseInput(options.sceneInput());
+    for (scene::VolumeDescription& volume : scene.volumes) {
         if (options.storage) volume.storage = *options.storage;
         volume.repair |= options.repair;
     }
-    RenderDescription& render = scene.render;
+    scene::RenderDescription& render = scene.render;
     render.spp = options.spp.value_or(render.spp);
     render.seed = options.seed.value_or(render.seed);
     render.timeLimit = options.timeLimit.value_or(render.timeLimit);
     render.noise = options.noise.value_or(render.noise);
     if (options.adaptive) render.adaptive = options.adaptive;
 
-    OutputDescription& output = scene.output;
+    scene::OutputDescription& output = scene.output;
     if (!options.outputs.empty()) {
         output.files = options.outputs;
         std::erase_if(scene.places,
@@ -77,7 +77,7 @@ SceneDescription describeScene(const RenderOptions& options) {
 bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 
 /// Nothing that is read may be written over, and nothing that is written may be written twice.
-void checkFiles(const SceneDescription& scene, const RenderOptions& options) {
+void checkFiles(const scene::SceneDescription& scene, const RenderOptions& options) {
     std::vector<std::filesystem::path> written;
     if (options.rendersImages()) written = scene.output.files;
     for (const std::filesystem::path& file : {options.stats, options.writeScene})
@@ -86,40 +86,41 @@ void checkFiles(const SceneDescription& scene, const RenderOptions& options) {
 }
 
 /// Those of a scene file are known to be right.
-ExrLayers layersOf(const SceneDescription& scene) {
-    return inPlace("--layers", [&] { return layersFromNames(scene.output.layers); });
+image::ExrLayers layersOf(const scene::SceneDescription& scene) {
+    return scene::inPlace("--layers", [&] { return image::layersFromNames(scene.output.layers); });
 }
 
 /// Where the name that a message of ColorConfig begins with was given: "scene.toml:9:8: ".
-std::string placeOfDisplayError(const SceneDescription& scene, std::string_view message) {
+std::string placeOfDisplayError(const scene::SceneDescription& scene, std::string_view message) {
     for (const std::string key : {"display", "view", "look"}) {
-        const std::string place = findPlace(scene.places, "output." + key);
+        const std::string place = scene::findPlace(scene.places, "output." + key);
         if (message.starts_with(key + " '") && !place.empty()) return place + ": ";
     }
     return "";
 }
 
-Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& options) {
+image::Outputs prepareOutputs(const scene::SceneDescription& scene, const RenderOptions& options) {
     prepareOutput(options.stats, options.mkdir, "--stats");
     prepareOutput(options.writeScene, options.mkdir, "--write-scene");
-    ColorConfig colour =
-        inPlace(findPlace(scene.places, "ocio"), [&] { return ColorConfig(scene.ocio); });
-    OutputSettings settings{.colour = std::move(colour)};
+    image::ColorConfig colour = scene::inPlace(scene::findPlace(scene.places, "ocio"),
+                                               [&] { return image::ColorConfig(scene.ocio); });
+    image::OutputSettings settings{.colour = std::move(colour)};
     if (options.rendersImages()) settings.files = scene.output.files;
     refuseOverwriting(settings.files, settings.colour.files());
     for (std::size_t i = 0; i < settings.files.size(); ++i) {
-        const std::string place = findPlace(scene.places, fmt::format("output.files[{}]", i));
-        inPlace(place, [&] { imageFormat(settings.files[i]); });
+        const std::string place =
+            scene::findPlace(scene.places, fmt::format("output.files[{}]", i));
+        scene::inPlace(place, [&] { image::imageFormat(settings.files[i]); });
         prepareOutput(settings.files[i], options.mkdir, place);
     }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
-    settings.withAlpha = environmentIsHidden(scene);
-    settings.glows = anythingGlows(scene);
+    settings.withAlpha = scene::environmentIsHidden(scene);
+    settings.glows = scene::anythingGlows(scene);
     try {
-        return Outputs(std::move(settings));
+        return image::Outputs(std::move(settings));
     } catch (const Error& e) {
         throw Error(e.kind(), placeOfDisplayError(scene, e.what()) + e.what());
     }
@@ -127,18 +128,20 @@ Outputs prepareOutputs(const SceneDescription& scene, const RenderOptions& optio
 
 /// Throws where the image's sums cannot be held, or not written in the end: `writing` are the bytes
 /// of a pixel that encoding takes.
-void checkMemory(const RenderSettings& settings, const SceneDescription& scene, double writing,
-                 double possible) {
-    const auto crop = settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
-    const double kept = double(sizeof(Film::Pixel)) +
-                        (scene.surfaces.empty() ? 0 : double(sizeof(Film::SurfacePixel))) +
-                        (settings.featureLayers ? double(sizeof(Film::FeaturePixel)) : 0) +
-                        (environmentIsHidden(scene) ? 0 : double(sizeof(Film::ForegroundPixel))) +
-                        (settings.adaptive ? 5 * double(sizeof(double)) : 0);
+void checkMemory(const render::RenderSettings& settings, const scene::SceneDescription& scene,
+                 double writing, double possible) {
+    const auto crop =
+        settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
+    const double kept =
+        double(sizeof(image::Film::Pixel)) +
+        (scene.surfaces.empty() ? 0 : double(sizeof(image::Film::SurfacePixel))) +
+        (settings.featureLayers ? double(sizeof(image::Film::FeaturePixel)) : 0) +
+        (scene::environmentIsHidden(scene) ? 0 : double(sizeof(image::Film::ForegroundPixel))) +
+        (settings.adaptive ? 5 * double(sizeof(double)) : 0);
     const double needed = double(crop.width()) * crop.height() * (kept + writing);
     if (needed <= possible) return;
     const double share = std::sqrt(possible / needed);
-    const std::string place = findPlace(scene.places, "render.resolution");
+    const std::string place = scene::findPlace(scene.places, "render.resolution");
     throw Error(
         place == "--res" ? ErrorKind::Usage : ErrorKind::Input,
         fmt::format("{}{}{} x {} pixels need {} of memory, and there are {}; {:.0f} x {:.0f} "
@@ -149,8 +152,8 @@ void checkMemory(const RenderSettings& settings, const SceneDescription& scene, 
 }
 
 /// The same with what is left once the scene stands.
-void checkMemoryLeft(const RenderSettings& settings, const SceneDescription& scene,
-                     const Outputs& outputs) {
+void checkMemoryLeft(const render::RenderSettings& settings, const scene::SceneDescription& scene,
+                     const image::Outputs& outputs) {
     // Stacks and buffers of the threads, and what libraries take to write.
     constexpr double ofThread = 16 << 20, ofAll = 64 << 20;
     const int threads = settings.threads > 0
@@ -160,15 +163,16 @@ void checkMemoryLeft(const RenderSettings& settings, const SceneDescription& sce
     checkMemory(settings, scene, outputs.bytesPerPixel(), std::max(left, 0.0));
 }
 
-RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions& options) {
-    const RenderDescription& render = scene.render;
-    RenderSettings settings = woodcock::renderSettings(render);
+render::RenderSettings renderSettings(const scene::SceneDescription& scene,
+                                      const RenderOptions& options) {
+    const scene::RenderDescription& render = scene.render;
+    render::RenderSettings settings = woodcock::scene::renderSettings(render);
     if (options.crop) {
         const PixelRectangle& p = *options.crop;
         if (p.x1 > render.width || p.y1 > render.height)
             throw usageError("--crop {},{},{},{} reaches beyond the image of {}x{} pixels", p.x0,
                              p.y0, p.x1, p.y1, render.width, render.height);
-        settings.crop = Film::Window{p.x0, p.y0, p.x1, p.y1};
+        settings.crop = image::Film::Window{p.x0, p.y0, p.x1, p.y1};
     }
     if (settings.adaptive && options.samples)
         throw usageError(
@@ -180,7 +184,7 @@ RenderSettings renderSettings(const SceneDescription& scene, const RenderOptions
     settings.firstSample = samples.first;
     settings.endSample = samples.end;
     settings.threads = options.threads.value_or(0);
-    const ExrLayers layers = layersOf(scene);
+    const image::ExrLayers layers = layersOf(scene);
     settings.depthLayers = layers.depth || layers.transmittance;
     settings.featureLayers = layers.albedo || layers.normal;
     constexpr double encoded = 32;  // of a pixel in an image file with all layers, about
@@ -199,23 +203,24 @@ void warnUnlessEmpty(const std::string& text) {
     if (!text.empty()) spdlog::warn("{}", text);
 }
 
-bool haveSameFields(const SceneDescription& a, const SceneDescription& b) {
-    const RenderDescription &ra = a.render, &rb = b.render;
+bool haveSameFields(const scene::SceneDescription& a, const scene::SceneDescription& b) {
+    const scene::RenderDescription &ra = a.render, &rb = b.render;
     return a.volumes == b.volumes && ra.storage == rb.storage && ra.lookup == rb.lookup &&
            ra.levelOfDetail == rb.levelOfDetail;
 }
 
-std::string samplesText(const RenderResult& result, const RenderSettings& settings) {
+std::string samplesText(const render::RenderResult& result,
+                        const render::RenderSettings& settings) {
     if (!settings.adaptive)
         return fmt::format("samples {}:{} of each pixel", settings.firstSample, result.endSample);
-    const Film& film = result.film;
+    const image::Film& film = result.film;
     return fmt::format("the work of {} samples per pixel, {} to {} of them, {:.3g} in the mean",
                        result.endSample, film.fewestSamples(), film.mostSamples(),
                        film.meanSamples());
 }
 
 /// Numbers that say how well the render went.
-void reportResult(const RenderResult& result, const RenderSettings& settings) {
+void reportResult(const render::RenderResult& result, const render::RenderSettings& settings) {
     spdlog::info("{} in {}: {}, {}", stopReasonName(result.reason), formatDuration(result.seconds),
                  samplesText(result, settings), noiseOf(result));
     if (const std::uint64_t count = result.counters.clamped)
@@ -227,15 +232,15 @@ void reportResult(const RenderResult& result, const RenderSettings& settings) {
     if (missing > 0 && result.film.mostSamples() > 0)
         spdlog::warn("{} of {} pixels have no sample yet; they are black, with alpha 0{}", missing,
                      std::int64_t{result.film.crop().width()} * result.film.crop().height(),
-                     result.reason == StopReason::TimeLimit
+                     result.reason == render::StopReason::TimeLimit
                          ? ": one sample of each takes longer than twice the time limit"
                          : "");
 }
 
-void reportNeeds(const Scene& scene) {
-    const Needs needs = findNeeds(scene);
-    spdlog::info("the scene {}", usedOf(needs));
-    if (const std::string unused = unusedOf(needs); !unused.empty())
+void reportNeeds(const render::Scene& scene) {
+    const render::Needs needs = render::findNeeds(scene);
+    spdlog::info("the scene {}", render::usedOf(needs));
+    if (const std::string unused = render::unusedOf(needs); !unused.empty())
         spdlog::debug("the scene {}", unused);
 }
 
@@ -251,12 +256,12 @@ public:
         catchInterrupts();  // not while a scene that comes through a pipe is waited for
         checkWhatIsAsked();
         settings_ = renderSettings(description_, options_);
-        const Outputs outputs = prepareOutputs(description_, options_);
+        const image::Outputs outputs = prepareOutputs(description_, options_);
         if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
 
         loadStart_ = std::chrono::steady_clock::now();
         load();
-        if (options_.rendersImages()) render(outputs);
+        if (options_.rendersImages()) render::render(outputs);
     }
 
 private:
@@ -275,39 +280,40 @@ private:
         checkFiles(description_, options_);  // with what --set says of lights that were chosen
         const std::filesystem::path& file = options_.writeScene;
         if (file.empty()) return;
-        writeTextFile(file, writeScene(description_, file.parent_path()));
+        writeTextFile(file, scene::writeScene(description_, file.parent_path()));
         if (!isStdout(file))
             spdlog::info("wrote {}: {}", file.string(), describeChoices(open, description_));
     }
 
     /// For --quality auto.
     void chooseSettings() {
-        const SceneDescription before = description_;
+        const scene::SceneDescription before = description_;
         if (!chooseQuality(description_, options_, commandLine_)) endWith(exitInterrupted);
-        if (!haveSameFields(before, description_)) loaded_ = loadScene(description_);
+        if (!haveSameFields(before, description_)) loaded_ = scene::loadScene(description_);
         settings_ = renderSettings(description_, options_);
     }
 
-    void render(const Outputs& outputs) {
+    void render(const image::Outputs& outputs) {
         if (options_.choosesQuality()) chooseSettings();
         PictureWarnings warnings(description_, loaded_);
         std::vector<std::string> notes;
-        const Scene scene = buildScene(description_, std::move(loaded_), &notes);
+        const render::Scene scene = scene::buildScene(description_, std::move(loaded_), &notes);
         for (const std::string& note : notes) spdlog::info("{}", note);
         const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart_;
         endIfInterrupted();
-        for (const std::string& warning : precisionWarnings(scene)) spdlog::warn("{}", warning);
+        for (const std::string& warning : render::precisionWarnings(scene))
+            spdlog::warn("{}", warning);
         warnUnlessEmpty(warnings.ofCamera(scene));
 
         checkMemoryLeft(settings_, description_, outputs);
         reportNeeds(scene);
-        const RenderResult result = renderWithProgress(scene, settings_, style_);
+        const render::RenderResult result = renderWithProgress(scene, settings_, style_);
         reportResult(result, settings_);
-        const std::string digest = sceneDigest(description_);
+        const std::string digest = scene::sceneDigest(description_);
         write(result, outputs, digest);
         if (result.film.mostSamples() > 0) warnUnlessEmpty(warnings.ofPicture(scene, result));
         writeStats(result, digest, loading.count());
-        if (result.reason == StopReason::Interrupted) endWith(exitInterrupted);
+        if (result.reason == render::StopReason::Interrupted) endWith(exitInterrupted);
         if (result.film.mostSamples() == 0)
             throw failure(
                 "nothing was rendered within twice the time limit of {}: nothing is written. Paths "
@@ -316,7 +322,7 @@ private:
                 formatDuration(settings_.timeLimit));
     }
 
-    void write(const RenderResult& result, const Outputs& outputs,
+    void write(const render::RenderResult& result, const image::Outputs& outputs,
                const std::string& digest) const {
         if (result.film.mostSamples() > 0) {
             const std::string note = outputs.write(
@@ -325,12 +331,12 @@ private:
             for (const std::filesystem::path& file : files())
                 spdlog::info("wrote {}", file.string());
             if (!note.empty()) spdlog::info("{}", note);
-        } else if (result.reason != StopReason::TimeLimit) {
+        } else if (result.reason != render::StopReason::TimeLimit) {
             spdlog::warn("interrupted before anything was rendered: nothing is written");
         }
     }
 
-    void writeStats(const RenderResult& result, const std::string& digest,
+    void writeStats(const render::RenderResult& result, const std::string& digest,
                     double loadSeconds) const {
         const std::string stats = statsText(
             result, settings_, digest, loadSeconds,
@@ -342,9 +348,9 @@ private:
     const RenderOptions& options_;
     const std::string& commandLine_;
     ProgressStyle style_;
-    SceneDescription description_;
-    RenderSettings settings_;
-    LoadedScene loaded_;
+    scene::SceneDescription description_;
+    render::RenderSettings settings_;
+    scene::LoadedScene loaded_;
     std::chrono::steady_clock::time_point loadStart_;
 };
 

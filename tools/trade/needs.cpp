@@ -14,24 +14,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::string& nameOf(const NeedCost& c) { return needNames[static_cast<std::size_t>(c.need)]; }
-
-/// Without the risk that chance decides: two standard errors beyond the mark on either side.
-bool resolved(const NeedCost& c) {
-    return std::abs(c.cost().value - NeedCost::leastRatio) > 2 * c.cost().se;
+const std::string& nameOf(const trade::NeedCost& c) {
+    return trade::needNames[static_cast<std::size_t>(c.need)];
 }
 
-std::string verdict(const NeedCost& c) {
+/// Without the risk that chance decides: two standard errors beyond the mark on either side.
+bool resolved(const trade::NeedCost& c) {
+    return std::abs(c.cost().value - trade::NeedCost::leastRatio) > 2 * c.cost().se;
+}
+
+std::string verdict(const trade::NeedCost& c) {
     return c.needed ? "needed" : c.earns() ? "earns" : "does not earn";
 }
 
-std::string pictures(const NeedCost& c) {
+std::string pictures(const trade::NeedCost& c) {
     if (c.needed) return "";
     return c.sameBits ? "same bits"
                       : fmt::format("{:+.1e} +- {:.0e}", c.difference.value, c.difference.se);
 }
 
-void printRow(const NeedCost& c) {
+void printRow(const trade::NeedCost& c) {
     if (c.needed) {
         print("{:<22} {:>11} {:>11} {:>16} {:>16}  needed\n", nameOf(c), "", "", "", "");
     } else {
@@ -44,9 +46,9 @@ void printRow(const NeedCost& c) {
     std::fflush(stdout);  // what takes long is seen as it comes
 }
 
-std::vector<std::string> notesOn(const std::vector<NeedCost>& costs) {
+std::vector<std::string> notesOn(const std::vector<trade::NeedCost>& costs) {
     std::vector<std::string> notes;
-    for (const NeedCost& c : costs) {
+    for (const trade::NeedCost& c : costs) {
         if (c.needed) continue;
         if (!resolved(c))
             notes.push_back(
@@ -60,10 +62,10 @@ std::vector<std::string> notesOn(const std::vector<NeedCost>& costs) {
     return notes;
 }
 
-Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
+Json needsJson(const std::string& scene, const std::vector<trade::NeedCost>& costs,
                const std::vector<std::string>& notes) {
     Json rows = Json::array();
-    for (const NeedCost& c : costs) {
+    for (const trade::NeedCost& c : costs) {
         Json row{{"need", nameOf(c)}, {"needed", c.needed}};
         if (c.needed) {
             row.update({{"seconds", nullptr}, {"pretended", nullptr}, {"ratio", nullptr}});
@@ -83,11 +85,11 @@ Json needsJson(const std::string& scene, const std::vector<NeedCost>& costs,
     return {{"woodcock", aboutWoodcock()}, {"scene", scene}, {"rows", rows}, {"notes", notes}};
 }
 
-std::string needsCsv(const std::vector<NeedCost>& costs) {
+std::string needsCsv(const std::vector<trade::NeedCost>& costs) {
     std::string text =
         "need,needed,seconds,seconds_se,pretended,pretended_se,ratio,ratio_se,variance,variance_se,"
         "pairs,verdict\n";
-    for (const NeedCost& c : costs)
+    for (const trade::NeedCost& c : costs)
         text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", nameOf(c), int{c.needed},
                             c.without.value, c.without.se, c.with.value, c.with.se, c.ratio.value,
                             c.ratio.se, c.variance.value, c.variance.se, c.pairs, verdict(c));
@@ -100,20 +102,20 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
               const ReportOptions& reports) {
     checkInput(input);
     prepareReport(report, {"needs.json", "needs.csv", "needs.html"});
-    SceneDescription description = parseInput(input);
-    LoadedScene loaded = loadAndComplete(description);
-    const RenderSettings settings = renderSettings(description.render);
-    const Scene scene = buildScene(description, std::move(loaded));
+    scene::SceneDescription description = parseInput(input);
+    scene::LoadedScene loaded = loadAndComplete(description);
+    const render::RenderSettings settings = scene::renderSettings(description.render);
+    const render::Scene scene = scene::buildScene(description, std::move(loaded));
 
     bool first = true;
-    const auto show = [&](const NeedCost& cost) {
+    const auto show = [&](const trade::NeedCost& cost) {
         if (!reports.printsText()) return;
         if (std::exchange(first, false))
             print("{:<22} {:>11} {:>11} {:>16} {:>16}\n", "need", "without [s]", "with [s]",
                   "ratio of times", "of variances");
         printRow(cost);
     };
-    const auto costs = needsCost(scene, settings, {.budget = budget, .onResult = show});
+    const auto costs = trade::needsCost(scene, settings, {.budget = budget, .onResult = show});
     const std::vector<std::string> notes = notesOn(costs);
     const std::string name = input.files.front().filename().string();
     const Json json = needsJson(name, costs, notes);

@@ -6,7 +6,9 @@
 namespace woodcock::tool {
 
 // JSON's library writes numbers that are not finite as null.
-nlohmann::ordered_json toJson(const Measured& m) { return {{"value", m.value}, {"se", m.se}}; }
+nlohmann::ordered_json toJson(const trade::Measured& m) {
+    return {{"value", m.value}, {"se", m.se}};
+}
 
 nlohmann::ordered_json aboutWoodcock() { return {{"version", version()}}; }
 

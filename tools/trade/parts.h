@@ -21,7 +21,8 @@ void runNeeds(const SceneInput& input, double budget, const std::filesystem::pat
 /// --scaling: how the cost grows. Likewise; scaling.json and scaling.csv.
 void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports);
 
-nlohmann::ordered_json toJson(const Measured& m);  ///< {"value", "se"}; null where not finite
+nlohmann::ordered_json toJson(
+    const trade::Measured& m);  ///< {"value", "se"}; null where not finite
 nlohmann::ordered_json aboutWoodcock();
 
 }  // namespace woodcock::tool

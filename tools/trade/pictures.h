@@ -10,6 +10,7 @@
 namespace woodcock::tool {
 
 /// The result's crops through the scene's display transform, as data: URLs of PNG files.
-std::vector<std::string> tradePictures(const TradeResult& result, const SceneDescription& scene);
+std::vector<std::string> tradePictures(const trade::TradeResult& result,
+                                       const scene::SceneDescription& scene);
 
 }  // namespace woodcock::tool

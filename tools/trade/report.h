@@ -17,7 +17,7 @@ struct TradeReport {
     int threads = 0;
     double budget = 0;
     std::vector<std::string> pictures = {};  ///< data: URLs of the result's crops
-    TradeResult result = {};
+    trade::TradeResult result = {};
 };
 
 /// Tables for a terminal 100 columns wide.

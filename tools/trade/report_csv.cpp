@@ -22,12 +22,12 @@ std::string tradeCsv(const TradeReport& report) {
         "name,biased,samples,seconds,relmse,relmse_se,flip,flip_se,seconds_per_sample,"
         "seconds_per_sample_se,variance,variance_se,bias,bias_se,squared_bias,squared_bias_se,"
         "memory,load_seconds,command\n";
-    for (const CandidateResult& c : report.result.candidates)
-        for (const TradePoint& p : c.points) {
+    for (const trade::CandidateResult& c : report.result.candidates)
+        for (const trade::TradePoint& p : c.points) {
             text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},", field(c.candidate.name), c.biased,
                                 p.samples, p.seconds, p.relMse.value, p.relMse.se);
             text += p.flip ? fmt::format("{:.6g},{:.6g},", p.flip->value, p.flip->se) : ",,";
-            for (const Measured& m : {c.secondsPerSample, c.variance, c.bias, c.squaredBias})
+            for (const trade::Measured& m : {c.secondsPerSample, c.variance, c.bias, c.squaredBias})
                 text += fmt::format("{:.6g},{:.6g},", m.value, m.se);
             text += fmt::format("{},{:.6g},{}\n", c.bytes, c.loadSeconds,
                                 field(report.command.of(c.candidate)));

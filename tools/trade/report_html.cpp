@@ -18,32 +18,32 @@ namespace woodcock::tool {
 
 namespace {
 
-nlohmann::json numbers(const Measured& m) { return {{"value", m.value}, {"se", m.se}}; }
+nlohmann::json numbers(const trade::Measured& m) { return {{"value", m.value}, {"se", m.se}}; }
 
 /// The numbers that the page needs for any time and any error: for each candidate what its bias is,
 /// what its noise is times the time, and how well the latter's difference from each other
 /// candidate's is known.
-nlohmann::json modelsJson(const std::vector<TradeModel>& models) {
+nlohmann::json modelsJson(const std::vector<trade::TradeModel>& models) {
     nlohmann::json candidates = nlohmann::json::array();
-    for (const TradeModel& model : models) {
+    for (const trade::TradeModel& model : models) {
         if (model.costs.empty()) {
             candidates.push_back(nullptr);
             continue;
         }
         nlohmann::json differences = nlohmann::json::array();
-        for (const TradeModel& other : models)
-            differences.push_back(noiseDifferenceError(model, other));
+        for (const trade::TradeModel& other : models)
+            differences.push_back(trade::noiseDifferenceError(model, other));
         candidates.push_back({{"seconds_per_sample", model.secondsPerSample},
                               {"bias", numbers({model.biasError(), model.squaredBias.se})},
                               {"noise", numbers(model.noise())},
                               {"noise_difference_se", std::move(differences)}});
     }
-    return {{"tie_width", tieWidth}, {"candidates", std::move(candidates)}};
+    return {{"tie_width", trade::tieWidth}, {"candidates", std::move(candidates)}};
 }
 
 }  // namespace
 
-std::string tradePage(const nlohmann::json& report, const std::vector<TradeModel>& models) {
+std::string tradePage(const nlohmann::json& report, const std::vector<trade::TradeModel>& models) {
     return makePage(
         {"woodcock trade",
          {pageChartStyle, tradePageStyle},

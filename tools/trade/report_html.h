@@ -12,7 +12,7 @@ namespace woodcock::tool {
 // The self-contained pages of what `woodcock trade` measures, from the JSON that it writes.
 
 /// `models`: one for each of the report's candidates; no costs where it was not measured.
-std::string tradePage(const nlohmann::json& report, const std::vector<TradeModel>& models);
+std::string tradePage(const nlohmann::json& report, const std::vector<trade::TradeModel>& models);
 std::string scalingPage(const nlohmann::json& report);  ///< of `trade --scaling`
 std::string needsPage(const nlohmann::json& report);    ///< of `trade --needs`
 

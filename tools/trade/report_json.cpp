@@ -12,13 +12,13 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json measured(const Measured& m) {
+Json measured(const trade::Measured& m) {
     return {{"value", m.value}, {"se", m.se}};  // infinite becomes null
 }
 
 /// The root of a squared bias; where that is below zero by noise, 0. The error is how far one
 /// standard error more takes it.
-Json rootOfBias(const CandidateResult& c) {
+Json rootOfBias(const trade::CandidateResult& c) {
     const double square = std::max(0.0, c.squaredBias.value);
     const double root = std::sqrt(square);
     return {{"value", root},
@@ -26,16 +26,16 @@ Json rootOfBias(const CandidateResult& c) {
             {"resolved", c.biasResolved()}};
 }
 
-Json pointJson(const TradePoint& p) {
+Json pointJson(const trade::TradePoint& p) {
     Json j{{"samples", p.samples},     {"seconds", p.seconds}, {"relmse", p.relMse.value},
            {"relmse_se", p.relMse.se}, {"flip", nullptr},      {"flip_se", nullptr}};
     if (p.flip) j["flip"] = p.flip->value, j["flip_se"] = p.flip->se;
     return j;
 }
 
-Json candidateJson(const TradeReport& report, const CandidateResult& c) {
+Json candidateJson(const TradeReport& report, const trade::CandidateResult& c) {
     Json points = Json::array();
-    for (const TradePoint& p : c.points) points.push_back(pointJson(p));
+    for (const trade::TradePoint& p : c.points) points.push_back(pointJson(p));
     Json j{{"name", c.candidate.name},
            {"biased", c.biased},
            {"quality", nullptr},
@@ -58,17 +58,17 @@ Json candidateJson(const TradeReport& report, const CandidateResult& c) {
 }
 
 /// What FLIP had become by so many samples: that of the last measured count before.
-Json flipAt(const CandidateResult& c, double samples) {
+Json flipAt(const trade::CandidateResult& c, double samples) {
     Json flip;
-    for (const TradePoint& p : c.points)
+    for (const trade::TradePoint& p : c.points)
         if (p.flip && (flip.is_null() || p.samples <= samples)) flip = p.flip->value;
     return flip;
 }
 
-Json timeJson(const TradeResult& result, const TradeReading& reading) {
+Json timeJson(const trade::TradeResult& result, const trade::TradeReading& reading) {
     Json rows = Json::array();
     for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-        const TradeModel& model = result.candidates[i].model;
+        const trade::TradeModel& model = result.candidates[i].model;
         const auto error = model.errorAt(reading.target);
         if (!error) continue;
         const double samples = model.samplesIn(reading.target);
@@ -84,10 +84,10 @@ Json timeJson(const TradeResult& result, const TradeReading& reading) {
             {"tied", reading.winner.tied}};
 }
 
-Json errorJson(const TradeResult& result, const TradeReading& reading) {
+Json errorJson(const trade::TradeResult& result, const trade::TradeReading& reading) {
     Json rows = Json::array();
     for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-        const TradeModel& model = result.candidates[i].model;
+        const trade::TradeModel& model = result.candidates[i].model;
         Json row{
             {"candidate", i}, {"samples", nullptr}, {"seconds", nullptr}, {"seconds_se", nullptr}};
         if (const auto seconds = model.secondsTo(reading.target)) {
@@ -104,9 +104,9 @@ Json errorJson(const TradeResult& result, const TradeReading& reading) {
 
 Json recommendations(const TradeReport& report) {
     Json all = Json::array();
-    const TradeResult& result = report.result;
-    for (const TradeReading& r : result.equalTime) {
-        const CandidateResult& c = result.candidates[r.recommended];
+    const trade::TradeResult& result = report.result;
+    for (const trade::TradeReading& r : result.equalTime) {
+        const trade::CandidateResult& c = result.candidates[r.recommended];
         all.push_back({{"kind", "time"},
                        {"target", r.target},
                        {"candidate", r.recommended},
@@ -114,8 +114,8 @@ Json recommendations(const TradeReport& report) {
                        {"expected_relmse", c.model.errorAt(r.target)->value},
                        {"command", report.command.ofSeconds(c.candidate, r.target)}});
     }
-    for (const TradeReading& r : result.equalError) {
-        const CandidateResult& c = result.candidates[r.recommended];
+    for (const trade::TradeReading& r : result.equalError) {
+        const trade::CandidateResult& c = result.candidates[r.recommended];
         const double samples =
             std::ceil(c.model.secondsTo(r.target)->value / c.model.secondsPerSample);
         all.push_back({{"kind", "error"},
@@ -128,9 +128,9 @@ Json recommendations(const TradeReport& report) {
     return all;
 }
 
-Json referenceJson(const TradeReference& r) {
+Json referenceJson(const trade::TradeReference& r) {
     Json mean = Json::array(), errors = Json::array();
-    for (const Measured& m : r.mean) mean.push_back(m.value), errors.push_back(m.se);
+    for (const trade::Measured& m : r.mean) mean.push_back(m.value), errors.push_back(m.se);
     return {{"samples", r.samples},        {"seeds", r.seeds},        {"seconds", r.seconds},
             {"relmse", r.error.value},     {"relmse_se", r.error.se}, {"mean", std::move(mean)},
             {"mean_se", std::move(errors)}};
@@ -139,7 +139,7 @@ Json referenceJson(const TradeReference& r) {
 }  // namespace
 
 nlohmann::ordered_json tradeJson(const TradeReport& report, bool withPictures) {
-    const TradeResult& result = report.result;
+    const trade::TradeResult& result = report.result;
     Json j{{"woodcock", {{"version", version()}}},
            {"command", report.commandLine},
            {"scene", report.scene},
@@ -151,18 +151,18 @@ nlohmann::ordered_json tradeJson(const TradeReport& report, bool withPictures) {
            {"seconds", result.seconds},
            {"reference", referenceJson(result.reference)}};
     Json& candidates = j["candidates"] = Json::array();
-    for (const CandidateResult& c : result.candidates)
+    for (const trade::CandidateResult& c : result.candidates)
         candidates.push_back(candidateJson(report, c));
     Json& front = j["front"] = Json::array();
-    for (const FrontPoint& p : result.front)
+    for (const trade::FrontPoint& p : result.front)
         front.push_back({{"seconds", p.seconds},
                          {"relmse", p.error},
                          {"candidate", p.candidate},
                          {"samples", result.candidates[p.candidate].model.samplesIn(p.seconds)}});
     Json& times = j["equal_time"] = Json::array();
-    for (const TradeReading& r : result.equalTime) times.push_back(timeJson(result, r));
+    for (const trade::TradeReading& r : result.equalTime) times.push_back(timeJson(result, r));
     Json& errors = j["equal_error"] = Json::array();
-    for (const TradeReading& r : result.equalError) errors.push_back(errorJson(result, r));
+    for (const trade::TradeReading& r : result.equalError) errors.push_back(errorJson(result, r));
     j["recommendations"] = recommendations(report);
     Json& crops = j["crops"] = Json::array();
     for (std::size_t i = 0; i < result.crops.size(); ++i) {

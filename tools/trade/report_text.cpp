@@ -24,7 +24,7 @@ std::string padded(std::string text, std::size_t width) {
     return text + std::string(width - letters, ' ');
 }
 
-std::string nameOf(const TradeResult& result, std::size_t i) {
+std::string nameOf(const trade::TradeResult& result, std::size_t i) {
     return result.candidates[i].candidate.name;
 }
 
@@ -33,14 +33,14 @@ std::string megabytes(std::size_t bytes) {
 }
 
 /// "1.23e-02 +-4%": relative, as columns are narrow.
-std::string withError(const Measured& m) {
+std::string withError(const trade::Measured& m) {
     if (!(m.value > 0)) return fmt::format("{:.2e}", m.value);
     return fmt::format("{:.2e} +-{:.0f}%", m.value, std::min(999.0, 100 * m.se / m.value));
 }
 
-std::string candidateLine(const CandidateResult& c) {
+std::string candidateLine(const trade::CandidateResult& c) {
     const double bias = std::sqrt(std::max(0.0, c.squaredBias.value));
-    const TradePoint& last = c.points.back();
+    const trade::TradePoint& last = c.points.back();
     return fmt::format(
         "{} {:>9.3g} {:>6.1f} {:>14} {:>7.2f} {:>5.2f} {:>8.1e} {:>6} {:>6}\n",
         padded((c.onFront ? "* " : "  ") + c.candidate.name, nameWidth), c.secondsPerSample.value,
@@ -49,11 +49,11 @@ std::string candidateLine(const CandidateResult& c) {
         last.flip ? fmt::format("{:.3f}", last.flip->value) : "-", megabytes(c.bytes));
 }
 
-std::string candidatesText(const TradeResult& result) {
+std::string candidatesText(const trade::TradeResult& result) {
     std::string text = fmt::format("\n{} {:>9} {:>6} {:>14} {:>7} {:>5} {:>8} {:>6} {:>6}\n",
                                    padded("  candidate", nameWidth), "s/sample", "+-%", "variance",
                                    "bias %", "+-", "rms bias", "FLIP", "MB");
-    for (const CandidateResult& c : result.candidates) text += candidateLine(c);
+    for (const trade::CandidateResult& c : result.candidates) text += candidateLine(c);
     return text +
            "  * has the least error at some time. variance: of one sample, relative; rms bias: per "
            "pixel,\n  relative, 0 where noise explains it; relMSE = variance / samples + (rms "
@@ -61,7 +61,7 @@ std::string candidatesText(const TradeResult& result) {
 }
 
 /// As many of those that are tied with it as a line has room for.
-std::string tiedText(const TradeResult& result, const std::vector<std::size_t>& tied,
+std::string tiedText(const trade::TradeResult& result, const std::vector<std::size_t>& tied,
                      std::size_t room) {
     std::string text;
     for (std::size_t i = 0; i < tied.size(); ++i) {
@@ -88,8 +88,9 @@ std::string wrapped(const std::string& text) {
     return lines + line + "\n";
 }
 
-std::string readingLine(const std::string& target, const TradeResult& result,
-                        const TradeReading& reading, double samples, const Measured& number) {
+std::string readingLine(const std::string& target, const trade::TradeResult& result,
+                        const trade::TradeReading& reading, double samples,
+                        const trade::Measured& number) {
     const std::string line = fmt::format("{:>10}  {} {:>9.0f} {:>14}  ", target,
                                          padded(nameOf(result, reading.recommended), nameWidth),
                                          samples, withError(number));
@@ -99,22 +100,22 @@ std::string readingLine(const std::string& target, const TradeResult& result,
 }
 
 std::string readingsText(const TradeReport& report) {
-    const TradeResult& result = report.result;
+    const trade::TradeResult& result = report.result;
     std::string text;
     if (!result.equalTime.empty())
         text += fmt::format("\n{:>10}  {} {:>9} {:>14}\n", "in", padded("take", nameWidth),
                             "samples", "relMSE");
-    for (const TradeReading& r : result.equalTime) {
-        const TradeModel& model = result.candidates[r.recommended].model;
+    for (const trade::TradeReading& r : result.equalTime) {
+        const trade::TradeModel& model = result.candidates[r.recommended].model;
         text += readingLine(formatDuration(r.target), result, r, model.samplesIn(r.target),
                             *model.errorAt(r.target));
     }
     if (!result.equalError.empty())
         text += fmt::format("\n{:>10}  {} {:>9} {:>14}\n", "to relMSE", padded("take", nameWidth),
                             "samples", "seconds");
-    for (const TradeReading& r : result.equalError) {
-        const TradeModel& model = result.candidates[r.recommended].model;
-        const Measured seconds = *model.secondsTo(r.target);
+    for (const trade::TradeReading& r : result.equalError) {
+        const trade::TradeModel& model = result.candidates[r.recommended].model;
+        const trade::Measured seconds = *model.secondsTo(r.target);
         text += readingLine(fmt::format("{:.0e}", r.target), result, r,
                             std::ceil(seconds.value / model.secondsPerSample), seconds);
     }
@@ -124,8 +125,8 @@ std::string readingsText(const TradeReport& report) {
 }  // namespace
 
 std::string tradeText(const TradeReport& report) {
-    const TradeResult& result = report.result;
-    const TradeReference& r = result.reference;
+    const trade::TradeResult& result = report.result;
+    const trade::TradeReference& r = result.reference;
     std::string text = fmt::format(
         "{}: {} x {} pixels, measured at {} x {} in {}\nreference: {} samples per pixel in {} "
         "seeds, relMSE {:.1e} +- {:.0e}\n",
@@ -135,7 +136,7 @@ std::string tradeText(const TradeReport& report) {
     text += candidatesText(result) + readingsText(report);
     for (const std::string& note : result.notes) text += wrapped("note: " + note);
     text += "\n";
-    for (const TradeReading& reading : result.equalTime)
+    for (const trade::TradeReading& reading : result.equalTime)
         text += fmt::format("{}: {}\n", formatDuration(reading.target),
                             report.command.ofSeconds(
                                 result.candidates[reading.recommended].candidate, reading.target));

@@ -17,21 +17,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void printReport(const ScalingReport& report) {
-    for (const Curve& curve : report.curves) {
+void printReport(const trade::ScalingReport& report) {
+    for (const trade::Curve& curve : report.curves) {
         print("{}\n", curve.name);
-        for (const CurveSeries& series : curve.series) {
-            const Measured slope = series.slope();
+        for (const trade::CurveSeries& series : curve.series) {
+            const trade::Measured slope = series.slope();
             print("  {}{}\n", series.name,
                   std::isfinite(slope.se)
                       ? fmt::format(": slope {:.3f} +- {:.3f}", slope.value, slope.se)
                       : "");
-            for (const CurvePoint& p : series.points)
+            for (const trade::CurvePoint& p : series.points)
                 print("    {:<12.5g} {:>12.5g} +- {:<10.2g} {}\n", p.x, p.y, p.se,
                       &p == series.points.data() ? curve.yLabel + " over " + curve.xLabel : "");
         }
     }
-    for (const CurveTable& table : report.tables) {
+    for (const trade::CurveTable& table : report.tables) {
         print("{}\n ", table.title);
         for (const std::string& column : table.columns) print(" {:>10}", column);
         print("\n");
@@ -45,11 +45,11 @@ void printReport(const ScalingReport& report) {
     for (const std::string& note : report.notes) print("note: {}\n", note);
 }
 
-Json curveJson(const Curve& curve) {
+Json curveJson(const trade::Curve& curve) {
     Json series = Json::array();
-    for (const CurveSeries& s : curve.series) {
+    for (const trade::CurveSeries& s : curve.series) {
         Json points = Json::array();
-        for (const CurvePoint& p : s.points)
+        for (const trade::CurvePoint& p : s.points)
             points.push_back(Json{{"x", p.x}, {"y", p.y}, {"se", p.se}});
         series.push_back(Json{{"name", s.name}, {"points", points}, {"slope", toJson(s.slope())}});
     }
@@ -60,10 +60,10 @@ Json curveJson(const Curve& curve) {
             {"note", curve.note}};
 }
 
-Json scalingJson(const ScalingReport& report) {
+Json scalingJson(const trade::ScalingReport& report) {
     Json curves = Json::array(), tables = Json::array();
-    for (const Curve& curve : report.curves) curves.push_back(curveJson(curve));
-    for (const CurveTable& t : report.tables)
+    for (const trade::Curve& curve : report.curves) curves.push_back(curveJson(curve));
+    for (const trade::CurveTable& t : report.tables)
         tables.push_back(Json{{"title", t.title}, {"columns", t.columns}, {"rows", t.rows}});
     return {{"woodcock", aboutWoodcock()},
             {"curves", curves},
@@ -71,11 +71,11 @@ Json scalingJson(const ScalingReport& report) {
             {"notes", report.notes}};
 }
 
-std::string scalingCsv(const ScalingReport& report) {
+std::string scalingCsv(const trade::ScalingReport& report) {
     std::string text = "curve,series,x_label,x,y_label,y,se\n";
-    for (const Curve& curve : report.curves)
-        for (const CurveSeries& s : curve.series)
-            for (const CurvePoint& p : s.points)
+    for (const trade::Curve& curve : report.curves)
+        for (const trade::CurveSeries& s : curve.series)
+            for (const trade::CurvePoint& p : s.points)
                 text += fmt::format("{},\"{}\",\"{}\",{},{},{},{}\n", curve.name, s.name,
                                     curve.xLabel, p.x, curve.yLabel, p.y, p.se);
     return text;
@@ -86,10 +86,10 @@ std::string scalingCsv(const ScalingReport& report) {
 void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports) {
     prepareReport(report, {"scaling.json", "scaling.csv", "scaling.html"});
     const ScratchDirectory scratch;
-    const ScalingReport found =
-        measureScaling({.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
-                            spdlog::info("{}", what);
-                        }});
+    const trade::ScalingReport found = trade::measureScaling(
+        {.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
+             spdlog::info("{}", what);
+         }});
     const Json json = scalingJson(found);
     if (reports.json) printJson(json, 1);
     if (reports.printsText()) printReport(found);

@@ -45,15 +45,17 @@ std::string joinedFiles(const std::vector<std::filesystem::path>& files) {
     return fmt::format("{}", fmt::join(names, " "));
 }
 
-std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription& complete,
-                                   const std::vector<Candidate>& given, ProgressStyle style) {
-    const ParseScene parse = [&](const std::vector<std::string>& more) {
+std::optional<trade::TradeResult> measure(const TradeOptions& o,
+                                          const scene::SceneDescription& complete,
+                                          const std::vector<trade::Candidate>& given,
+                                          ProgressStyle style) {
+    const trade::ParseScene parse = [&](const std::vector<std::string>& more) {
         SceneInput input = o.input;
         input.overrides.insert(input.overrides.end(), more.begin(), more.end());
         return parseInput(input);
     };
     WorkProgress progress(style, "trade");
-    TradeSettings settings;
+    trade::TradeSettings settings;
     settings.budget = o.budget.value_or(defaultBudget);
     settings.threads = o.threads.value_or(0);
     settings.seed = o.seed.value_or(0);
@@ -62,12 +64,13 @@ std::optional<TradeResult> measure(const TradeOptions& o, const SceneDescription
         progress.update(fraction);
         return !interrupted();
     };
-    return runTrade(complete, parse, given, settings);
+    return trade::runTrade(complete, parse, given, settings);
 }
 
-std::vector<TradeModel> modelsOf(const TradeResult& result) {
-    std::vector<TradeModel> models;
-    for (const CandidateResult& candidate : result.candidates) models.push_back(candidate.model);
+std::vector<trade::TradeModel> modelsOf(const trade::TradeResult& result) {
+    std::vector<trade::TradeModel> models;
+    for (const trade::CandidateResult& candidate : result.candidates)
+        models.push_back(candidate.model);
     return models;
 }
 
@@ -75,8 +78,8 @@ const std::vector<std::string> reportFiles{"trade.json", "trade.csv", "trade.htm
 
 /// What was asked, and what was found.
 TradeReport reportOf(const TradeOptions& o, const std::string& commandLine,
-                     const SceneDescription& scene, TradeResult result) {
-    TradeReport report{commandLine, joinedFiles(o.input.files), sceneDigest(scene),
+                     const scene::SceneDescription& scene, trade::TradeResult result) {
+    TradeReport report{commandLine, joinedFiles(o.input.files), scene::sceneDigest(scene),
                        RenderCommand(o.input, scene.output.files.empty())};
     report.threads = o.threads.value_or(0) > 0
                          ? *o.threads
@@ -89,18 +92,19 @@ TradeReport reportOf(const TradeOptions& o, const std::string& commandLine,
 
 void weighCandidates(const TradeOptions& o, const std::string& commandLine, ProgressStyle style) {
     checkInput(o.input);
-    const std::vector<Candidate> given =
-        o.candidates.empty() ? std::vector<Candidate>() : readCandidates(o.candidates);
+    const std::vector<trade::Candidate> given = o.candidates.empty()
+                                                    ? std::vector<trade::Candidate>()
+                                                    : trade::readCandidates(o.candidates);
     prepareReport(o.report, reportFiles);
     catchInterrupts();
-    SceneDescription complete = parseInput(o.input);
+    scene::SceneDescription complete = parseInput(o.input);
     std::vector<std::filesystem::path> read = filesRead(o.input, complete);
     read.push_back(o.candidates);
     for (const std::string& name : reportFiles)
         if (!o.report.empty()) refuseOverwriting(std::array{o.report / name}, read);
     loadAndComplete(complete);
 
-    std::optional<TradeResult> result = measure(o, complete, given, style);
+    std::optional<trade::TradeResult> result = measure(o, complete, given, style);
     if (!result) endWith(exitInterrupted);
     const TradeReport report = reportOf(o, commandLine, complete, std::move(*result));
     const nlohmann::ordered_json json = tradeJson(report, false);

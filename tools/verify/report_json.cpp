@@ -29,12 +29,16 @@ Json build() {
     return {{"compiler", compiler}, {"native", bool{WOODCOCK_NATIVE}}, {"assertions", assertions}};
 }
 
-Json caseJson(const Case& c) {
-    Json j{{"kind", nameOf(c.kind)},          {"case", c.name},
-           {"expected", c.expected},          {"allowance", c.allowance},
-           {"measured", c.measured},          {"standard_error", c.standardError},
-           {"largest_error", c.largestError}, {"z", c.z()},
-           {"verdict", nameOf(c.verdict())}};
+Json caseJson(const proof::Case& c) {
+    Json j{{"kind", proof::nameOf(c.kind)},
+           {"case", c.name},
+           {"expected", c.expected},
+           {"allowance", c.allowance},
+           {"measured", c.measured},
+           {"standard_error", c.standardError},
+           {"largest_error", c.largestError},
+           {"z", c.z()},
+           {"verdict", proof::nameOf(c.verdict())}};
     if (!c.note.empty()) j["note"] = c.note;
     if (!c.curve.empty()) j["curve"] = c.curve, j["x_name"] = c.xName, j["x"] = c.x;
     return j;
@@ -44,10 +48,11 @@ Json caseJson(const Case& c) {
 
 std::string reportJson(const VerifyReport& report) {
     Json cases = Json::array(), checks = Json::array(), volumes = Json::array();
-    for (const Case& c : report.cases) cases.push_back(caseJson(c));
+    for (const proof::Case& c : report.cases) cases.push_back(caseJson(c));
     double seconds = 0;
     for (const CheckTime& t : report.times) {
-        checks.push_back({{"kind", nameOf(t.kind)}, {"check", t.name}, {"seconds", t.seconds}});
+        checks.push_back(
+            {{"kind", proof::nameOf(t.kind)}, {"check", t.name}, {"seconds", t.seconds}});
         seconds += t.seconds;
     }
     for (const auto& file : report.options.volumes) volumes.push_back(file.string());
@@ -61,7 +66,7 @@ std::string reportJson(const VerifyReport& report) {
                     {"only", report.only},
                     {"volumes", volumes},
                     {"complete", report.complete},
-                    {"largest_z", largestZ},
+                    {"largest_z", proof::largestZ},
                     {"seconds", seconds},
                     {"checks", checks},
                     {"cases", cases}};

@@ -42,16 +42,16 @@ struct VerifyOptions {
 void validate(const VerifyOptions& o) {
     if (o.quick && o.full)
         throw usageError("--quick and --full contradict each other: give one of them");
-    for (const auto& file : o.volumes) listGrids(file);
+    for (const auto& file : o.volumes) grid::listGrids(file);
     prepareReport(o.report, {"verify.json", "verify.html"});
 }
 
 /// The checks whose kind or name contains `only`.
-std::vector<Check> chosenChecks(const std::string& only) {
-    std::vector<Check> chosen;
+std::vector<proof::Check> chosenChecks(const std::string& only) {
+    std::vector<proof::Check> chosen;
     std::vector<std::string> names;
-    for (const Check& check : checks()) {
-        names.push_back(fmt::format("{} ({})", check.name, nameOf(check.kind)));
+    for (const proof::Check& check : proof::checks()) {
+        names.push_back(fmt::format("{} ({})", check.name, proof::nameOf(check.kind)));
         if (names.back().find(only) != std::string::npos) chosen.push_back(check);
     }
     if (chosen.empty())
@@ -94,10 +94,10 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void runChecks(const std::vector<Check>& list, bool print, ProgressStyle style,
+void runChecks(const std::vector<proof::Check>& list, bool print, ProgressStyle style,
                VerifyReport& report) {
     VerifyProgress progress(list.size(), style);
-    for (const Check& check : list) {
+    for (const proof::Check& check : list) {
         const std::size_t done = report.times.size();
         report.options.stop = [&] {
             progress.show(done, check.name);
@@ -105,7 +105,7 @@ void runChecks(const std::vector<Check>& list, bool print, ProgressStyle style,
         };
         if (report.options.stop()) break;
         const auto start = std::chrono::steady_clock::now();
-        const std::vector<Case> cases = run(check, report.options);
+        const std::vector<proof::Case> cases = proof::run(check, report.options);
         report.times.push_back({check.kind, check.name, secondsSince(start)});
         spdlog::debug("{}: {} cases in {:.2f} s", check.name, cases.size(), secondsSince(start));
         report.cases.insert(report.cases.end(), cases.begin(), cases.end());
@@ -120,7 +120,7 @@ void runChecks(const std::vector<Check>& list, bool print, ProgressStyle style,
 
 void runVerify(const VerifyOptions& o) {
     const ProgressStyle style = o.reports.start();
-    const std::vector<Check> list = chosenChecks(o.only);
+    const std::vector<proof::Check> list = chosenChecks(o.only);
     catchInterrupts();
     validate(o);
     VerifyReport report;
@@ -138,8 +138,9 @@ void runVerify(const VerifyOptions& o) {
         writeReport(o.report,
                     {{"verify.json", reportJson(report)}, {"verify.html", reportHtml(report)}});
     if (!report.complete) endWith(exitInterrupted);
-    const auto failed = std::count_if(report.cases.begin(), report.cases.end(),
-                                      [](const Case& c) { return c.verdict() != Verdict::Pass; });
+    const auto failed =
+        std::count_if(report.cases.begin(), report.cases.end(),
+                      [](const proof::Case& c) { return c.verdict() != proof::Verdict::Pass; });
     if (failed == 0) return;
     if (o.reports.quiet) spdlog::error("{} of {} cases fail", failed, report.cases.size());
     endWith(exitFailed);

@@ -7,7 +7,7 @@
 
 #include "woodcock/bake/openvdb_ax_bounds.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 namespace {
 
 namespace ast = openvdb::ax::ast;
@@ -149,4 +149,4 @@ std::shared_ptr<const ast::Tree> boundAx(const ast::Tree& code,
     return Bounds(locate, logger).of(code);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

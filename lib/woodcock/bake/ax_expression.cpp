@@ -12,7 +12,7 @@
 #include <vector>
 #endif
 
-namespace woodcock {
+namespace woodcock::bake {
 namespace {
 
 #ifdef WOODCOCK_AX_LIBRARY
@@ -79,8 +79,8 @@ bool axAvailable() {
 AxExpression::AxExpression(const std::string& code, const std::string& name)
     : program_(compile(code, name)) {}
 
-bool AxExpression::run(VdbGrids& grids, const std::function<bool()>& goesOn) const {
+bool AxExpression::run(grid::VdbGrids& grids, const std::function<bool()>& goesOn) const {
     return program_->run(grids.grids, goesOn);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

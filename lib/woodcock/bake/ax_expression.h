@@ -5,10 +5,13 @@
 #include <memory>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::grid {
+struct VdbGrids;
+}
+
+namespace woodcock::bake {
 
 class AxProgram;
-struct VdbGrids;
 
 /// Whether this build has OpenVDB AX. Without it, AxExpression's constructor says how to get it.
 bool axAvailable();
@@ -38,10 +41,10 @@ public:
     /// thread. If it returns false, so does run(), and the grids are void. Errors: Input, where the
     /// code names a grid that does not exist or has another type (then the grids are unchanged),
     /// and where its loops run for too long.
-    bool run(VdbGrids& grids, const std::function<bool()>& goesOn = {}) const;
+    bool run(grid::VdbGrids& grids, const std::function<bool()>& goesOn = {}) const;
 
 private:
     std::shared_ptr<const AxProgram> program_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

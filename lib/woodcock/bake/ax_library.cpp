@@ -25,7 +25,7 @@
 #include "woodcock/bake/openvdb_ax_rules.h"
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 namespace {
 
 namespace ax = openvdb::ax;
@@ -276,4 +276,4 @@ extern "C" AxProgram* woodcockCompileAx(const std::string& code, const std::stri
     return new Program(code, name);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

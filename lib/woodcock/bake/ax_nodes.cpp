@@ -12,7 +12,7 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/voxel_scan.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -22,7 +22,7 @@ bool isFinite(const openvdb::Vec3s& v) { return openvdb::math::isFinite(v); }
 /// Throws when the code gave values that no grid should hold.
 template <class Grid>
 void checkFinite(const Grid& grid, const std::string& place) {
-    VoxelCount faulty;
+    grid::VoxelCount faulty;
     for (auto v = grid.cbeginValueOn(); v; ++v) {
         if (isFinite(*v)) continue;
         const openvdb::Coord at = v.getCoord();
@@ -41,7 +41,7 @@ public:
         : expression_(code, place), place_(place), names_(std::move(names)), result_(result) {}
 
     std::vector<std::string> gridNames() const override { return names_; }
-    std::shared_ptr<const Node> run(VdbGrids& inputs,
+    std::shared_ptr<const Node> run(grid::VdbGrids& inputs,
                                     const std::function<bool()>& goesOn) const override {
         if (!expression_.run(inputs, goesOn)) return nullptr;
         const openvdb::GridBase& grid = *inputs.grids[result_];
@@ -49,7 +49,7 @@ public:
             checkFinite(*scalars, place_);
         else
             checkFinite(dynamic_cast<const openvdb::Vec3SGrid&>(grid), place_);
-        return gridNode(fieldOf(grid), affineOf(*grid.transform().baseMap()));
+        return gridNode(fieldOf(grid), grid::affineOf(*grid.transform().baseMap()));
     }
 
 private:
@@ -84,4 +84,4 @@ constexpr NodeType types[]{{"ax", ax}};
 
 std::span<const NodeType> axNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

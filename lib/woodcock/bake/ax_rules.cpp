@@ -11,7 +11,7 @@
 
 #include "woodcock/bake/openvdb_ax_rules.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 namespace {
 
 namespace ast = openvdb::ax::ast;
@@ -292,4 +292,4 @@ void checkAxRules(const ast::Tree& code,
     Rules(code, report).check(code);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

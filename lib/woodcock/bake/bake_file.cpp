@@ -13,7 +13,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -44,44 +44,44 @@ std::vector<std::filesystem::path> bakedFiles(const std::filesystem::path& file,
 }
 
 std::vector<std::filesystem::path> writeBake(const std::filesystem::path& file, const Bake& bake,
-                                             const VdbWriteOptions& options, int levels) {
+                                             const grid::VdbWriteOptions& options, int levels) {
     const std::vector<std::filesystem::path> files = bakedFiles(file, levels);
-    writeVdb(file, *bake.grids, options);
+    grid::writeVdb(file, *bake.grids, options);
     for (int level = 1; level <= levels; ++level) {
-        VdbGrids coarse;
+        grid::VdbGrids coarse;
         for (const auto& grid : bake.grids->grids) coarse.grids.push_back(coarsened(*grid, level));
-        writeVdb(files[static_cast<std::size_t>(level)], coarse, options);
+        grid::writeVdb(files[static_cast<std::size_t>(level)], coarse, options);
     }
     return files;
 }
 
-VdbCompression compressionNamed(std::string_view name) {
-    if (name == "none") return VdbCompression::None;
-    return name == "zip" ? VdbCompression::Zip : VdbCompression::Blosc;
+grid::VdbCompression compressionNamed(std::string_view name) {
+    if (name == "none") return grid::VdbCompression::None;
+    return name == "zip" ? grid::VdbCompression::Zip : grid::VdbCompression::Blosc;
 }
 
 Affine3d transformOf(const std::filesystem::path& file, const std::string& grid) {
-    const VdbFile listed = listGrids(file);
-    const auto of = [&](const GridListing& listing) {
+    const grid::VdbFile listed = grid::listGrids(file);
+    const auto of = [&](const grid::GridListing& listing) {
         if (!listing.worldFromIndex)
             throw inputError("{}: grid '{}' has a transform that is not affine", file.string(),
                              listing.uniqueName);
         return *listing.worldFromIndex;
     };
-    if (!grid.empty()) return of(findGrid(listed, grid).grid);
-    for (const GridListing& listing : listed.grids)
+    if (!grid.empty()) return of(grid::findGrid(listed, grid).grid);
+    for (const grid::GridListing& listing : listed.grids)
         if (listing.usable()) return of(listing);
     throw inputError("{} has no grid of numbers to start from; it has: {}", file.string(),
-                     describeGrids(listed));
+                     grid::describeGrids(listed));
 }
 
 RecipeText recipeOfGrids(const std::filesystem::path& file) {
-    const VdbFile listed = listGrids(file);
+    const grid::VdbFile listed = grid::listGrids(file);
     Box3d bounds;
     std::string outputs;
-    for (const GridListing& listing : listed.grids) {
+    for (const grid::GridListing& listing : listed.grids) {
         if (!listing.usable()) continue;
-        const GridInfo info = inspectGrid(listed, listing);
+        const grid::GridInfo info = grid::inspectGrid(listed, listing);
         if (!info.contents) throw inputError("{}", info.error);
         if (info.contents->worldBounds) bounds.add(*info.contents->worldBounds);
         outputs += fmt::format(
@@ -91,11 +91,11 @@ RecipeText recipeOfGrids(const std::filesystem::path& file) {
     }
     if (bounds.empty())
         throw inputError("{} has no grid of voxels to sample; it has: {}", file.string(),
-                         describeGrids(listed));
+                         grid::describeGrids(listed));
     return {fmt::format("about = {}\n[bounds]\nmin = {}\nmax = {}\n{}",
                         tomlText("the grids of " + file.string()), tomlVector(bounds.lower),
                         tomlVector(bounds.upper), outputs),
             file.string(), ""};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

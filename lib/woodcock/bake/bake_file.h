@@ -10,7 +10,7 @@
 #include "woodcock/bake/recipe.h"
 #include "woodcock/grid/vdb/write.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// The files that writeBake() writes.
 std::vector<std::filesystem::path> bakedFiles(const std::filesystem::path& file, int levels);
@@ -20,9 +20,9 @@ std::vector<std::filesystem::path> bakedFiles(const std::filesystem::path& file,
 /// multigrid methods: a coarse voxel lies on every second fine one, and mass is kept. Returns the
 /// files. Errors: Failure, as of writeVdb().
 std::vector<std::filesystem::path> writeBake(const std::filesystem::path& file, const Bake& bake,
-                                             const VdbWriteOptions& options, int levels);
+                                             const grid::VdbWriteOptions& options, int levels);
 
-VdbCompression compressionNamed(std::string_view name);  ///< "none", "zip" or "blosc"
+grid::VdbCompression compressionNamed(std::string_view name);  ///< "none", "zip" or "blosc"
 
 /// The transform of a file's grid, the first one that has voxels if `grid` is empty. Errors: Input.
 Affine3d transformOf(const std::filesystem::path& file, const std::string& grid);
@@ -31,4 +31,4 @@ Affine3d transformOf(const std::filesystem::path& file, const std::string& grid)
 /// Errors: Input.
 RecipeText recipeOfGrids(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

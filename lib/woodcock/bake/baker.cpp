@@ -11,7 +11,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 void Baker::findIndexBox() {
     const Affine3d& world = settings_.worldFromIndex;
@@ -213,7 +213,7 @@ void Baker::bakeLeaf(const Region& region, const std::vector<Status>& status,
 
 void Baker::refuseFaulty(const std::vector<OutputParts>& outputs) const {
     for (std::size_t o = 0; o < outputs.size(); ++o) {
-        const VoxelCount& faulty = outputs[o].faulty;
+        const grid::VoxelCount& faulty = outputs[o].faulty;
         if (faulty.count == 0) continue;
         const Vec3d at = settings_.worldFromIndex.point(faulty.first.as<double>());
         throw inputError(
@@ -256,7 +256,7 @@ Bake Baker::assemble() {
     }
     refuseFaulty(totals);
 
-    Bake bake{.grids = std::make_shared<VdbGrids>(), .evaluatedVoxels = evaluated};
+    Bake bake{.grids = std::make_shared<grid::VdbGrids>(), .evaluatedVoxels = evaluated};
     bool something = false;
     for (std::size_t o = 0; o < recipe_.outputs.size(); ++o) {
         const RecipeOutput& output = recipe_.outputs[o];
@@ -272,7 +272,7 @@ Bake Baker::assemble() {
                                                 : gather.operator()<openvdb::FloatTree>();
         grid->setName(output.name);
         grid->setGridClass(output.channels == 1 ? openvdb::GRID_FOG_VOLUME : openvdb::GRID_UNKNOWN);
-        grid->setTransform(openVdbTransform(settings_.worldFromIndex));
+        grid->setTransform(grid::openVdbTransform(settings_.worldFromIndex));
         BakedGridStatistics& statistics = totals[o].statistics;
         statistics.name = output.name;
         statistics.activeVoxels = grid->activeVoxelCount();
@@ -356,7 +356,8 @@ std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& setting
     tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
     std::optional<Bake> bake;
     arena.execute([&] {
-        openVdbTransform(settings.worldFromIndex);  // throws before the work if it is not possible
+        grid::openVdbTransform(
+            settings.worldFromIndex);  // throws before the work if it is not possible
         Plan plan{recipe.graph, recipe.outputs, recipe.bounds, recipe.boundsPlace};
         const std::optional<std::uint64_t> evaluated = runStages(plan, settings, progress);
         if (!evaluated) return;
@@ -383,4 +384,4 @@ std::vector<Vec3d> evaluateRecipe(const Recipe& recipe, std::size_t output,
     return results;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -11,9 +11,11 @@
 #include "woodcock/bake/recipe.h"
 #include "woodcock/base/affine.h"
 
-namespace woodcock {
-
+namespace woodcock::grid {
 struct VdbGrids;
+}
+
+namespace woodcock::bake {
 
 struct BakeSettings {
     Affine3d worldFromIndex;  ///< of the grids that are made: voxels sit at integer positions
@@ -35,7 +37,7 @@ struct BakedGridStatistics {
 };
 
 struct Bake {
-    std::shared_ptr<VdbGrids> grids;
+    std::shared_ptr<grid::VdbGrids> grids;
     std::vector<BakedGridStatistics> statistics{};  ///< of each grid
     double boxVoxels = 0;                           ///< within the recipe's bounds
     std::uint64_t evaluatedVoxels = 0;              ///< those of nodes that need grids included
@@ -58,4 +60,4 @@ std::optional<Bake> bakeRecipe(const Recipe& recipe, const BakeSettings& setting
 std::vector<Vec3d> evaluateRecipe(const Recipe& recipe, std::size_t output,
                                   const std::vector<Vec3d>& positions);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

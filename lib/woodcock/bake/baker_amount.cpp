@@ -5,7 +5,7 @@
 
 #include "woodcock/bake/openvdb_baker.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 Error Baker::tooMuch(double voxels) const {
     // Varying voxels grow like surfaces: a factor of two in size is one of four in voxels.
@@ -76,4 +76,4 @@ void Baker::checkAmount() {
     if (voxels > settings_.mostVoxels) throw tooMuch(voxels);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

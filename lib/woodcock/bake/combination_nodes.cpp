@@ -6,7 +6,7 @@
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/bake/pointwise.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -328,4 +328,4 @@ constexpr NodeType types[]{{"add", add},
 
 std::span<const NodeType> combinationNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -7,10 +7,10 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// A field's trilinear interpolation as a node. At the positions of its own voxels it gives exactly
 /// their values.
-std::shared_ptr<const Node> gridNode(Field field, const Affine3d& worldFromIndex);
+std::shared_ptr<const Node> gridNode(grid::Field field, const Affine3d& worldFromIndex);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

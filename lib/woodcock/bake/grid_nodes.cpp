@@ -8,11 +8,11 @@
 #include "woodcock/bake/openvdb_field.h"
 #include "woodcock/convert/mesh_to_fog.h"
 #include "woodcock/grid/block_ranges.h"
+#include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
-#include "woodcock/grid/vdb/load_field.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -20,10 +20,10 @@ namespace {
 /// values.
 class GridNode : public Node {
 public:
-    GridNode(Field field, const Affine3d& worldFromIndex)
+    GridNode(grid::Field field, const Affine3d& worldFromIndex)
         : field_(std::move(field)),
           indexFromWorld_(worldFromIndex.inverse()),
-          ranges_(blockRanges(field_)) {}
+          ranges_(grid::blockRanges(field_)) {}
 
     int channels() const override { return field_.channels(); }
 
@@ -54,17 +54,17 @@ public:
                     Interval::of(field_.background(channels() == 3 ? c : 0));
             return bounds;
         }
-        const Range range = rangeIn(at);
+        const grid::Range range = rangeIn(at);
         bounds.fill({range.min, range.max});
         return bounds;
     }
 
 private:
-    Range rangeIn(const Box3d& at) const {
+    grid::Range rangeIn(const Box3d& at) const {
         const Vec3i from = floorToInt(field_.nearSupport(at.lower) * 0.125),
                     to = floorToInt(field_.nearSupport(at.upper) * 0.125);
         constexpr int widest = 4;
-        Range range = field_.range();
+        grid::Range range = field_.range();
         for (int c = 0; c < channels(); ++c)
             range.add({field_.background(c), field_.background(c)});
         for (int a = 0; a < 3; ++a)
@@ -76,14 +76,14 @@ private:
         return range;
     }
 
-    Field field_;
+    grid::Field field_;
     Affine3d indexFromWorld_;
-    BlockTable<Range> ranges_;
+    grid::BlockTable<grid::Range> ranges_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Node> gridNode(Field field, const Affine3d& worldFromIndex) {
+std::shared_ptr<const Node> gridNode(grid::Field field, const Affine3d& worldFromIndex) {
     return std::make_shared<GridNode>(std::move(field), worldFromIndex);
 }
 
@@ -92,34 +92,34 @@ namespace {
 Graph::Entry grid(NodeReader& r) {
     const std::filesystem::path file = r.file();
     const std::string name = r.text("grid", "grid = \"density\"");
-    LoadOptions options{.storage = Storage::Float, .nonNegative = false};
-    const VdbFile listed = listGrids(file);
-    for (const GridListing& listing : listed.grids)
+    grid::LoadOptions options{.storage = grid::Storage::Float, .nonNegative = false};
+    const grid::VdbFile listed = grid::listGrids(file);
+    for (const grid::GridListing& listing : listed.grids)
         if ((listing.uniqueName == name || listing.name == name) && listing.channels == 3)
-            options.use = GridUse::Colour;
-    LoadedGrid loaded = loadGrid(file, name, options);
+            options.use = grid::GridUse::Colour;
+    grid::LoadedGrid loaded = grid::loadGrid(file, name, options);
     return {.node = gridNode(std::move(loaded.field), loaded.worldFromIndex)};
 }
 
 /// Signed distance to a mesh, from a grid: right up to `band` on both sides, then constant.
 Graph::Entry mesh(NodeReader& r) {
     const std::filesystem::path file = r.file();
-    const TriangleMesh triangles = readMesh(file);
-    const Vec3d size = boundsOf(triangles).size();
+    const mesh::TriangleMesh triangles = mesh::readMesh(file);
+    const Vec3d size = mesh::boundsOf(triangles).size();
     const double longest = std::max({size.x, size.y, size.z});
-    MeshToLevelSetOptions options;
+    convert::MeshToLevelSetOptions options;
     options.voxel = r.number("voxel", longest / 128, positive);
     options.band = r.number("band", 0.1 * longest, positive);
     std::vector<std::string> notes;
-    const VdbGrids grids = [&] {
+    const grid::VdbGrids grids = [&] {
         try {
-            return meshToLevelSet(triangles, options, notes);
+            return convert::meshToLevelSet(triangles, options, notes);
         } catch (const Error& e) {
             throw r.table().error("{}: {}", file.string(), e.what());
         }
     }();
     const openvdb::GridBase& grid = *grids.grids.front();
-    return {.node = gridNode(fieldOf(grid), affineOf(*grid.transform().baseMap()))};
+    return {.node = gridNode(fieldOf(grid), grid::affineOf(*grid.transform().baseMap()))};
 }
 
 constexpr NodeType types[]{{"grid", grid}, {"mesh", mesh}};
@@ -128,4 +128,4 @@ constexpr NodeType types[]{{"grid", grid}, {"mesh", mesh}};
 
 std::span<const NodeType> gridNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// An interval of values, both ends included.
 struct Interval {
@@ -60,4 +60,4 @@ Interval rising(Interval a, F f) {
     return {f(a.lower), f(a.upper)};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

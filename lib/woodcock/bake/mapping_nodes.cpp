@@ -5,7 +5,7 @@
 #include "woodcock/bake/node_reader.h"
 #include "woodcock/base/affine.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -91,4 +91,4 @@ constexpr NodeType types[]{{"warp", warp}, {"transform", transform}};
 
 std::span<const NodeType> mappingNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

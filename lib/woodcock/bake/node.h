@@ -12,7 +12,11 @@
 #include "woodcock/bake/interval.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::grid {
+struct VdbGrids;
+}
+
+namespace woodcock::bake {
 
 /// Positions in world space, and a box around them.
 struct Points {
@@ -55,8 +59,6 @@ public:
     virtual Box3d moveBox(const Box3d& box, std::span<const Bounds> inputs) const = 0;
 };
 
-struct VdbGrids;
-
 /// A node that needs its inputs as grids before it can be evaluated: the first input where it is
 /// not zero, the others at the same voxels.
 class GridStage {
@@ -64,7 +66,7 @@ public:
     virtual ~GridStage() = default;
     virtual std::vector<std::string> gridNames() const = 0;  ///< of the inputs
     /// Calls `goesOn` now and then, by one thread at a time; returns null where it returns false.
-    virtual std::shared_ptr<const Node> run(VdbGrids& inputs,
+    virtual std::shared_ptr<const Node> run(grid::VdbGrids& inputs,
                                             const std::function<bool()>& goesOn) const = 0;
 };
 
@@ -83,4 +85,4 @@ struct Graph {
     std::vector<Entry> entries;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

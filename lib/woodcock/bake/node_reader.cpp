@@ -8,7 +8,7 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/random.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 std::optional<TomlValue> NodeReader::find(std::string_view key) {
     known_.emplace_back(key);
@@ -169,4 +169,4 @@ Graph::Entry makeNode(NodeReader& reader) {
     return entry;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

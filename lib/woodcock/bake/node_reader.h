@@ -14,7 +14,7 @@
 #include "woodcock/bake/node.h"
 #include "woodcock/base/toml_reader.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 class ParameterSet;
 
@@ -99,4 +99,4 @@ std::span<const NodeType> puffNodes();
 std::span<const NodeType> gridNodes();
 std::span<const NodeType> axNodes();
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

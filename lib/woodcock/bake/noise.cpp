@@ -5,7 +5,7 @@
 
 #include "woodcock/base/random.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -222,4 +222,4 @@ double CellCache::nearest(Vec3d p) const {
     return points_.empty() ? cellNoise(p, w_, seed_).first : search<false>(p).first;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -8,7 +8,7 @@
 #include "woodcock/bake/interval.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 // Noises of unit wavelength over space, and over a fourth coordinate, `w`, by which they evolve.
 // They use only additions, multiplications, square roots and integer hashes, so that they are the
@@ -59,4 +59,4 @@ private:
     std::vector<Vec3d> points_;                     ///< none where there would be very many
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

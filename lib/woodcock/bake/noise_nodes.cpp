@@ -6,7 +6,7 @@
 #include "woodcock/bake/noise.h"
 #include "woodcock/base/random.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -231,4 +231,4 @@ constexpr NodeType types[]{{"perlin", perlin}, {"simplex", simplex}, {"worley", 
 
 std::span<const NodeType> noiseNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

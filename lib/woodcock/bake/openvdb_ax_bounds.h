@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// The most rounds of all loops of AX code together, at one voxel.
 inline constexpr int mostAxRounds = 1'000'000;
@@ -30,4 +30,4 @@ std::shared_ptr<const openvdb::ax::ast::Tree> boundAx(
     const std::function<AxLocation(const openvdb::ax::ast::Node&)>& locate,
     openvdb::ax::Logger& logger);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// Compiled AX code. It is in a library of its own, woodcock_ax, which is loaded when it is first
 /// needed: OpenVDB AX loads LLVM, which would slow every start of the program.
@@ -21,4 +21,4 @@ public:
 /// The library's function woodcockCompileAx; see AxExpression. The caller owns the program.
 using CompileAx = AxProgram*(const std::string& code, const std::string& name);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

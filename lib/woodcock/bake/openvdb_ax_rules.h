@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// Reports code that AX compiles although it could end the program, or make its result depend on
 /// threads; see AxExpression.
@@ -14,4 +14,4 @@ void checkAxRules(
     const openvdb::ax::ast::Tree& code,
     const std::function<void(const std::string& message, const openvdb::ax::ast::Node&)>& report);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

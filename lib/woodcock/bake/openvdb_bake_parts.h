@@ -15,7 +15,7 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/voxel_scan.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 // The results of a bake's threads, until they are joined.
 
@@ -76,7 +76,7 @@ struct Parts {
 struct OutputParts {
     std::variant<Parts<openvdb::FloatTree>, Parts<openvdb::Vec3STree>> parts;
     BakedGridStatistics statistics;
-    VoxelCount faulty;
+    grid::VoxelCount faulty;
     double greatestAnywhere = 0;  ///< of the absolute values, left out ones included
 
     explicit OutputParts(int channels) {
@@ -115,4 +115,4 @@ openvdb::GridBase::Ptr makeGrid(const std::vector<P*>& parts, double tolerance) 
     return grid;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -12,7 +12,7 @@
 #include "woodcock/bake/program.h"
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// The bounds of an output in a region.
 enum class Status { Empty, Constant, Varying };
@@ -119,4 +119,4 @@ void Baker::descend(const Region& region, int smallest, const Visit& visit) {
         for (int i = 0; i < 8; ++i) child(i);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

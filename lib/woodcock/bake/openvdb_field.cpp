@@ -3,7 +3,7 @@
 
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -12,10 +12,10 @@ std::array<float, 3> values(float v) { return {v, 0, 0}; }
 std::array<float, 3> values(const openvdb::Vec3s& v) { return {v.x(), v.y(), v.z()}; }
 
 template <class Tree>
-Field build(const Tree& tree) {
+grid::Field build(const Tree& tree) {
     using Leaf = typename Tree::LeafNodeType;
     constexpr int channels = sizeof(typename Tree::ValueType) / sizeof(float);
-    FieldSource source;
+    grid::FieldSource source;
     source.channels = channels;
     source.background = values(tree.background());
     std::vector<const Leaf*> leaves;
@@ -33,15 +33,15 @@ Field build(const Tree& tree) {
         const auto* data = reinterpret_cast<const float*>(leaves[i]->buffer().data());
         std::copy_n(data, out.size(), out.data());
     };
-    return buildField(source, Storage::Float);
+    return grid::buildField(source, grid::Storage::Float);
 }
 
 }  // namespace
 
-Field fieldOf(const openvdb::GridBase& grid) {
+grid::Field fieldOf(const openvdb::GridBase& grid) {
     if (const auto* scalars = dynamic_cast<const openvdb::FloatGrid*>(&grid))
         return build(scalars->tree());
     return build(dynamic_cast<const openvdb::Vec3SGrid&>(grid).tree());
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

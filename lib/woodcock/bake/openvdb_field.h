@@ -5,9 +5,9 @@
 
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// A field with the values of a float or vec3s grid in memory.
-Field fieldOf(const openvdb::GridBase& grid);
+grid::Field fieldOf(const openvdb::GridBase& grid);
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

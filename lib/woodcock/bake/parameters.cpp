@@ -10,7 +10,7 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/printable.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 struct ParameterSet::Parser {
     mu::Parser parser;
@@ -138,4 +138,4 @@ double ParameterSet::evaluate(const std::string& expression, const TomlValue& wh
     return result;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

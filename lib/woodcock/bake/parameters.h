@@ -10,7 +10,7 @@
 
 #include "woodcock/base/toml_reader.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// A number of a recipe that its user may choose.
 struct Parameter {
@@ -53,4 +53,4 @@ private:
     std::unique_ptr<Parser> parser_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

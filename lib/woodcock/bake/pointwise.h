@@ -5,7 +5,7 @@
 
 #include "woodcock/bake/node.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// A node that applies one function to every point and channel. `value` takes a pointer to the
 /// values of the inputs, `range` one to their intervals.
@@ -76,4 +76,4 @@ std::unique_ptr<const Node> ofPosition(Value value, double slope = 1) {
     return std::make_unique<OfPosition<Value>>(std::move(value), slope);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -3,7 +3,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 Program::Program(const Graph& graph, std::span<const int> roots) {
     stepOf_.emplace_back(graph.entries.size(), -1);
@@ -121,4 +121,4 @@ std::vector<Bounds> Program::bound(const Box3d& box, Workspace& work) const {
     return results;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

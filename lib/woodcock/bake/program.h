@@ -6,7 +6,7 @@
 
 #include "woodcock/bake/node.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// A graph, ready to be evaluated: each node is a step for each set of points at which it is
 /// needed. Inputs come before the steps that use them. Each mapping makes a new set of points.
@@ -49,4 +49,4 @@ private:
     std::vector<std::vector<int>> stepOf_;  ///< by domain and entry, while it is built
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -7,7 +7,7 @@
 #include "woodcock/base/random.h"
 #include "woodcock/convert/points_to_density.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -162,7 +162,7 @@ Graph::Entry puffs(NodeReader& r) {
 /// A puff at each point of a file.
 Graph::Entry points(NodeReader& r) {
     const std::filesystem::path file = r.file();
-    const PointCloud cloud = readPoints(file);
+    const convert::PointCloud cloud = convert::readPoints(file);
     const double width = r.number("blend", positive);
     const bool ownRadii = !cloud.radii.empty();
     const double radius = ownRadii ? r.number("radius", 1, positive) : r.number("radius", positive);
@@ -183,4 +183,4 @@ constexpr NodeType types[]{{"puffs", puffs}, {"points", points}};
 
 std::span<const NodeType> puffNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

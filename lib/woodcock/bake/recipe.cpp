@@ -10,7 +10,7 @@
 #include "woodcock/base/printable.h"
 #include "woodcock/base/toml_text.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -255,4 +255,4 @@ Recipe makeRecipe(const RecipeText& text, const std::vector<ParameterSetting>& s
     return RecipeBuilder(text, set).build();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

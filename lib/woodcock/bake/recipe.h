@@ -12,7 +12,7 @@
 #include "woodcock/bake/node.h"
 #include "woodcock/bake/parameters.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 /// A grid that a recipe makes.
 struct RecipeOutput {
@@ -70,4 +70,4 @@ Recipe makeRecipe(const RecipeText& text, const std::vector<ParameterSetting>& s
 /// Recipes that come with the program, by name.
 const std::map<std::string, std::string_view>& presets();
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -6,7 +6,7 @@
 #include "woodcock/bake/pointwise.h"
 #include "woodcock/image/read_image.h"
 
-namespace woodcock {
+namespace woodcock::bake {
 
 namespace {
 
@@ -86,7 +86,7 @@ Graph::Entry menger(NodeReader& r) {
 /// The inside below a height field. An image's first channel is the height, over x from left to
 /// right and z from top to bottom, bilinear between the pixels' centres and constant beyond them.
 Graph::Entry heightField(NodeReader& r) {
-    const auto image = std::make_shared<Image>(readImage(r.file("image")));
+    const auto image = std::make_shared<image::Image>(image::readImage(r.file("image")));
     const Vec3d centre = r.vector("centre", {});
     const Vec3d size = r.extent("size", {}, positive);
     const auto at = [image](int x, int y) {
@@ -136,4 +136,4 @@ constexpr NodeType types[]{
 
 std::span<const NodeType> shapeNodes() { return types; }
 
-}  // namespace woodcock
+}  // namespace woodcock::bake

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/camera/camera.h"
 
-namespace woodcock {
+namespace woodcock::camera {
 
 CameraRay Camera::ray(double x, double y, int pixelWidth, int pixelHeight) const {
     const double h = pixelHeight;
@@ -30,4 +30,4 @@ Camera Camera::orthographic(Vec3d eye, Vec3d lookAt, Vec3d up, double height) {
     return {Kind::Orthographic, lookAtTransform(eye, lookAt, up), 40, height};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::camera

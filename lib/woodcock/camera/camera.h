@@ -3,7 +3,7 @@
 
 #include "woodcock/base/affine.h"
 
-namespace woodcock {
+namespace woodcock::camera {
 
 /// World-space ray with unit direction.
 struct CameraRay {
@@ -33,4 +33,4 @@ struct Camera {
 /// parallel to the view.
 Affine3d lookAtTransform(Vec3d eye, Vec3d lookAt, Vec3d up);
 
-}  // namespace woodcock
+}  // namespace woodcock::camera

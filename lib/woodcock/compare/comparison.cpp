@@ -10,7 +10,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/compare/flip.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -171,4 +171,4 @@ Comparison compare(LoadedPictures loaded, const CompareSettings& settings) {
     return c;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -9,7 +9,7 @@
 #include "woodcock/compare/metrics.h"
 #include "woodcock/compare/tile_test.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 struct CompareSettings {
     bool resample = false;
@@ -68,4 +68,4 @@ struct Comparison {
 /// Throws Error{Input} where no pixel of a channel is finite in both.
 Comparison compare(LoadedPictures loaded, const CompareSettings& settings);
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

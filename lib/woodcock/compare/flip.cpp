@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -299,4 +299,4 @@ std::vector<float> flipHdr(std::span<const float> reference, std::span<const flo
     return largest;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

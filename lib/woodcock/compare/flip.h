@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 // The difference that an observer notices when flipping between two pictures, from 0 to 1 for each
 // pixel. Pictures are linear with Rec.709 primaries, three floats a pixel, row by row, finite;
@@ -22,4 +22,4 @@ std::vector<float> flipLdr(std::span<const float> reference, std::span<const flo
 std::vector<float> flipHdr(std::span<const float> reference, std::span<const float> test, int width,
                            int height, double pixelsPerDegree = 67.0206);
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -12,7 +12,7 @@
 #include "woodcock/compare/resample.h"
 #include "woodcock/image/read_layers.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -20,45 +20,45 @@ constexpr const char* errorPrefix = "error.";  // Woodcock's standard errors: er
 
 constexpr float nothingThere = 1e10f;  // depth where a ray meets nothing, ours and Blender's
 
-bool isOfPicture(const ImagePlane& plane) {
+bool isOfPicture(const image::ImagePlane& plane) {
     return plane.layer != "error" && plane.layer != "variance" && plane.name() != "samples";
 }
 
-std::vector<std::string> planeNames(const LayeredImage& image) {
+std::vector<std::string> planeNames(const image::LayeredImage& image) {
     std::vector<std::string> names;
-    for (const ImagePlane& plane : image.planes) names.push_back(plane.name());
+    for (const image::ImagePlane& plane : image.planes) names.push_back(plane.name());
     return names;
 }
 
 /// Blender's pass of the finished picture, which has the view layer's name, as R, G, B, A.
-void nameCombinedPass(LayeredImage& image) {
+void nameCombinedPass(image::LayeredImage& image) {
     if (image.find("R") || image.find("Y")) return;
     std::string layer;
-    for (const ImagePlane& plane : image.planes)
+    for (const image::ImagePlane& plane : image.planes)
         if (layer.empty() && (plane.layer == "Combined" || plane.layer.ends_with(".Combined")))
             layer = plane.layer;
-    for (ImagePlane& plane : image.planes)
+    for (image::ImagePlane& plane : image.planes)
         if (!layer.empty() && plane.layer == layer) plane.layer.clear();
 }
 
-LayeredImage read(const std::filesystem::path& file, const std::string& space,
-                  const ColorConfig& config) {
-    LayeredImage image = readLayers(file);
+image::LayeredImage read(const std::filesystem::path& file, const std::string& space,
+                         const image::ColorConfig& config) {
+    image::LayeredImage image = image::readLayers(file);
     nameCombinedPass(image);
-    makeSceneLinear(image, space, config);
+    image::makeSceneLinear(image, space, config);
     return image;
 }
 
-std::string dimensions(const LayeredImage& image) {
-    const Film::Window w = image.window;
-    if (w == Film::Window{0, 0, image.width, image.height})
+std::string dimensions(const image::LayeredImage& image) {
+    const image::Film::Window w = image.window;
+    if (w == image::Film::Window{0, 0, image.width, image.height})
         return fmt::format("{} x {}", image.width, image.height);
     return fmt::format("{} x {} with pixels in [{}, {}) x [{}, {})", image.width, image.height,
                        w.x0, w.x1, w.y0, w.y1);
 }
 
 /// Seeds of one image must differ in noise only.
-void requireSame(const LayeredImage& image, const LayeredImage& first) {
+void requireSame(const image::LayeredImage& image, const image::LayeredImage& first) {
     if (image.width != first.width || image.height != first.height || image.window != first.window)
         throw inputError("'{}' is not another seed of '{}': it is {}, not {}", image.file.string(),
                          first.file.string(), dimensions(image), dimensions(first));
@@ -68,18 +68,18 @@ void requireSame(const LayeredImage& image, const LayeredImage& first) {
                          joinNames(planeNames(first)));
 }
 
-std::string fact(const LayeredImage& image, const char* name) {
+std::string fact(const image::LayeredImage& image, const char* name) {
     const auto found = image.facts.find(name);
     return found == image.facts.end() ? std::string() : found->second;
 }
 
 /// Standard errors of a mean over `images`, from their error layers; empty where one image lacks
 /// them or an error is unknown.
-std::vector<float> errorsFromLayers(const std::vector<LayeredImage>& images,
+std::vector<float> errorsFromLayers(const std::vector<image::LayeredImage>& images,
                                     const std::string& plane) {
     std::vector<double> variances;
-    for (const LayeredImage& image : images) {
-        const ImagePlane* errors = image.find(errorPrefix + plane);
+    for (const image::LayeredImage& image : images) {
+        const image::ImagePlane* errors = image.find(errorPrefix + plane);
         if (!errors || image.resolution == 0) return {};
         variances.resize(errors->values.size(), 0.0);
         for (std::size_t i = 0; i < variances.size(); ++i)
@@ -94,9 +94,9 @@ std::vector<float> errorsFromLayers(const std::vector<LayeredImage>& images,
 }
 
 /// The sum of a number over the files' headers; absent where one header lacks it.
-std::optional<double> total(const std::vector<LayeredImage>& images, const char* name) {
+std::optional<double> total(const std::vector<image::LayeredImage>& images, const char* name) {
     double sum = 0;
-    for (const LayeredImage& image : images) {
+    for (const image::LayeredImage& image : images) {
         const std::optional<double> value = image.number(name);
         if (!value || !std::isfinite(*value)) return {};
         sum += *value;
@@ -104,14 +104,14 @@ std::optional<double> total(const std::vector<LayeredImage>& images, const char*
     return sum;
 }
 
-void addPlane(Picture& picture, const std::vector<LayeredImage>& images, std::size_t plane) {
+void addPlane(Picture& picture, const std::vector<image::LayeredImage>& images, std::size_t plane) {
     const std::size_t pixels = images.front().planes[plane].values.size();
-    const ImagePlane& first = images.front().planes[plane];
+    const image::ImagePlane& first = images.front().planes[plane];
     ComparedPlane made{first.name(), {}, {}, first.roundings};
     std::vector<float> scatter;
     for (std::size_t i = 0; i < pixels; ++i) {
         Moments values;
-        for (const LayeredImage& image : images) values.add(image.planes[plane].values[i]);
+        for (const image::LayeredImage& image : images) values.add(image.planes[plane].values[i]);
         made.values.push_back(static_cast<float>(values.mean()));
         scatter.push_back(static_cast<float>(values.standardError()));
     }
@@ -132,12 +132,12 @@ void addPlane(Picture& picture, const std::vector<LayeredImage>& images, std::si
 struct Whole {
     Picture picture;
     int width, height;
-    Film::Window window;
+    image::Film::Window window;
 };
 
-Whole load(const PictureSource& source, char letter, const ColorConfig& config,
+Whole load(const PictureSource& source, char letter, const image::ColorConfig& config,
            std::vector<std::string>& notes) {
-    std::vector<LayeredImage> images{read(source.file, source.colourSpace, config)};
+    std::vector<image::LayeredImage> images{read(source.file, source.colourSpace, config)};
     for (const auto& file : source.more) {
         images.push_back(read(file, source.colourSpace, config));
         requireSame(images.back(), images.front());
@@ -150,7 +150,7 @@ Whole load(const PictureSource& source, char letter, const ColorConfig& config,
                             "show the error",
                             file.string(), source.file.string()));
     }
-    const LayeredImage& first = images.front();
+    const image::LayeredImage& first = images.front();
     Whole whole{{}, first.width, first.height, first.window};
     Picture& p = whole.picture;
     p.letter = std::string(1, letter);
@@ -168,7 +168,7 @@ Whole load(const PictureSource& source, char letter, const ColorConfig& config,
     return whole;
 }
 
-void cut(Whole& whole, const Film::Window& to) {
+void cut(Whole& whole, const image::Film::Window& to) {
     Picture& p = whole.picture;
     p.x0 = to.x0, p.y0 = to.y0;
     if (whole.window == to) return;
@@ -188,7 +188,7 @@ void cut(Whole& whole, const Film::Window& to) {
 }
 
 void cutToCommon(std::vector<Whole>& all, std::vector<std::string>& notes) {
-    Film::Window common = all.front().window;
+    image::Film::Window common = all.front().window;
     for (const Whole& w : all)
         common = {std::max(common.x0, w.window.x0), std::max(common.y0, w.window.y0),
                   std::min(common.x1, w.window.x1), std::min(common.y1, w.window.y1)};
@@ -217,7 +217,7 @@ void makeOneSize(std::vector<Whole>& all, bool resample, std::vector<std::string
     }
     if (equal) return;
     for (Whole& w : all) {
-        if (w.window != Film::Window{0, 0, w.width, w.height})
+        if (w.window != image::Film::Window{0, 0, w.width, w.height})
             throw inputError("'{}' holds only a part of its image, which cannot be resampled",
                              w.picture.files.front().string());
         if (w.width != width || w.height != height)
@@ -277,7 +277,7 @@ void noteEqualSeeds(const std::vector<Whole>& all, std::vector<std::string>& not
 }  // namespace
 
 LoadedPictures loadPictures(const std::vector<PictureSource>& sources, bool resample,
-                            const ColorConfig& config) {
+                            const image::ColorConfig& config) {
     if (sources.size() < 2 || sources.size() > 26)
         throw usageError("compare takes 2 to 26 images, not {}", sources.size());
     LoadedPictures loaded;
@@ -292,4 +292,4 @@ LoadedPictures loadPictures(const std::vector<PictureSource>& sources, bool resa
     return loaded;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

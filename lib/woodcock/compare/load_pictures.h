@@ -8,7 +8,7 @@
 #include "woodcock/compare/picture.h"
 #include "woodcock/image/display.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 /// What to compare: one image.
 struct PictureSource {
@@ -27,6 +27,6 @@ struct LoadedPictures {
 /// errors. Images of different sizes are refused; with `resample`, all are averaged over areas down
 /// to the smallest width and height. Throws Error{Input} or Error{Usage}.
 LoadedPictures loadPictures(const std::vector<PictureSource>& sources, bool resample,
-                            const ColorConfig& config);
+                            const image::ColorConfig& config);
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -53,4 +53,4 @@ DifferenceMetrics differenceMetrics(std::span<const float> a, std::span<const fl
     return m;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

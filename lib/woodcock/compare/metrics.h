@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 /// relMSE is the mean of (b - a)^2 / (a^2 + this).
 inline constexpr double relMseEpsilon = 0.01;
@@ -29,4 +29,4 @@ struct DifferenceMetrics {
 
 DifferenceMetrics differenceMetrics(std::span<const float> a, std::span<const float> b, int width);
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -10,7 +10,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::string packFloats(std::span<const float> values) {
     return packBytes(bytes);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 // Bytes and numbers as text for a page.
 
@@ -17,4 +17,4 @@ std::string packBytes(std::span<const unsigned char> bytes);
 /// the next bytes, as this compresses better.
 std::string packFloats(std::span<const float> values);
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 /// A channel of one image of a comparison.
 struct ComparedPlane {
@@ -33,8 +33,8 @@ struct Picture {
     double errorDegrees = std::numeric_limits<double>::infinity();
     /// Factor of the variance of a mean over a tile, as pixels share noise.
     double sharedNoise = 1;
-    std::string errorsFrom;  ///< their source, for the report; empty: there are none
-    std::string madeBy, seed;                ///< as headers have it; empty: unknown
+    std::string errorsFrom;    ///< their source, for the report; empty: there are none
+    std::string madeBy, seed;  ///< as headers have it; empty: unknown
     std::optional<double> samples, seconds;  ///< sums over the files
 
     std::size_t pixels() const {
@@ -47,4 +47,4 @@ struct Picture {
     }
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -82,4 +82,4 @@ void shrink(Picture& picture, int width, int height) {
     picture.width = width, picture.height = height;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

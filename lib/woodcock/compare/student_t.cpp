@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace woodcock {
+namespace woodcock::compare {
 
 namespace {
 
@@ -55,4 +55,4 @@ double studentTwoSided(double t, double degrees) {
     return incompleteBeta(degrees / 2, degrees / (degrees + square), square / (degrees + square));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -8,7 +8,7 @@
 #include "woodcock/base/statistics.h"
 #include "woodcock/compare/student_t.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 Tiles::Tiles(int width, int height, int side)
     : width_(width),
@@ -142,4 +142,4 @@ std::vector<bool> tooSmall(const std::vector<double>& chances, double rate) {
     return found;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -6,7 +6,7 @@
 
 #include "woodcock/compare/picture.h"
 
-namespace woodcock {
+namespace woodcock::compare {
 
 // Welch's test of means, tile by tile: is the mean of b - a over a tile further from zero than
 // noise explains?
@@ -66,4 +66,4 @@ std::vector<MeanDifference> cautious(const std::vector<MeanDifference>& differen
 /// equal expectations, any is found with probability `rate` at most.
 std::vector<bool> tooSmall(const std::vector<double>& chances, double rate);
 
-}  // namespace woodcock
+}  // namespace woodcock::compare

@@ -7,7 +7,7 @@
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -36,7 +36,7 @@ void checkOutputOptions(const Format& to, const ConvertOptions& options) {
         throw usageError("--compression is for {}; {} files are not compressed",
                          namesWhere([](const Format& f) { return f.writeGrids || f.dense.packs; }),
                          to.name);
-    if (options.compression == VdbCompression::Blosc)
+    if (options.compression == grid::VdbCompression::Blosc)
         throw usageError("--compression blosc: {} files take none or zip (gzip)", to.name);
     if (options.precision == Precision::Source) return;
     if (options.outputType)
@@ -130,4 +130,4 @@ void convert(const std::vector<fs::path>& in, const fs::path& out, const Convert
     write(in.front(), out, source, to, options);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

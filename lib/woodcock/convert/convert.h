@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/dense_to_vdb.h"
+#include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/grid/vdb/write.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// The placement of voxels that a file does not place, or places wrongly.
 struct Placement {
@@ -50,9 +50,9 @@ struct ConvertOptions {
     ValueOptions values;
 
     Precision precision = Precision::Source;
-    std::optional<VdbCompression> compression;  ///< absent: what is usual in the format
-    std::optional<SampleType> outputType;       ///< of dense formats
-    std::optional<Box3i> bounds;                ///< voxels that are written to dense formats
+    std::optional<grid::VdbCompression> compression;  ///< absent: what is usual in the format
+    std::optional<SampleType> outputType;             ///< of dense formats
+    std::optional<Box3i> bounds;                      ///< voxels that are written to dense formats
 
     std::function<void(const std::string&)> info, warn;
     /// Called with the stage in a word, and the fraction of it that is done. If it throws, the work
@@ -73,4 +73,4 @@ void convert(const std::vector<std::filesystem::path>& in, const std::filesystem
 /// A line for each format: name, extensions, read and written.
 std::string describeFormats();
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -5,7 +5,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/convert/openvdb_convert_source.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -105,7 +105,7 @@ void append(Source& source, DenseVolume volume, const fs::path& in, const Conver
     requireChoiceFromList(volume, in);
     place(volume, options);
     ValueSummary found;
-    VdbGrids made = denseToVdb(volume, options.values, found, stageOf(options, "converting"));
+    grid::VdbGrids made = denseToVdb(volume, options.values, found, stageOf(options, "converting"));
     say(options.warn, requireSound(found, fmt::format("{}: '{}'", in.string(), volume.name),
                                    options.values.repair));
     say(options.info, fmt::format("read '{}' from {}: {}, values {:.6g} to {:.6g}", volume.name,
@@ -140,4 +140,4 @@ Source sourceOf(std::vector<DenseVolume> volumes, const fs::path& in,
     return source;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

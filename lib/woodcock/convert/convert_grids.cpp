@@ -7,21 +7,21 @@
 #include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/grid/vdb/read_grids.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
 namespace {
 
 void turn(openvdb::GridBase& grid, const AxisOrder& axes, const Affine3d& worldFromIndex) {
-    grid.setTransform(openVdbTransform(axes.map() * worldFromIndex));
+    grid.setTransform(grid::openVdbTransform(axes.map() * worldFromIndex));
 }
 
 /// Names, turns and remaps the grids of a file, as the options say.
 void finishGrids(Source& source, const fs::path& in, const ConvertOptions& options) {
     for (const openvdb::GridBase::Ptr& grid : source.grids.grids)
         if (!options.axes.identity())
-            turn(*grid, options.axes, affineOf(*grid->transform().baseMap()));
+            turn(*grid, options.axes, grid::affineOf(*grid->transform().baseMap()));
     if (options.name) {
         if (source.grids.grids.size() > 1)
             throw usageError("--name is for one grid, and {} has {}; choose one by --grid",
@@ -43,21 +43,22 @@ void requireNoPlacement(const ConvertOptions& options) {
             "of their own");
 }
 
-bool holdsPoints(const VdbFile& file, const GridListing& grid) {
+bool holdsPoints(const grid::VdbFile& file, const grid::GridListing& grid) {
     return !file.nanoVdb && isPointGrid(grid);
 }
 
 /// The grid that --grid names, or all grids that hold numbers or points. A warning names each of
 /// the others.
-std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& options) {
+std::vector<grid::GridListing> chooseGrids(const grid::VdbFile& file,
+                                           const ConvertOptions& options) {
     if (options.grid) {
-        FoundGrid found = findGrid(file, *options.grid);
+        grid::FoundGrid found = grid::findGrid(file, *options.grid);
         say(options.warn, found.note);
         return {std::move(found.grid)};
     }
-    std::vector<GridListing> chosen;
-    for (const GridListing& grid : file.grids) {
-        if (isReadable(grid) || holdsPoints(file, grid))
+    std::vector<grid::GridListing> chosen;
+    for (const grid::GridListing& grid : file.grids) {
+        if (grid::isReadable(grid) || holdsPoints(file, grid))
             chosen.push_back(grid);
         else
             say(options.warn, fmt::format("grid '{}' of {} is left out: {}", grid.uniqueName,
@@ -65,28 +66,28 @@ std::vector<GridListing> chooseGrids(const VdbFile& file, const ConvertOptions& 
     }
     if (chosen.empty())
         throw inputError("{} has no grid of numbers; it has: {}", file.path.string(),
-                         describeGrids(file));
+                         grid::describeGrids(file));
     return chosen;
 }
 
 }  // namespace
 
 Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
-    const VdbFile file = listGrids(in);
+    const grid::VdbFile file = grid::listGrids(in);
     say(options.warn, file.warning);
-    std::vector<GridListing> chosen, points;
-    for (GridListing& grid : chooseGrids(file, options))
+    std::vector<grid::GridListing> chosen, points;
+    for (grid::GridListing& grid : chooseGrids(file, options))
         (holdsPoints(file, grid) ? points : chosen).push_back(std::move(grid));
     if (points.empty()) requireNoPlacement(options);
     std::vector<std::string> names;
-    for (const GridListing& grid : chosen) names.push_back(grid.uniqueName);
-    Source source{readVdbGrids(file, names), {}, names};
+    for (const grid::GridListing& grid : chosen) names.push_back(grid.uniqueName);
+    Source source{grid::readVdbGrids(file, names), {}, names};
     fillLevelSets(source.grids, options);
     for (std::size_t i = 0; i < chosen.size(); ++i)
         say(options.info,
             fmt::format("read '{}' ({}) from {}: {} active voxels", names[i], chosen[i].valueType,
                         in.string(), source.grids.grids[i]->activeVoxelCount()));
-    for (const GridListing& grid : points)
+    for (const grid::GridListing& grid : points)
         if (addPointGrid(source.grids, file, grid, options))
             source.uniqueNames.push_back(grid.uniqueName);
     if (source.grids.grids.empty())
@@ -100,4 +101,4 @@ Source readGridsSource(const fs::path& in, const ConvertOptions& options) {
     return source;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -14,7 +14,7 @@
 #include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/mesh/ply_file.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -64,7 +64,7 @@ void noteFloats(std::size_t count, PlaceOf placeOf, double voxel, const ConvertO
 
 /// Runs `make`, and adds the file's name to its input errors.
 template <class Make>
-VdbGrids made(const fs::path& in, Make make) {
+grid::VdbGrids made(const fs::path& in, Make make) {
     try {
         return make();
     } catch (const Error& e) {
@@ -74,14 +74,14 @@ VdbGrids made(const fs::path& in, Make make) {
 }
 
 /// Turns and remaps grids as the options say.
-Source finish(VdbGrids grids, const fs::path& in, const std::vector<std::string>& notes,
+Source finish(grid::VdbGrids grids, const fs::path& in, const std::vector<std::string>& notes,
               const ConvertOptions& options) {
     for (const std::string& note : notes) say(options.warn, note);
     Source source{std::move(grids), {}};
     for (const openvdb::GridBase::Ptr& grid : source.grids.grids) {
         if (options.axes.identity()) continue;
-        grid->setTransform(
-            openVdbTransform(options.axes.map() * affineOf(*grid->transform().baseMap())));
+        grid->setTransform(grid::openVdbTransform(options.axes.map() *
+                                                  grid::affineOf(*grid->transform().baseMap())));
     }
     ValueSummary found;
     if (!options.values.remap.identity() || options.values.tolerance > 0) {
@@ -102,10 +102,10 @@ Options withNameAndVoxel(double voxel, const ConvertOptions& options) {
 }  // namespace
 
 Source readMeshSource(const fs::path& in, const ConvertOptions& options) {
-    const TriangleMesh mesh = readMesh(in);
+    const mesh::TriangleMesh mesh = mesh::readMesh(in);
     say(options.info, fmt::format("read {}: {} triangles, {} points", in.string(),
                                   mesh.triangles.size(), mesh.points.size()));
-    auto how = withNameAndVoxel<MeshToFogOptions>(voxelFor(boundsOf(mesh), options), options);
+    auto how = withNameAndVoxel<MeshToFogOptions>(voxelFor(mesh::boundsOf(mesh), options), options);
     how.band = options.band.value_or(0);
     how.shell = options.shell;
     noteFloats(
@@ -113,7 +113,7 @@ Source readMeshSource(const fs::path& in, const ConvertOptions& options) {
         [&](std::size_t i) { return mesh.origin + mesh.points[i].as<double>(); }, how.voxel,
         options);
     std::vector<std::string> notes;
-    VdbGrids fog = made(in, [&] { return meshToFog(mesh, how, notes); });
+    grid::VdbGrids fog = made(in, [&] { return meshToFog(mesh, how, notes); });
     return finish(std::move(fog), in, notes, options);
 }
 
@@ -129,12 +129,12 @@ Source readPointsSource(const fs::path& in, const ConvertOptions& options) {
     noteFloats(
         cloud.points.size(), [&](std::size_t i) { return cloud.points[i]; }, how.voxel, options);
     std::vector<std::string> notes;
-    VdbGrids density = made(in, [&] { return pointsToDensity(cloud, how, notes); });
+    grid::VdbGrids density = made(in, [&] { return pointsToDensity(cloud, how, notes); });
     return finish(std::move(density), in, notes, options);
 }
 
 Source readPlySource(const fs::path& in, const ConvertOptions& options) {
-    return plyHasFaces(in) ? readMeshSource(in, options) : readPointsSource(in, options);
+    return mesh::plyHasFaces(in) ? readMeshSource(in, options) : readPointsSource(in, options);
 }
 
 namespace {
@@ -145,7 +145,7 @@ bool isLevelSet(const openvdb::GridBase::Ptr& grid) {
 
 /// The name of a level set's fog. The only level set of a file becomes "density", where no grid has
 /// that name. Others keep their names, and never take that of another grid.
-std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptions& options) {
+std::string fogName(const grid::VdbGrids& grids, std::size_t index, const ConvertOptions& options) {
     const auto& all = grids.grids;
     if (options.name && all.size() == 1) return *options.name;
     const auto taken = [&](const std::string& name) {
@@ -164,7 +164,7 @@ std::string fogName(const VdbGrids& grids, std::size_t index, const ConvertOptio
 
 }  // namespace
 
-bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
+bool addPointGrid(grid::VdbGrids& grids, const grid::VdbFile& file, const grid::GridListing& points,
                   const ConvertOptions& options) {
     if (options.placement.size || options.placement.origin || options.channel)
         throw usageError(
@@ -190,13 +190,14 @@ bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& point
                     points.uniqueName, file.path.string(), cloud.points.size(), cloud.columns,
                     how.name, how.voxel));
     std::vector<std::string> notes;
-    const VdbGrids density = made(file.path, [&] { return pointsToDensity(cloud, how, notes); });
+    const grid::VdbGrids density =
+        made(file.path, [&] { return pointsToDensity(cloud, how, notes); });
     for (const std::string& note : notes) say(options.warn, note);
     grids.grids.push_back(density.grids.front());
     return true;
 }
 
-void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {
+void fillLevelSets(grid::VdbGrids& grids, const ConvertOptions& options) {
     // All names first: each depends on the others, and a converted grid is no longer a level set.
     std::vector<std::string> before, names;
     for (std::size_t i = 0; i < grids.grids.size(); ++i) {
@@ -212,11 +213,11 @@ void fillLevelSets(VdbGrids& grids, const ConvertOptions& options) {
         grid->setName(name);
         const LevelSetToFogOptions how{.band = options.band.value_or(0), .name = names[i]};
         std::vector<std::string> notes;
-        const VdbGrids one{{grid}};
+        const grid::VdbGrids one{{grid}};
         grid = levelSetToFog(one, how, notes).grids.front();
         for (const std::string& note : notes) say(options.warn, note);
         say(options.info, fmt::format("level set '{}' becomes fog '{}'", name, how.name));
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -5,12 +5,12 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/base/error.h"
+#include "woodcock/convert/openvdb_each_type.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -100,8 +100,8 @@ openvdb::GridBase::Ptr makeGrid(const DenseVolume& volume, const ValueOptions& o
 
 }  // namespace
 
-VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options, ValueSummary& summary,
-                    const WorkProgress& progress) {
+grid::VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options,
+                          ValueSummary& summary, const WorkProgress& progress) {
     if (volume.channels != 1 && volume.channels != 3)
         throw inputError(
             "'{}' has {} channels, and a grid has 1 or 3; choose one by --channel, 0 to {}",
@@ -118,8 +118,8 @@ VdbGrids denseToVdb(const DenseVolume& volume, const ValueOptions& options, Valu
             : make(static_cast<DoubleTree*>(nullptr), static_cast<Vec3DTree*>(nullptr));
     grid->setName(volume.name);
     grid->setGridClass(GRID_FOG_VOLUME);
-    grid->setTransform(openVdbTransform(volume.worldFromIndex));
+    grid->setTransform(grid::openVdbTransform(volume.worldFromIndex));
     return {{grid}};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

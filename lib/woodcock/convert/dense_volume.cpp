@@ -7,7 +7,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/grid/half.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr std::size_t axis(int i) { return static_cast<std::size_t>(i); }
 
 /// decodeHalf() is for finite values.
 float halfToFloat(std::uint16_t bits) {
-    if ((bits & 0x7c00u) != 0x7c00u) return decodeHalf(bits);
+    if ((bits & 0x7c00u) != 0x7c00u) return grid::decodeHalf(bits);
     return std::bit_cast<float>((bits & 0x8000u) << 16 | 0x7f800000u | (bits & 0x3ffu) << 13);
 }
 
@@ -192,4 +192,4 @@ void straighten(DenseVolume& volume) {
     renameIndexAxes(volume, order);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -13,7 +13,7 @@
 #include "woodcock/convert/sample_type.h"
 #include "woodcock/convert/work_progress.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 using Dims = std::array<std::int64_t, 3>;
 
@@ -97,4 +97,4 @@ void applyAxisOrder(DenseVolume& volume, const AxisOrder& axes);
 /// translation, which all programs understand. Nothing moves in the world.
 void straighten(DenseVolume& volume);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -9,7 +9,7 @@
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/grid/foreign_format.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -149,7 +149,7 @@ const Format* formatOfName(const fs::path& file) {
 
 /// Refuses a file of a format that is not read, which its bytes tell, whatever its name is.
 void refuseForeign(const fs::path& in, const Format* named) {
-    const auto foreign = foreignFormat(in);
+    const auto foreign = grid::foreignFormat(in);
     if (!foreign || foreign->readByConvert) return;
     if (named && (!foreign->knownByContent || foreign->archive)) return;
     throw inputError("{} is {}, which woodcock does not read; {}", in.string(), foreign->what,
@@ -221,4 +221,4 @@ std::string describeFormats() {
     return text;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -9,16 +9,19 @@
 
 #include "woodcock/convert/convert.h"
 
-namespace woodcock {
+namespace woodcock::grid {
+struct VdbGrids;
+}
+
+namespace woodcock::convert {
 
 struct Source;
-struct VdbGrids;
 
 /// Reads a file and makes grids of it, as the options say.
 using ReadSource = std::function<Source(const std::filesystem::path&, const ConvertOptions&)>;
 
 using WriteGrids = void (*)(const std::filesystem::path& in, const std::filesystem::path& out,
-                            VdbGrids&, const ConvertOptions&);
+                            grid::VdbGrids&, const ConvertOptions&);
 
 /// Writes one volume on a regular lattice, and what the format can hold.
 struct DenseWriter {
@@ -67,4 +70,4 @@ const Format& outputFormat(const std::filesystem::path& out);
 /// True where the name ends as that of a picture does.
 bool isPicture(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -10,7 +10,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -18,7 +18,7 @@ template <class GridT>
 openvdb::GridBase::Ptr convert(const openvdb::GridBase& source, const LevelSetToFogOptions& options,
                                std::vector<std::string>& notes) {
     const auto grid = openvdb::gridPtrCast<GridT>(source.deepCopyGrid());
-    grid->setTransform(exactCopy(source.transform()));
+    grid->setTransform(grid::exactCopy(source.transform()));
     for (auto it = grid->cbeginValueAll(); it; ++it)
         if (std::isnan(*it))
             throw inputError("level set '{}' holds a NaN at [{}, {}, {}]", source.getName(),
@@ -53,14 +53,14 @@ openvdb::GridBase::Ptr convertOne(const openvdb::GridBase& grid,
 
 }  // namespace
 
-VdbGrids levelSetToFog(const VdbGrids& levelSets, const LevelSetToFogOptions& options,
-                       std::vector<std::string>& notes) {
+grid::VdbGrids levelSetToFog(const grid::VdbGrids& levelSets, const LevelSetToFogOptions& options,
+                             std::vector<std::string>& notes) {
     if (!(options.band >= 0) || !std::isfinite(options.band))
         throw usageError("a band of {}; it must be positive", options.band);
-    VdbGrids fog;
+    grid::VdbGrids fog;
     for (const openvdb::GridBase::Ptr& grid : levelSets.grids)
         fog.grids.push_back(convertOne(*grid, options, notes));
     return fog;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-namespace woodcock {
-
+namespace woodcock::grid {
 struct VdbGrids;
+}
+
+namespace woodcock::convert {
 
 struct LevelSetToFogOptions {
     double band = 0;  ///< the depth at which density reaches one, world units; 0: the narrow band's
@@ -17,7 +19,7 @@ struct LevelSetToFogOptions {
 /// Where a grid's narrow band is smaller, it replaces `band`, and `notes` says so. Errors: Input,
 /// naming the grid, where it is not a level set of float or double, holds a NaN, or encloses
 /// nothing.
-VdbGrids levelSetToFog(const VdbGrids& levelSets, const LevelSetToFogOptions& options,
-                       std::vector<std::string>& notes);
+grid::VdbGrids levelSetToFog(const grid::VdbGrids& levelSets, const LevelSetToFogOptions& options,
+                             std::vector<std::string>& notes);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

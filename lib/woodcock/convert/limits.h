@@ -8,7 +8,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 inline void requireVoxel(double voxel) {
     if (!(voxel > 0) || !std::isfinite(voxel))
@@ -37,4 +37,4 @@ inline void requireVoxels(double voxels, double voxel, std::uint64_t most) {
         voxel, voxels, most, voxel * std::sqrt(voxels / static_cast<double>(most)));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -42,7 +42,7 @@ private:
     std::vector<Part> parts_;
 };
 
-MeshInside::MeshInside(const ClosedMesh& mesh, std::vector<Vec3d> points)
+MeshInside::MeshInside(const mesh::ClosedMesh& mesh, std::vector<Vec3d> points)
     : mesh_(mesh),
       points_(std::move(points)),
       adds_(mesh.volumes.size(), 1),
@@ -391,4 +391,4 @@ std::vector<MeshInside::Corners> MeshInside::border() const {
         });
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -8,7 +8,7 @@
 
 #include "woodcock/mesh/closed_mesh.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// Which voxels lie inside a mesh, whose points are given in index space.
 ///
@@ -21,7 +21,7 @@ public:
     using Corners = std::array<Vec3d, 3>;
 
     /// `points` in voxels, one for each point of the mesh, within the range of indices.
-    MeshInside(const ClosedMesh& mesh, std::vector<Vec3d> points);
+    MeshInside(const mesh::ClosedMesh& mesh, std::vector<Vec3d> points);
 
     bool contains(Vec3i voxel) const;
 
@@ -84,7 +84,7 @@ private:
     /// 1 where all of it is border, 0 where nothing is; -1 for parts, which are added to `kept`.
     int cut(const Corners& piece, std::vector<Corners>& kept) const;
 
-    const ClosedMesh& mesh_;
+    const mesh::ClosedMesh& mesh_;
     std::vector<Vec3d> points_;
     std::vector<Slab> slabs_;
     std::vector<signed char> adds_;     ///< of each part: 1 a solid, -1 a cavity
@@ -94,4 +94,4 @@ private:
     bool innerSurfaces_ = false;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -22,7 +22,7 @@
 #include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -30,16 +30,17 @@ using Corners = MeshInside::Corners;
 
 /// The lattice of a mesh's voxels.
 struct MeshLattice : Lattice {
-    MeshLattice(const TriangleMesh& mesh, double size)
+    MeshLattice(const mesh::TriangleMesh& mesh, double size)
         : Lattice(mesh.origin, size), shift(mesh.origin - first) {}
     Vec3d index(const Vec3f& p) const { return (p.as<double>() + shift) / voxel; }
-    std::vector<Vec3d> indices(const TriangleMesh& mesh) const {
+    std::vector<Vec3d> indices(const mesh::TriangleMesh& mesh) const {
         std::vector<Vec3d> all;
         all.reserve(mesh.points.size());
         for (const Vec3f& p : mesh.points) all.push_back(index(p));
         return all;
     }
-    Corners corners(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) const {
+    Corners corners(const mesh::TriangleMesh& mesh,
+                    const std::array<std::uint32_t, 3>& triangle) const {
         return {index(mesh.points[triangle[0]]), index(mesh.points[triangle[1]]),
                 index(mesh.points[triangle[2]])};
     }
@@ -73,7 +74,7 @@ double estimateVoxels(const Corners& triangle, double reach) {
 }
 
 /// Checks the limits before anything is made.
-void requireRoom(const TriangleMesh& mesh, const MeshLattice& lattice, double reach,
+void requireRoom(const mesh::TriangleMesh& mesh, const MeshLattice& lattice, double reach,
                  std::uint64_t mostVoxels) {
     if (mesh.triangles.empty()) throw inputError("the mesh has no triangles");
     Box3d box;
@@ -209,8 +210,8 @@ void distanceToShell(openvdb::FloatGrid& grid, double band) {
     openvdb::tools::pruneInactive(grid.tree());
 }
 
-VdbGrids named(const openvdb::FloatGrid::Ptr& grid, openvdb::GridClass gridClass,
-               const std::string& name) {
+grid::VdbGrids named(const openvdb::FloatGrid::Ptr& grid, openvdb::GridClass gridClass,
+                     const std::string& name) {
     grid->setGridClass(gridClass);
     grid->setName(name);
     return {{grid}};
@@ -226,9 +227,9 @@ double requireBand(double band, double voxel) {
 
 namespace {
 
-ClosedMesh closedOrShell(const TriangleMesh& mesh) {
+mesh::ClosedMesh closedOrShell(const mesh::TriangleMesh& mesh) {
     try {
-        return closedMesh(mesh);
+        return mesh::closedMesh(mesh);
     } catch (const Error& e) {
         throw Error(e.kind(), fmt::format("{}; so it has no inside. Close the mesh, or use --shell "
                                           "for fog around its surface",
@@ -238,8 +239,8 @@ ClosedMesh closedOrShell(const TriangleMesh& mesh) {
 
 }  // namespace
 
-VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
-                   std::vector<std::string>& notes) {
+grid::VdbGrids meshToFog(const mesh::TriangleMesh& mesh, const MeshToFogOptions& options,
+                         std::vector<std::string>& notes) {
     requireVoxel(options.voxel);
     const double band = requireBand(options.band, options.voxel);
     const MeshLattice lattice(mesh, options.voxel);
@@ -258,11 +259,11 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
         return named(grid, openvdb::GRID_FOG_VOLUME, options.name);
     }
     // No point is deeper than half of the shortest side.
-    const Vec3d size = boundsOf(mesh).size();
+    const Vec3d size = mesh::boundsOf(mesh).size();
     const double deepest = std::min({size.x, size.y, size.z}) / 2;
     const double reach = std::min(band, deepest) / options.voxel + 1;
     requireRoom(mesh, lattice, reach, options.mostVoxels);
-    const ClosedMesh closed = closedOrShell(mesh);
+    const mesh::ClosedMesh closed = closedOrShell(mesh);
     notes.insert(notes.end(), closed.notes.begin(), closed.notes.end());
     const MeshInside inside(closed, lattice.indices(closed.mesh));
     if (inside.voxels() == 0)
@@ -287,13 +288,13 @@ VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
     return named(grid, openvdb::GRID_FOG_VOLUME, options.name);
 }
 
-VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& options,
-                        std::vector<std::string>& notes) {
+grid::VdbGrids meshToLevelSet(const mesh::TriangleMesh& mesh, const MeshToLevelSetOptions& options,
+                              std::vector<std::string>& notes) {
     requireVoxel(options.voxel);
     const double reach = requireBand(options.band, options.voxel) / options.voxel + 1;
     const MeshLattice lattice(mesh, options.voxel);
     requireRoom(mesh, lattice, reach, options.mostVoxels);
-    const ClosedMesh closed = closedMesh(mesh);
+    const mesh::ClosedMesh closed = mesh::closedMesh(mesh);
     notes.insert(notes.end(), closed.notes.begin(), closed.notes.end());
     const MeshInside inside(closed, lattice.indices(closed.mesh));
     const auto grid = isSimple(inside) ? signedDistances(inside, lattice, reach, reach)
@@ -303,4 +304,4 @@ VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& o
     return named(grid, openvdb::GRID_LEVEL_SET, options.name);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -7,9 +7,11 @@
 
 #include "woodcock/mesh/triangle_mesh.h"
 
-namespace woodcock {
-
+namespace woodcock::grid {
 struct VdbGrids;
+}
+
+namespace woodcock::convert {
 
 struct MeshToFogOptions {
     double voxel = 0;  ///< world units, as all lengths here
@@ -26,8 +28,8 @@ struct MeshToFogOptions {
 /// are a union. `notes` tells what was repaired, what is thinner than voxels, and the largest
 /// density where that is below one. Errors: Input, where the mesh has no inside, as an open one
 /// (closedMesh()).
-VdbGrids meshToFog(const TriangleMesh& mesh, const MeshToFogOptions& options,
-                   std::vector<std::string>& notes);
+grid::VdbGrids meshToFog(const mesh::TriangleMesh& mesh, const MeshToFogOptions& options,
+                         std::vector<std::string>& notes);
 
 struct MeshToLevelSetOptions {
     double voxel = 0;
@@ -38,7 +40,7 @@ struct MeshToLevelSetOptions {
 
 /// Signed distance to a mesh in world units, negative inside; beyond the band plus or minus a
 /// little more than the band. `notes` and errors as above.
-VdbGrids meshToLevelSet(const TriangleMesh& mesh, const MeshToLevelSetOptions& options,
-                        std::vector<std::string>& notes);
+grid::VdbGrids meshToLevelSet(const mesh::TriangleMesh& mesh, const MeshToLevelSetOptions& options,
+                              std::vector<std::string>& notes);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -9,11 +9,11 @@
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// The grids of a source, between reading and writing.
 struct Source {
-    VdbGrids grids;
+    grid::VdbGrids grids;
     std::optional<Box3i> box;  ///< of the voxels, where the source was dense
     /// The grids' unique names, where they come from a file that numbers grids of one name.
     std::vector<std::string> uniqueNames = {};
@@ -38,20 +38,20 @@ Source readPointsSource(const std::filesystem::path& in, const ConvertOptions& o
 /// A PLY file is a mesh where it has faces, else points.
 Source readPlySource(const std::filesystem::path& in, const ConvertOptions& options);
 /// Turns the level sets among the grids into fog.
-void fillLevelSets(VdbGrids& grids, const ConvertOptions& options);
+void fillLevelSets(grid::VdbGrids& grids, const ConvertOptions& options);
 
 /// Adds the density of a grid of points to the grids. False, with a warning, where it holds no
 /// points.
-bool addPointGrid(VdbGrids& grids, const VdbFile& file, const GridListing& points,
+bool addPointGrid(grid::VdbGrids& grids, const grid::VdbFile& file, const grid::GridListing& points,
                   const ConvertOptions& options);
 
 // Writers. `in` is the source's name, which a VDB's metadata tells.
 void writeVdbSource(const std::filesystem::path& in, const std::filesystem::path& out,
-                    VdbGrids& grids, const ConvertOptions& options);
+                    grid::VdbGrids& grids, const ConvertOptions& options);
 void writeNanoVdbSource(const std::filesystem::path& in, const std::filesystem::path& out,
-                        VdbGrids& grids, const ConvertOptions& options);
+                        grid::VdbGrids& grids, const ConvertOptions& options);
 /// The one grid of the source, or the one that --grid chooses, on a regular lattice.
 void writeDenseSource(const std::filesystem::path& out, Source& source, const DenseWriter& writer,
                       const ConvertOptions& options);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -3,7 +3,7 @@
 
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// Numbers of a voxel, and their type.
 template <class Value>
@@ -27,4 +27,4 @@ bool withFloatingGrid(openvdb::GridBase& grid, Use use) {
            tryAs(static_cast<openvdb::Vec3DGrid*>(nullptr));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// Turns signed distances (world units) into fog: zero at the surface, one from a depth of `band`
 /// on. Where no point is as deep, no voxel is one. (OpenVDB's own function would end the band at
@@ -36,4 +36,4 @@ double largestValue(const GridT& grid) {
     return largest;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -6,7 +6,7 @@
 #include "woodcock/base/vec.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// The lattice of voxels. It goes through the world's origin, and indices count from a voxel near
 /// to the object, so that they are small wherever it is. The transform holds the position, in
@@ -22,9 +22,9 @@ struct Lattice {
     }
     Vec3d index(Vec3d place) const { return (place - first) / voxel; }
     openvdb::math::Transform::Ptr transform() const {
-        return openVdbTransform(Affine3d::translate(first) *
-                                Affine3d::scale({voxel, voxel, voxel}));
+        return grid::openVdbTransform(Affine3d::translate(first) *
+                                      Affine3d::scale({voxel, voxel, voxel}));
     }
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

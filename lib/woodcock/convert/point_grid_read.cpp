@@ -12,7 +12,7 @@
 #include "woodcock/grid/vdb/check_grid_head.h"
 #include "woodcock/grid/vdb/check_header.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -43,7 +43,7 @@ constexpr std::uint64_t mostPointsBeyond = 1'000'000, pointsPerByte = 4;
 
 class PointReader {
 public:
-    PointReader(FileBytes& file, const Affine3d& worldFromIndex, std::uint32_t compression)
+    PointReader(grid::FileBytes& file, const Affine3d& worldFromIndex, std::uint32_t compression)
         : file_(file),
           worldFromIndex_(worldFromIndex),
           compression_(compression),
@@ -341,7 +341,7 @@ private:
         }
         std::uint16_t bits = static_cast<unsigned char>(*value);
         if (bytes == 2) std::memcpy(&bits, value, sizeof bits);
-        if (codec == "trnc") return static_cast<double>(decodeHalf(bits));
+        if (codec == "trnc") return static_cast<double>(grid::decodeHalf(bits));
         return bits / (bytes == 2 ? 65535.0 : 255.0) - (codec.starts_with("fxpt") ? 0.5 : 0);
     }
 
@@ -367,7 +367,7 @@ private:
         return std::move(cloud_);
     }
 
-    FileBytes& file_;
+    grid::FileBytes& file_;
     Affine3d worldFromIndex_;
     std::uint32_t compression_;
     std::uint64_t mostPoints_, count_ = 0;
@@ -381,14 +381,14 @@ private:
 
 }  // namespace
 
-bool isPointGrid(const GridListing& grid) { return grid.valueType == "points"; }
+bool isPointGrid(const grid::GridListing& grid) { return grid.valueType == "points"; }
 
-PointCloud readPointGrid(const VdbFile& listed, const GridListing& grid) {
+PointCloud readPointGrid(const grid::VdbFile& listed, const grid::GridListing& grid) {
     if (!grid.worldFromIndex || !flawOf(*grid.worldFromIndex).empty())
         throw inputError("grid '{}' of {} holds points, and {}", grid.uniqueName,
                          listed.path.string(), grid.unusable);
-    FileBytes file(listed.path);
-    const VdbHeader header = readVdbHeader(file);
+    grid::FileBytes file(listed.path);
+    const grid::VdbHeader header = grid::readVdbHeader(file);
     const auto entry = std::find_if(header.entries.begin(), header.entries.end(),
                                     [&](const auto& e) { return e.uniqueName == grid.uniqueName; });
     if (entry == header.entries.end() || !entry->treeOf.empty() ||
@@ -397,7 +397,7 @@ PointCloud readPointGrid(const VdbFile& listed, const GridListing& grid) {
                          listed.path.string());
     file.enter(entry->begin, entry->end, fmt::format("grid '{}'", entry->uniqueName));
     file.loadAll();
-    const VdbGridHead head = readGridHead(file);
+    const grid::VdbGridHead head = grid::readGridHead(file);
     try {
         return PointReader(file, *grid.worldFromIndex, head.compression).read();
     } catch (const Error&) {
@@ -408,4 +408,4 @@ PointCloud readPointGrid(const VdbFile& listed, const GridListing& grid) {
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

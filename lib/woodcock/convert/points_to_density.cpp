@@ -17,7 +17,7 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/mesh/triangle_mesh.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -164,12 +164,12 @@ private:
 
 }  // namespace
 
-VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& options,
-                         std::vector<std::string>& notes) {
+grid::VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& options,
+                               std::vector<std::string>& notes) {
     requireSound(cloud, options);
     Box3d bounds;
     for (const Vec3d& p : cloud.points) bounds.add(p);
-    const Lattice lattice(originFor(bounds), options.voxel);
+    const Lattice lattice(mesh::originFor(bounds), options.voxel);
     const Summer summer(cloud, options, lattice);
     const auto grid = openvdb::FloatGrid::create(summer.sum());
     if (grid->empty())
@@ -185,4 +185,4 @@ VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& 
     return {{grid}};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

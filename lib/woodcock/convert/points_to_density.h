@@ -7,9 +7,11 @@
 
 #include "woodcock/convert/formats/points.h"
 
-namespace woodcock {
-
+namespace woodcock::grid {
 struct VdbGrids;
+}
+
+namespace woodcock::convert {
 
 struct PointsToDensityOptions {
     double voxel = 0;   ///< world units
@@ -24,7 +26,7 @@ struct PointsToDensityOptions {
 /// Sums a smooth bump for each point: weight x (1 - (distance / radius)^2)^3. Radii below 1.5
 /// voxels are widened to that, with their integral kept; `notes` tells how many. The result does
 /// not depend on the number of threads. Errors: Input.
-VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& options,
-                         std::vector<std::string>& notes);
+grid::VdbGrids pointsToDensity(const PointCloud& cloud, const PointsToDensityOptions& options,
+                               std::vector<std::string>& notes);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

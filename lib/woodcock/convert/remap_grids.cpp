@@ -12,7 +12,7 @@
 #include "woodcock/grid/vdb/openvdb_exact_copy.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -65,7 +65,7 @@ void remapGrid(GridT& grid, const ValueOptions& options, ValueSummary& summary) 
 
 struct Loss {
     PrecisionLoss most;
-    VoxelCount beyond;
+    grid::VoxelCount beyond;
 
     void add(const Loss& more) {
         most.absolute = std::max(most.absolute, more.most.absolute);
@@ -82,22 +82,23 @@ struct Loss {
 template <class GridT>
 Loss measureLoss(const GridT& grid, Precision precision) {
     using Value = typename GridT::ValueType;
-    return overActiveValues<const typename GridT::TreeType, Loss>(grid.tree(), [&](const auto& it,
-                                                                                   Loss& loss) {
-        Value value = *it;
-        for (int c = 0; c < VoxelTraits<Value>::channels; ++c) {
-            const auto exact = static_cast<double>(numbers(value)[c]);
-            const auto asFloat = static_cast<float>(exact);
-            const bool asHalf = precision == Precision::Half;
-            // From here on a half would be rounded to infinity.
-            const bool fits = asHalf ? std::abs(asFloat) < 65520.0f : std::isfinite(asFloat);
-            if (!fits)
-                loss.beyond.add(toVec(it.getCoord()));
-            else
-                loss.add(exact,
-                         static_cast<double>(asHalf ? decodeHalf(encodeHalf(asFloat)) : asFloat));
-        }
-    });
+    return overActiveValues<const typename GridT::TreeType, Loss>(
+        grid.tree(), [&](const auto& it, Loss& loss) {
+            Value value = *it;
+            for (int c = 0; c < VoxelTraits<Value>::channels; ++c) {
+                const auto exact = static_cast<double>(numbers(value)[c]);
+                const auto asFloat = static_cast<float>(exact);
+                const bool asHalf = precision == Precision::Half;
+                // From here on a half would be rounded to infinity.
+                const bool fits = asHalf ? std::abs(asFloat) < 65520.0f : std::isfinite(asFloat);
+                if (!fits)
+                    loss.beyond.add(toVec(it.getCoord()));
+                else
+                    loss.add(exact,
+                             static_cast<double>(
+                                 asHalf ? grid::decodeHalf(grid::encodeHalf(asFloat)) : asFloat));
+            }
+        });
 }
 
 template <class To, class From>
@@ -138,7 +139,7 @@ bool convertIf(openvdb::GridBase::Ptr& grid) {
     const auto& source = static_cast<const From&>(*grid);
     const auto made = To::create(convertedTree<typename To::TreeType>(source.constTree()));
     made->insertMeta(static_cast<const openvdb::MetaMap&>(source));
-    made->setTransform(exactCopy(source.transform()));
+    made->setTransform(grid::exactCopy(source.transform()));
     grid = made;
     return true;
 }
@@ -172,19 +173,19 @@ bool convertMask(openvdb::GridBase::Ptr& grid) {
     auto made = openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(
         mask.constTree(), 0.0f, 1.0f, openvdb::TopologyCopy()));
     made->insertMeta(static_cast<const openvdb::MetaMap&>(mask));
-    made->setTransform(exactCopy(mask.transform()));
+    made->setTransform(grid::exactCopy(mask.transform()));
     grid = made;
     return true;
 }
 
 }  // namespace
 
-void remapGrids(VdbGrids& grids, const ValueOptions& options, ValueSummary& summary) {
+void remapGrids(grid::VdbGrids& grids, const ValueOptions& options, ValueSummary& summary) {
     for (const openvdb::GridBase::Ptr& grid : grids.grids)
         withFloatingGrid(*grid, [&](auto& typed) { remapGrid(typed, options, summary); });
 }
 
-double useFloatingPoint(VdbGrids& grids) {
+double useFloatingPoint(grid::VdbGrids& grids) {
     using namespace openvdb;
     double loss = 0;
     for (GridBase::Ptr& grid : grids.grids) {
@@ -196,7 +197,7 @@ double useFloatingPoint(VdbGrids& grids) {
     return loss;
 }
 
-PrecisionLoss setPrecision(VdbGrids& grids, Precision precision) {
+PrecisionLoss setPrecision(grid::VdbGrids& grids, Precision precision) {
     using namespace openvdb;
     PrecisionLoss most;
     if (precision == Precision::Source) return most;
@@ -221,4 +222,4 @@ PrecisionLoss setPrecision(VdbGrids& grids, Precision precision) {
     return most;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -6,7 +6,7 @@
 
 #include "woodcock/base/nearest_name.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -49,4 +49,4 @@ SampleType sampleTypeFromName(std::string_view name) {
 
 bool fitsFloat(SampleType type) { return type == SampleType::F32 || sampleBytes(type) < 4; }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

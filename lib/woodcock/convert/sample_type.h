@@ -12,7 +12,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// How a number of a dense volume is stored.
 enum class SampleType { U8, I8, U16, I16, U32, I32, U64, I64, F16, F32, F64 };
@@ -72,4 +72,4 @@ T swapBytes(T value) {
     return value;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

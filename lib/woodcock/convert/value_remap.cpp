@@ -3,11 +3,11 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
-std::string describe(const VoxelCount& voxels, const char* kind) {
+std::string describe(const grid::VoxelCount& voxels, const char* kind) {
     return fmt::format("{} {} voxel{} (first at [{}, {}, {}])", voxels.count, kind,
                        voxels.count == 1 ? "" : "s", voxels.first.x, voxels.first.y,
                        voxels.first.z);
@@ -28,4 +28,4 @@ std::string requireSound(const ValueSummary& summary, const std::string& place, 
     return fmt::format("{}: set to zero: {}", place, faults);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

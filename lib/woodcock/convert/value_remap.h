@@ -8,7 +8,7 @@
 
 #include "woodcock/grid/voxel_scan.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// Remapping of values, in this order: v x scale + offset, clamped to [low, high], then zero where
 /// below the threshold. A colour is below it where all of its channels are.
@@ -30,8 +30,8 @@ struct ValueOptions {
 
 /// Statistics of a pass over the values.
 struct ValueSummary {
-    VoxelCount nan, infinite;                              ///< as they came
-    VoxelCount beyond;                                     ///< made infinite by the remapping
+    grid::VoxelCount nan, infinite;                        ///< as they came
+    grid::VoxelCount beyond;                               ///< made infinite by the remapping
     double min = std::numeric_limits<double>::infinity();  ///< of the finite ones that came
     double max = -min;
     std::uint64_t active = 0;  ///< voxels that are left
@@ -87,4 +87,4 @@ bool remapVoxel(Value* values, int channels, Vec3i at, const ValueOptions& optio
 /// became infinite. Returns a note about what was repaired, or an empty text.
 std::string requireSound(const ValueSummary& summary, const std::string& place, bool repair);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -8,7 +8,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -37,7 +37,8 @@ void copyVoxels(const GridT& grid, const openvdb::CoordBBox& box, std::uint64_t 
 
 }  // namespace
 
-DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional<Box3i>& wanted) {
+DenseVolume vdbToDense(const grid::VdbGrids& grids, std::size_t i,
+                       const std::optional<Box3i>& wanted) {
     openvdb::GridBase& grid = *grids.grids.at(i);
     const openvdb::CoordBBox box = boxOf(grid, wanted);
     DenseVolume volume;
@@ -45,7 +46,7 @@ DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional
     const openvdb::Coord first = box.min(), last = box.max();
     volume.dims = {std::int64_t{last.x()} - first.x() + 1, std::int64_t{last.y()} - first.y() + 1,
                    std::int64_t{last.z()} - first.z() + 1};
-    volume.worldFromIndex = affineOf(*grid.transform().baseMap()) *
+    volume.worldFromIndex = grid::affineOf(*grid.transform().baseMap()) *
                             Affine3d::translate(Vec3i{first[0], first[1], first[2]}.as<double>());
     volume.placed = true;
     const bool copied = withFloatingGrid(grid, [&]<class GridT>(const GridT& typed) {
@@ -71,4 +72,4 @@ DenseVolume vdbToDense(const VdbGrids& grids, std::size_t i, const std::optional
     return volume;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -6,7 +6,7 @@
 #include <functional>
 #include <mutex>
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// Called from time to time, by one thread at a time, with the fraction of the work that is done, 0
 /// to 1. If it throws, the work ends, and the exception reaches the caller.
@@ -32,4 +32,4 @@ private:
     std::mutex mutex_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -9,7 +9,7 @@
 #include "woodcock/convert/openvdb_convert_source.h"
 #include "woodcock/convert/openvdb_each_type.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -20,19 +20,19 @@ void sayLoss(const std::string& why, PrecisionLoss loss, const ConvertOptions& o
                                   loss.absolute, loss.relative));
 }
 
-void applyPrecision(VdbGrids& grids, const ConvertOptions& options) {
+void applyPrecision(grid::VdbGrids& grids, const ConvertOptions& options) {
     const PrecisionLoss loss = setPrecision(grids, options.precision);
     if (options.precision == Precision::Half || options.precision == Precision::Float)
         sayLoss(options.precision == Precision::Half ? "--precision half" : "--precision float",
                 loss, options);
 }
 
-bool allSavedAsHalf(const VdbGrids& grids) {
+bool allSavedAsHalf(const grid::VdbGrids& grids) {
     return std::all_of(grids.grids.begin(), grids.grids.end(),
                        [](const auto& grid) { return grid->saveFloatAsHalf(); });
 }
 
-void sayWritten(const fs::path& out, const VdbGrids& grids, const ConvertOptions& options) {
+void sayWritten(const fs::path& out, const grid::VdbGrids& grids, const ConvertOptions& options) {
     std::string contents;
     for (const openvdb::GridBase::Ptr& grid : grids.grids)
         contents += fmt::format("'{}' ({}), {} active voxels; ", grid->getName(), grid->valueType(),
@@ -42,7 +42,7 @@ void sayWritten(const fs::path& out, const VdbGrids& grids, const ConvertOptions
 }
 
 /// NanoVDB's own programs know floats, so doubles are kept only where they are asked for.
-void useFloats(VdbGrids& grids, const ConvertOptions& options) {
+void useFloats(grid::VdbGrids& grids, const ConvertOptions& options) {
     const PrecisionLoss loss = setPrecision(grids, Precision::Float);
     if (options.precision == Precision::Float)
         sayLoss("--precision float", loss, options);
@@ -51,9 +51,9 @@ void useFloats(VdbGrids& grids, const ConvertOptions& options) {
 }
 
 /// Doubles as they are asked for; NanoVDB's own code cannot write vectors of them.
-void useDoubles(VdbGrids& grids, const ConvertOptions& options) {
+void useDoubles(grid::VdbGrids& grids, const ConvertOptions& options) {
     for (openvdb::GridBase::Ptr& grid : grids.grids) {
-        VdbGrids one{{grid}};
+        grid::VdbGrids one{{grid}};
         const bool vectors =
             grid->isType<openvdb::Vec3SGrid>() || grid->isType<openvdb::Vec3DGrid>();
         const PrecisionLoss loss =
@@ -67,7 +67,7 @@ void useDoubles(VdbGrids& grids, const ConvertOptions& options) {
     }
 }
 
-void warnOfVectors(const VdbGrids& grids, const ConvertOptions& options) {
+void warnOfVectors(const grid::VdbGrids& grids, const ConvertOptions& options) {
     for (const openvdb::GridBase::Ptr& grid : grids.grids)
         if (grid->isType<openvdb::Vec3SGrid>())
             say(options.warn,
@@ -94,27 +94,28 @@ std::optional<SampleType> outputTypeOf(const ConvertOptions& options) {
 
 }  // namespace
 
-void writeVdbSource(const fs::path& in, const fs::path& out, VdbGrids& grids,
+void writeVdbSource(const fs::path& in, const fs::path& out, grid::VdbGrids& grids,
                     const ConvertOptions& options) {
     applyPrecision(grids, options);
-    VdbWriteOptions how;
+    grid::VdbWriteOptions how;
     // Halves stay halves where no value has changed.
     how.half = options.precision == Precision::Half ||
                (options.precision == Precision::Source && options.values.remap.identity() &&
                 allSavedAsHalf(grids));
-    how.compression = options.compression.value_or(VdbCompression::Blosc);
+    how.compression = options.compression.value_or(grid::VdbCompression::Blosc);
     how.metadata = {{"generator", fmt::format("woodcock {}", version())},
                     {"source", in.filename().string()}};
-    writeVdb(out, grids, how);
+    grid::writeVdb(out, grids, how);
     sayWritten(out, grids, options);
 }
 
-void writeNanoVdbSource(const fs::path&, const fs::path& out, VdbGrids& grids,
+void writeNanoVdbSource(const fs::path&, const fs::path& out, grid::VdbGrids& grids,
                         const ConvertOptions& options) {
     NanoVdbWriteOptions how;
-    how.compression = options.compression == VdbCompression::Zip     ? NanoVdbCompression::Zip
-                      : options.compression == VdbCompression::Blosc ? NanoVdbCompression::Blosc
-                                                                     : NanoVdbCompression::None;
+    how.compression = options.compression == grid::VdbCompression::Zip ? NanoVdbCompression::Zip
+                      : options.compression == grid::VdbCompression::Blosc
+                          ? NanoVdbCompression::Blosc
+                          : NanoVdbCompression::None;
     how.quantise = options.precision == Precision::Half;
     if (options.precision == Precision::Double)
         useDoubles(grids, options);
@@ -137,7 +138,7 @@ void writeDenseSource(const fs::path& out, Source& source, const DenseWriter& wr
     source.grids.grids.clear();
     straighten(volume);
     const std::optional<SampleType> type = outputTypeOf(options);
-    const bool packed = options.compression == VdbCompression::Zip;
+    const bool packed = options.compression == grid::VdbCompression::Zip;
     const double error = writer.write(out, volume, {type, packed, stageOf(options, "writing")});
     volume.type = type.value_or(writer.onlyType.value_or(volume.type));
     say(options.info,
@@ -150,4 +151,4 @@ void writeDenseSource(const fs::path& out, Source& source, const DenseWriter& wr
                                       sampleTypeName(volume.type), error));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

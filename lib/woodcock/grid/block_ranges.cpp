@@ -9,7 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -223,4 +223,4 @@ Range blockRange(const Field& field, Vec3i block) {
 
 BlockTable<Range> blockRanges(const Field& field) { return RangeFinder(field).take(); }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -3,7 +3,7 @@
 
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// Exact bounds of the reconstruction, over all channels, in the closed cube of the block whose
 /// first voxel is 8 `block`: the range of its own voxels and of the layer beyond its + faces that
@@ -16,4 +16,4 @@ Range blockRange(const Field& field, Vec3i block);
 /// all.
 BlockTable<Range> blockRanges(const Field& field);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -8,7 +8,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// A block is 8x8x8 voxels. log2 of the voxels along an edge of: a block, a region of 16^3 blocks,
 /// a super-region of 32^3 regions. (These are the nodes of OpenVDB's default tree, so its tiles
@@ -246,4 +246,4 @@ private:
     std::unordered_map<std::uint64_t, std::uint32_t> supers_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

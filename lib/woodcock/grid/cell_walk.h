@@ -7,7 +7,7 @@
 
 #include "woodcock/grid/majorants.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// A ray in a grid's index space. Its parameter `t` is that of the ray in the world, so that
 /// several grids along one ray share it.
@@ -103,4 +103,4 @@ private:
     double t_ = 0, end_ = 0;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

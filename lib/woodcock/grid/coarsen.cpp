@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -101,4 +101,4 @@ Field coarsened(const Field& field, const Field* weights) {
     return coarse;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

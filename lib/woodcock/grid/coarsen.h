@@ -4,7 +4,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The field at half its resolution: each voxel is the mean of eight, so the integral of the values
 /// above the background stays the same. Voxels are stored as floats; the lookup stays as it is.
@@ -19,4 +19,4 @@ inline Affine3d fineFromCoarse() {
     return Affine3d::translate({0.5, 0.5, 0.5}) * Affine3d::scale({2, 2, 2});
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -12,7 +12,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -305,4 +305,4 @@ std::size_t Field::bytes() const {
            brickCount() * (sizeof(Range) + 512 * channelCount() * bytesPerValue);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

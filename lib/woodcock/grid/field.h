@@ -12,7 +12,7 @@
 #include "woodcock/grid/field_source.h"
 #include "woodcock/grid/half.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The smallest and the largest of some values.
 struct Range {
@@ -180,4 +180,4 @@ private:
 /// or fixed storage for those that FixedScale refuses.
 Field buildField(const FieldSource& source, Storage storage);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -11,7 +11,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// How a field stores its voxels. Auto is half where that keeps every value exactly (as of grids
 /// that were saved as half), else float. Fixed16 and Fixed8 are integers of so many bits between
@@ -51,4 +51,4 @@ struct FieldSource {
     std::function<void(size_t i, std::span<float> values)> copyLeaf;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

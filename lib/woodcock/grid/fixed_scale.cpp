@@ -6,7 +6,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -47,4 +47,4 @@ unsigned FixedScale::code(float v, unsigned last) const {
     return static_cast<unsigned>(std::clamp(nearest, 0.0, static_cast<double>(last)));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

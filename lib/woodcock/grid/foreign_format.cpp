@@ -8,7 +8,7 @@
 
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -207,4 +207,4 @@ std::optional<ForeignFormat> foreignFormat(const std::filesystem::path& path) {
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

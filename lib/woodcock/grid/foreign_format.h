@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// A format other than VDB, and what a user can do with such a file. All readers use one table of
 /// such formats.
@@ -29,4 +29,4 @@ std::optional<ForeignFormat> foreignFormat(std::span<const char> beginning,
 /// The same for a file on disk; by its name only, where it is not a regular file that can be read.
 std::optional<ForeignFormat> foreignFormat(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

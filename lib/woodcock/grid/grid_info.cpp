@@ -7,7 +7,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/grid/vdb/load_field.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -109,4 +109,4 @@ GridInfo inspectGrid(const VdbFile& file, const GridListing& grid) {
     return info;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -10,7 +10,7 @@
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/read_voxels.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// What a user should know about a grid before rendering it.
 struct GridInfo {
@@ -34,4 +34,4 @@ struct GridInfo {
 /// Reads the voxels and inspects them; faulty grids are described, not refused.
 GridInfo inspectGrid(const VdbFile& file, const GridListing& grid);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

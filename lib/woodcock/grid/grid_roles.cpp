@@ -10,7 +10,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/nearest_name.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -208,4 +208,4 @@ bool meansVelocity(const GridListing& grid) {
 
 bool hasRole(const VdbFile& file, GridRole role) { return findByRoleName(file, role) != nullptr; }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -6,7 +6,7 @@
 
 #include "woodcock/grid/vdb/file.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The use of a grid, by its name, as Houdini, Blender and EmberGen name grids.
 enum class GridRole { Density, Emission, Temperature, Colour, Velocity };
@@ -36,4 +36,4 @@ bool meansVelocity(const GridListing& grid);
 /// True when some grid of the file has one of the role's names.
 bool hasRole(const VdbFile& file, GridRole role);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

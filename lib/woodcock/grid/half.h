@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-namespace woodcock {
+namespace woodcock::grid {
 
 inline constexpr float largestHalf = 65504.0f;
 
@@ -50,4 +50,4 @@ inline bool isExactAsHalf(float v) {
     return (magnitude < smallestNormal ? asDenormal : asNormal) != 0;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -5,7 +5,7 @@
 #include "woodcock/base/memory.h"
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 std::string readInput(const std::filesystem::path& path) {
     FileBytes file(path);
@@ -17,4 +17,4 @@ std::string readInput(const std::filesystem::path& path) {
     return {bytes.data(), bytes.size()};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// All bytes of a regular file. Errors: Input where it is missing, something else, or cannot be
 /// read; Failure where it is larger than half of the memory.
 std::string readInput(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

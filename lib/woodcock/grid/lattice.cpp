@@ -5,7 +5,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 namespace {
 
 /// The 512 values of the leaf at `origin`, x slowest; 0 outside of the lattice.
@@ -59,4 +59,4 @@ LatticeSource latticeSource(std::shared_ptr<const LatticeValues> lattice) {
     return source;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

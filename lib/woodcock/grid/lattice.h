@@ -8,7 +8,7 @@
 #include "woodcock/grid/field_source.h"
 #include "woodcock/grid/voxel_scan.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// One float for each point of a regular lattice.
 struct LatticeValues {
@@ -25,4 +25,4 @@ struct LatticeSource {
 /// Throws Error{Usage} where `values` are not as many as `size` says.
 LatticeSource latticeSource(std::shared_ptr<const LatticeValues> lattice);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -10,7 +10,7 @@
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/grid/cell_walk.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -303,4 +303,4 @@ MajorantStatistics majorantStatistics(const Field& field, const MajorantGrid& ma
     return result;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

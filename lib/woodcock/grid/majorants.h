@@ -9,7 +9,7 @@
 #include "woodcock/grid/block_table.h"
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// Bounds of a field in cells of 2 to 4096 voxels: the majorants and minorants of null-collision
 /// tracking. The cells form the octree of least cost for a random ray: a step into a cell costs as
@@ -93,4 +93,4 @@ struct MajorantStatistics {
 /// sphere).
 MajorantStatistics majorantStatistics(const Field& field, const MajorantGrid& majorants, int rays);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -8,7 +8,7 @@
 
 #include "woodcock/grid/half.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -165,4 +165,4 @@ void repairValues(std::span<float> values, bool negativeToo) {
         if (!isFiniteValue(v) || (negativeToo && v < 0)) v = 0;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

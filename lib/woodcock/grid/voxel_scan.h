@@ -8,7 +8,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// How many voxels share a fault, and the lexicographically first of them (index space).
 struct VoxelCount {
@@ -23,7 +23,7 @@ struct VoxelCount {
 /// voxel counts once, whichever component is at fault.
 struct VoxelScan {
     std::uint64_t active = 0;
-    std::uint64_t inactiveValues = 0;   ///< inactive voxels that differ from the background
+    std::uint64_t inactiveValues = 0;  ///< inactive voxels that differ from the background
     std::uint64_t finite = 0;  ///< active voxels, over which `min`, `max` and `mean` are taken
     std::array<float, 3> min{}, max{};  ///< per channel; meaningful where finite > 0
     std::array<double, 3> sum{};
@@ -56,4 +56,4 @@ void scanTile(const std::array<float, 3>& value, int channels, bool active, Vec3
 /// Sets NaN and infinite values to zero; with `negativeToo`, also those below zero.
 void repairValues(std::span<float> values, bool negativeToo);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -39,4 +39,4 @@ std::optional<Chromaticities> chromaticitiesFromName(std::string_view name) {
     return {};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// CIE xy of red, green, blue and white, in this order, as OpenEXR stores them.
 using Chromaticities = std::array<float, 8>;
@@ -14,4 +14,4 @@ using Chromaticities = std::array<float, 8>;
 /// ACEScg", "lin_rec2020", "ACES2065-1"); absent where the name is not known.
 std::optional<Chromaticities> chromaticitiesFromName(std::string_view name);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

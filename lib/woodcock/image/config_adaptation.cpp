@@ -10,7 +10,7 @@
 #include <regex>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -106,4 +106,4 @@ double yamlExpansion(std::string_view text) {
     return total;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

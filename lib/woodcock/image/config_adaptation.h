@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::image {
 
 struct ConfigVersion {
     int major = 0, minor = 0;
@@ -32,4 +32,4 @@ AdaptedConfig adaptConfig(std::string_view text, ConfigVersion library,
 /// their anchors (&name): aliases of aliases multiply.
 double yamlExpansion(std::string_view text);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -21,9 +21,11 @@
 namespace OCIO = OCIO_NAMESPACE;
 
 namespace woodcock {
-
 /// data/ocio/woodcock.ocio, compiled in.
 extern const std::string_view shippedOcioConfig;
+}
+
+namespace woodcock::image {
 
 struct DisplayTransform::Processor {
     OCIO::ConstCPUProcessorRcPtr cpu;
@@ -324,4 +326,4 @@ std::vector<std::string> ColorConfig::views(const std::string& display) const {
     return viewNames(*impl_->config, impl_->complete(settings).display);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -10,7 +10,7 @@
 
 #include "woodcock/image/chromaticities.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// How scene-linear light becomes a picture. Names are those of the config, in any case; empty: its
 /// default.
@@ -69,4 +69,4 @@ private:
     std::shared_ptr<const Impl> impl_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -8,7 +8,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::vector<unsigned char> encodeImage(const ImageHeader& header, std::span<cons
     return bytes;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

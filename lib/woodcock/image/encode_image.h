@@ -9,7 +9,7 @@
 
 #include "woodcock/image/film.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 enum class PixelType { UInt8, UInt16, Half, Float };
 
@@ -34,4 +34,4 @@ struct ImageHeader {
 /// OpenImageIO's reason.
 std::vector<unsigned char> encodeImage(const ImageHeader& header, std::span<const float> pixels);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -9,7 +9,7 @@
 #include "woodcock/base/printable.h"
 #include "woodcock/image/image_header.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -247,4 +247,4 @@ private:
 
 void checkExrHeader(const RegularFile& file) { HeaderCheck(file).run(); }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

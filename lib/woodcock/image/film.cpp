@@ -9,7 +9,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -287,4 +287,4 @@ Film::Foreground Film::foreground(int x, int y) const {
     return f;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

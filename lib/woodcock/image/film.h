@@ -8,13 +8,13 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// The result of one camera path.
 struct FilmSample {
     Rgb radiance;
-    float alpha = 0;      ///< 1 - transmittance along the camera ray
-    float events = 0;     ///< scatterings and bounces of the path
+    float alpha = 0;   ///< 1 - transmittance along the camera ray
+    float events = 0;  ///< scatterings and bounces of the path
     Rgb background =
         {};          ///< the part of the radiance that comes straight from infinitely far lights
     float glow = 0;  ///< 1: the camera ray meets emission, which need not cover the background
@@ -158,4 +158,4 @@ private:
     std::vector<ForegroundPixel> foregroundPixels_;  // empty where no background is visible
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::image

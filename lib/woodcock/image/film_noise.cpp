@@ -6,7 +6,7 @@
 
 #include "woodcock/image/film.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -130,4 +130,4 @@ double Film::noise() const {
     return absorbsOnly ? noiseOfAlpha(*this) : unknown();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

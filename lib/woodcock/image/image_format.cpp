@@ -11,7 +11,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::string imageLibraries() {
     return text;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

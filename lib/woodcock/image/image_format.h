@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::image {
 
 enum class ImageFormat { Exr, Png, Jpeg, Tiff, WebP };
 
@@ -16,4 +16,4 @@ ImageFormat imageFormat(const std::filesystem::path& file);
 /// 2.4.7, OpenColorIO 2.1.2, OpenEXR 3.1.5".
 std::string imageLibraries();
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -11,7 +11,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -276,4 +276,4 @@ void requirePlausible(const RegularFile& file, double width, double height, doub
                                         width, height, formatGiB(bytes), file.size()));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -6,7 +6,7 @@
 
 #include "woodcock/base/regular_file.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// The formats that are read: "OpenEXR, PNG, JPEG, ...".
 std::string imageFormatsRead();
@@ -27,4 +27,4 @@ void requirePlausible(const RegularFile& file, double width, double height, doub
 /// ratio of their compression. Throws Error{Input}, also for deep pixels.
 void checkExrHeader(const RegularFile& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -7,7 +7,7 @@
 #include "woodcock/image/image_header.h"
 #include "woodcock/image/openimageio_input.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -103,4 +103,4 @@ Error OpenImage::unreadable(const std::string& reason) const {
                       reason.empty() ? "it is damaged" : reason);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -13,7 +13,7 @@
 
 namespace OCIO = OCIO_NAMESPACE;
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -219,4 +219,4 @@ std::vector<std::filesystem::path> checkConfigGraph(const OCIO::Config& config,
     return GraphCheck(config, origin).run();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// Checks the references of a config's colour spaces, looks, views, view transforms and named
 /// transforms: OpenColorIO would follow a circle for ever. Returns the files of look-up tables that
@@ -17,4 +17,4 @@ namespace woodcock {
 std::vector<std::filesystem::path> checkConfigGraph(const OCIO_NAMESPACE::Config& config,
                                                     const std::string& origin);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

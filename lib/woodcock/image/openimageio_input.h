@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// The only way to open images. OpenImageIO gets only regular files of a known format, whose
 /// headers claim no more than the file can hold (image_header.h).
@@ -41,4 +41,4 @@ private:
     int part_ = 0;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -9,7 +9,7 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/write_display.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 Outputs::Outputs(OutputSettings settings) : settings_(std::move(settings)) {
     const auto& files = settings_.files;
@@ -62,4 +62,4 @@ std::string Outputs::write(const Film& film, const RenderMetadata& metadata) con
     return note;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -10,7 +10,7 @@
 #include "woodcock/image/film.h"
 #include "woodcock/image/write_exr.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 struct OutputSettings {
     std::vector<std::filesystem::path> files = {};  ///< each in the format of its extension
@@ -44,4 +44,4 @@ private:
     std::optional<DisplayTransform> transform_;  ///< where a file needs it
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -6,7 +6,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/image/openimageio_input.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -53,4 +53,4 @@ Image readImage(const std::filesystem::path& file) {
     return image;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

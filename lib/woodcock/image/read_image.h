@@ -7,7 +7,7 @@
 
 #include "woodcock/base/spectrum.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// Scene-linear light, row by row from the top left.
 struct Image {
@@ -28,4 +28,4 @@ struct Image {
 /// the first.
 Image readImage(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

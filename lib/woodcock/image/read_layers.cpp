@@ -10,7 +10,7 @@
 #include "woodcock/base/printable.h"
 #include "woodcock/image/openimageio_input.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -156,4 +156,4 @@ void makeSceneLinear(LayeredImage& image, const std::string& space, const ColorC
     image.straightAlpha = false;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

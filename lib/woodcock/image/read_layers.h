@@ -11,7 +11,7 @@
 #include "woodcock/image/display.h"
 #include "woodcock/image/film.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// One channel: "transmittance.R" is channel R of layer transmittance; R, G, B alone are those of
 /// the layer without a name.
@@ -52,4 +52,4 @@ LayeredImage readLayers(const std::filesystem::path& file);
 /// Error{Input} on a name that the config does not have.
 void makeSceneLinear(LayeredImage& image, const std::string& space, const ColorConfig& config);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -11,7 +11,7 @@
 #include "woodcock/base/memory.h"
 #include "woodcock/image/openimageio_input.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace fs = std::filesystem;
 
@@ -261,4 +261,4 @@ Slices readPages(const fs::path& file, const std::function<void(double)>& report
     return slices;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// Pictures of one size as slices of a volume: numbers, not light.
 struct Slices {
@@ -39,4 +39,4 @@ Slices readSliceFiles(const std::vector<std::filesystem::path>& files,
 /// is only one page.
 Slices readPages(const std::filesystem::path& file, const std::function<void(double)>& report = {});
 
-}  // namespace woodcock
+}  // namespace woodcock::image

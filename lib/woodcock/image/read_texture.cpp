@@ -7,7 +7,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/image/openimageio_input.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -52,4 +52,4 @@ Image readTexture(const std::filesystem::path& file, const std::string& colourSp
     return image;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

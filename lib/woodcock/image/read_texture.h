@@ -7,7 +7,7 @@
 #include "woodcock/image/display.h"
 #include "woodcock/image/read_image.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// Reads an image as readImage() does, and converts it from the named colour space of the config to
 /// scene-linear colours. "linear", "raw" and "data" leave the numbers as they are. Empty: integers
@@ -17,4 +17,4 @@ namespace woodcock {
 Image readTexture(const std::filesystem::path& file, const std::string& colourSpace,
                   const ColorConfig& config);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

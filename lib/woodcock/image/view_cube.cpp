@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::image {
 
 ViewCube bakeView(const DisplayTransform& transform) {
     ViewCube cube;
@@ -25,4 +25,4 @@ ViewCube bakeView(const DisplayTransform& transform) {
     return cube;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

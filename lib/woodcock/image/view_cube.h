@@ -5,7 +5,7 @@
 
 #include "woodcock/image/display.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// A display transform as a table, for programs without OpenColorIO: `side`^3 colours of three
 /// bytes, red fastest. Node i of an axis stands for the light 2^(low + i / (side - 1) (high - low))
@@ -18,4 +18,4 @@ struct ViewCube {
 
 ViewCube bakeView(const DisplayTransform& transform);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

@@ -11,7 +11,7 @@
 #include "woodcock/image/encode_image.h"
 #include "woodcock/image/image_format.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -47,7 +47,7 @@ ScenePixels scenePixels(const Film& film, bool straight, const DisplayFileSettin
     ScenePixels pixels;
     const Film::Window crop = film.crop();
     pixels.rgba.reserve(4 * static_cast<std::size_t>(crop.width()) *
-                   static_cast<std::size_t>(crop.height()));
+                        static_cast<std::size_t>(crop.height()));
     const double gain = std::exp2(settings.exposure);
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
@@ -93,4 +93,4 @@ double writeDisplay(const std::filesystem::path& file, const Film& film,
     return static_cast<double>(pixels.raised) / (double(width) * height);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

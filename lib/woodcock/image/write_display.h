@@ -6,7 +6,7 @@
 #include "woodcock/image/display.h"
 #include "woodcock/image/film.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 struct DisplayFileSettings {
     /// The picture keeps alpha, where its format has one; otherwise it is opaque, on black.
@@ -24,4 +24,4 @@ struct DisplayFileSettings {
 double writeDisplay(const std::filesystem::path& file, const Film& film,
                     const DisplayTransform& transform, const DisplayFileSettings& settings = {});
 
-}  // namespace woodcock
+}  // namespace woodcock::image

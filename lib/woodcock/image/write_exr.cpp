@@ -13,7 +13,7 @@
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/openimageio_input.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 namespace {
 
@@ -186,4 +186,4 @@ void annotateExr(const std::filesystem::path& from, const std::filesystem::path&
     writeWholeFile(to, encodeImage(header, pixels));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::image

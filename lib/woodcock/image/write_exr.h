@@ -12,7 +12,7 @@
 #include "woodcock/image/encode_image.h"
 #include "woodcock/image/film.h"
 
-namespace woodcock {
+namespace woodcock::image {
 
 /// How an image was rendered, for its header.
 struct RenderMetadata {
@@ -60,4 +60,4 @@ void writeExr(const std::filesystem::path& file, const Film& film, const RenderM
 void annotateExr(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<std::pair<std::string, ImageAttribute>>& attributes);
 
-}  // namespace woodcock
+}  // namespace woodcock::image

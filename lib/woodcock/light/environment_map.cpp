@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/light/environment_map.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 namespace {
 
@@ -93,4 +93,4 @@ double EnvironmentMap::pdf(Vec3d d) const {
     return share / (2 * pi / width_ * (top - bottom));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::light

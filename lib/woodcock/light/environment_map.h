@@ -6,7 +6,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 /// A lat-long image of radiance, interpolated bilinearly, and sampled in proportion to brightness.
 /// In light space +y is up, the centre of the image looks along -z and +x lies to its right.
@@ -36,4 +36,4 @@ private:
     Rgb mean_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::light

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/light/light.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 namespace {
 
@@ -121,4 +121,4 @@ double SphereLight::pdf(Vec3d from, Vec3d direction) const {
     return oneMinusCosine(direction, d / distance) <= oneMinusCos ? 1 / (2 * pi * oneMinusCos) : 0;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::light

@@ -10,7 +10,7 @@
 #include "woodcock/light/environment_map.h"
 #include "woodcock/light/mesh_light.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 /// Light that arrives at a point from one direction, drawn by a light's own sampling.
 struct LightSample {
@@ -91,4 +91,4 @@ struct SphereLight {
 
 using Light = std::variant<Sun, Environment, PointLight, SphereLight, MeshLight>;
 
-}  // namespace woodcock
+}  // namespace woodcock::light

@@ -5,7 +5,7 @@
 
 #include "woodcock/medium/phase.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 namespace {
 
@@ -20,7 +20,7 @@ Overloaded(F...) -> Overloaded<F...>;
 /// over channels.
 double importance(const Light& light, const ScatterPoint& at) {
     const auto phase = [&](Vec3d towards) {
-        return henyeyGreenstein(dot(at.forward, towards), at.g);
+        return medium::henyeyGreenstein(dot(at.forward, towards), at.g);
     };
     return std::visit(
         Overloaded{[&](const Sun& l) { return l.irradiance().mean() * phase(l.towards()); },
@@ -140,4 +140,4 @@ float LightSet::typicalRadiance(const Box3d& bounds) const {
     return static_cast<float>(sum);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::light

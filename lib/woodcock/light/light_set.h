@@ -6,7 +6,7 @@
 
 #include "woodcock/light/light.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 /// A point that scatters light, as light selection needs it.
 struct ScatterPoint {
@@ -57,4 +57,4 @@ private:
     int mesh_ = -1;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::light

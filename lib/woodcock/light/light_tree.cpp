@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace woodcock {
+namespace woodcock::light {
 
 namespace {
 
@@ -205,4 +205,4 @@ LightTree::LightTree(std::span<const EmitterBounds> emitters) : paths(emitters.s
     Builder(*this).build(chosen, 0, 0, 0);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::light

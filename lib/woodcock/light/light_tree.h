@@ -7,7 +7,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 /// Bounds of some emitters. Each radiates by Lambert's law around its normal.
 struct EmitterBounds {
@@ -48,4 +48,4 @@ struct LightTree {
     explicit LightTree(std::span<const EmitterBounds> emitters);
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::light

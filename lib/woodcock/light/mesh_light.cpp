@@ -8,7 +8,7 @@
 #include "woodcock/light/light.h"
 #include "woodcock/light/spherical_triangle.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 namespace {
 
@@ -188,4 +188,4 @@ double MeshLight::importance(Vec3d from) const {
     return tree_.nodes.empty() ? 0 : importance(0, from);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::light

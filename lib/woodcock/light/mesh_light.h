@@ -10,7 +10,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/light/light_tree.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 struct LightSample;
 
@@ -60,4 +60,4 @@ private:
     double power_ = 0;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::light

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/light/spherical_triangle.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 SphericalTriangle::SphericalTriangle(const std::array<Vec3d, 3>& corner, Vec3d from) {
     std::array<double, 3> distance{};
@@ -50,4 +50,4 @@ Vec3d SphericalTriangle::sample(double u0, double u1) const {
     return normalize(b * (s - t * (onePlusCos - 1)) + moved * t);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::light

@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::light {
 
 /// A triangle projected onto the unit sphere around a point.
 class SphericalTriangle {
@@ -30,4 +30,4 @@ private:
     bool front_ = false;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::light

@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 namespace {
 
 /// The CIE's colour matching functions of 1931, from 380 nm in steps of 10 nm.
@@ -68,15 +68,15 @@ Rgb blackbodyRadiance(double kelvin) {
            static_cast<float>(1e-6 * stefanBoltzmann / pi * square * square);
 }
 
-FieldSource blackbodySource(FieldSource temperatures, double scale, double offset) {
+grid::FieldSource blackbodySource(grid::FieldSource temperatures, double scale, double offset) {
     const auto radiance = [scale, offset, cold = temperatures.background[0]](float value) {
         return value == cold ? Rgb(0.0f) : blackbodyRadiance(scale * double{value} + offset);
     };
-    FieldSource glow;
+    grid::FieldSource glow;
     glow.channels = 3;
     glow.leafOrigins = std::move(temperatures.leafOrigins);
     glow.tiles = std::move(temperatures.tiles);
-    for (FieldTile& tile : glow.tiles) tile.value = radiance(tile.value[0]).c;
+    for (grid::FieldTile& tile : glow.tiles) tile.value = radiance(tile.value[0]).c;
     glow.copyLeaf = [radiance, copy = std::move(temperatures.copyLeaf)](std::size_t i,
                                                                         std::span<float> values) {
         std::array<float, 512> kelvins;
@@ -89,4 +89,4 @@ FieldSource blackbodySource(FieldSource temperatures, double scale, double offse
     return glow;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

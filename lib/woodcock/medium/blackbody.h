@@ -4,7 +4,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/field_source.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// Colour of a black body at `kelvin` > 0, of luminance 1: Planck's law seen by the CIE's standard
 /// observer of 1931, in linear Rec.709. Below some 1900 K it is redder than any colour of that
@@ -16,9 +16,9 @@ Rgb blackbodyColour(double kelvin);
 /// watts per square metre and steradian. Zero at and below 0 K. As in Cycles' Principled Volume.
 Rgb blackbodyRadiance(double kelvin);
 
-/// The emission of a grid of temperatures: blackbodyRadiance(scale x value + offset) of every voxel,
-/// in three channels. The emission is interpolated, not the temperature, so that it is linear in
-/// its field. It is zero where the grid holds its background value, whatever the offset.
-FieldSource blackbodySource(FieldSource temperatures, double scale, double offset);
+/// The emission of a grid of temperatures: blackbodyRadiance(scale x value + offset) of every
+/// voxel, in three channels. The emission is interpolated, not the temperature, so that it is
+/// linear in its field. It is zero where the grid holds its background value, whatever the offset.
+grid::FieldSource blackbodySource(grid::FieldSource temperatures, double scale, double offset);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

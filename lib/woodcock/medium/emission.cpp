@@ -3,7 +3,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 EmissionPart::EmissionPart(Description description) : d_(std::move(description)) {
     const double determinant = d_.worldFromIndex.determinant();
@@ -18,7 +18,7 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
         support_ = extent_ = d_.box;
         return;
     }
-    const Field& field = *d_.field;
+    const grid::Field& field = *d_.field;
     for (int c = 0; c < field.channels(); ++c)
         if (field.background(c) != 0) {
             background_ = std::max(background_, std::abs(double{field.background(c)}));
@@ -32,7 +32,7 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
     // As if the brightest voxel were one collision wide: cells that separate bright from dark, and
     // few others.
     const double largest = std::max(std::abs(field.range().min), std::abs(field.range().max));
-    majorants_ = MajorantGrid(field, {largest > 0 ? 1 / largest : 1, 1, 1});
+    majorants_ = grid::MajorantGrid(field, {largest > 0 ? 1 / largest : 1, 1, 1});
 }
 
 Rgb EmissionPart::value(Vec3d world) const {
@@ -89,4 +89,4 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
         t, Rgb::map([&](int c) { return static_cast<float>(double{q[c]} * weight); })};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -12,7 +12,7 @@
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It
 /// does not depend on absorption. It is zero outside of its field's support or, where the field has
@@ -20,10 +20,11 @@ namespace woodcock {
 class EmissionPart {
 public:
     struct Description {
-        std::shared_ptr<const Field> field;  ///< 1 or 3 channels; null: 1 inside `box`, 0 outside
-        Box3d box;                           ///< of object space; only without a field
-        Affine3d worldFromIndex;             ///< or world from object, without a field
-        Rgb scale{1.0f};                     ///< q where f is 1
+        std::shared_ptr<const grid::Field>
+            field;                ///< 1 or 3 channels; null: 1 inside `box`, 0 outside
+        Box3d box;                ///< of object space; only without a field
+        Affine3d worldFromIndex;  ///< or world from object, without a field
+        Rgb scale{1.0f};          ///< q where f is 1
     };
     /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
     /// field has a background without limits: a medium that emits everywhere is infinitely bright.
@@ -37,22 +38,22 @@ public:
     /// no channel of |q| exceeds `bound` there.
     template <class F>
     void walk(Vec3d origin, Vec3d direction, double tMax, F&& visit) const {
-        const IndexRay ray{indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
+        const grid::IndexRay ray{indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
         double begin = 0, end = tMax;
-        if (extent_.empty() || !clip(ray, extent_, begin, end)) return;
+        if (extent_.empty() || !grid::clip(ray, extent_, begin, end)) return;
         if (!d_.field) {
             visit(begin, end, largestScale_);
             return;
         }
         double t0 = begin, t1 = end;
-        if (support_.empty() || !clip(ray, support_, t0, t1)) t0 = t1 = end;
+        if (support_.empty() || !grid::clip(ray, support_, t0, t1)) t0 = t1 = end;
         const auto piece = [&](double from, double to, double bound) {
             if (bound > 0 && to > from) visit(from, to, bound * largestScale_);
         };
         piece(begin, t0, background_);
         if (!(t0 < t1)) return;
-        CellWalk cells(majorants_, support_, ray, t0, t1);
-        for (Segment s; cells.next(s);)
+        grid::CellWalk cells(majorants_, support_, ray, t0, t1);
+        for (grid::Segment s; cells.next(s);)
             piece(s.t0, s.t1, std::max(std::abs(s.range.min), std::abs(s.range.max)));
         piece(t1, end, background_);
     }
@@ -63,7 +64,7 @@ private:
     Box3d support_, extent_;
     double background_ = 0;  // its largest channel, within the extent and outside of the support
     double largestScale_ = 0;
-    MajorantGrid majorants_;
+    grid::MajorantGrid majorants_;
 };
 
 /// A point of a ray, and its emission. The mean of `light` times the transmittance to `t` is the
@@ -95,4 +96,4 @@ private:
     std::vector<Piece> pieces_;  // of one ray
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -3,7 +3,7 @@
 
 #include "woodcock/medium/medium.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 Rgb scatteringAlbedo(const Medium& medium, Vec3d world) {
     Rgb scattering, extinction;
@@ -33,4 +33,4 @@ Vec3d densityNormal(const Medium& medium, Vec3d world) {
     return slope > 0 ? gradient * (-1 / slope) : Vec3d{};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -4,7 +4,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 struct Medium;
 
@@ -18,4 +18,4 @@ Rgb scatteringAlbedo(const Medium& medium, Vec3d world);
 /// uniform, as in homogeneous boxes; their faces are not considered.
 Vec3d densityNormal(const Medium& medium, Vec3d world);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -11,7 +11,7 @@
 #include "woodcock/medium/medium.h"
 #include "woodcock/medium/roulette.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Numbers {
 /// f by full trilinear interpolation: one-tap stochastic interpolation adds variance, and with it
 /// bias.
 template <int N>
-Spectrum<N> fieldAt(const Field& field, Vec3d index) {
+Spectrum<N> fieldAt(const grid::Field& field, Vec3d index) {
     if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
     return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
 }
@@ -70,7 +70,7 @@ public:
           random_(random) {}
 
     const MediumPart& part() const { return *part_; }
-    const IndexRay& ray() const { return ray_; }
+    const grid::IndexRay& ray() const { return ray_; }
 
     bool next(Step<N>& step, TrackingCounters& counters) {
         while (done_ == count_) {
@@ -125,12 +125,12 @@ private:
     }
 
     const MediumPart* part_;
-    IndexRay ray_;
+    grid::IndexRay ray_;
     PartWalk walk_;
     double stepsPerLength_;
     bool jackknife_;
     RandomStream random_;
-    Segment segment_{0, 0, {}};
+    grid::Segment segment_{0, 0, {}};
     std::int64_t done_ = 0, count_ = 0;  // steps of the segment
 };
 
@@ -235,7 +235,7 @@ Spectrum<N> weightOf(const Medium& medium, const DistanceQuery<N>& q, const Even
         const MediumPart& part = medium.parts[static_cast<std::size_t>(event.part)];
         extinguished = channels<N>(part.extinction()) * event.f;
         scattered = q.absorptionToo ? extinguished : channels<N>(part.scattering()) * event.f;
-        if (const Field* albedo = part.albedo(); albedo && !q.absorptionToo)
+        if (const grid::Field* albedo = part.albedo(); albedo && !q.absorptionToo)
             scattered *= fieldAt<N>(
                 *albedo, albedo->nearSupport(part.albedoIndex(q.origin + q.direction * event.t)));
     }
@@ -371,4 +371,4 @@ template void marchTransmittance<1>(const Medium&, const MarchSettings&,
 template void marchTransmittance<3>(const Medium&, const MarchSettings&,
                                     std::span<TransmittanceQuery<3>>, TrackingCounters&);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -5,7 +5,7 @@
 
 #include "woodcock/medium/tracking.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// Ray marching in place of tracking. It is biased, and its cost is known beforehand.
 ///
@@ -51,4 +51,4 @@ template <int N>
 void marchTransmittance(const Medium& medium, const MarchSettings& settings,
                         std::span<TransmittanceQuery<N>> queries, TrackingCounters& counters);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

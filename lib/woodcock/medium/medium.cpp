@@ -4,7 +4,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     const double determinant = d_.worldFromIndex.determinant();
@@ -26,9 +26,9 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
         return;
     }
     const double voxelWidth = std::cbrt(std::abs(determinant));
-    majorants_ = std::make_shared<MajorantGrid>(
-        *d_.field, MajorantGrid::Options{largestExtinction_ * voxelWidth, d_.majorantScale,
-                                         d_.majorantSmallestLog2});
+    majorants_ = std::make_shared<grid::MajorantGrid>(
+        *d_.field, grid::MajorantGrid::Options{largestExtinction_ * voxelWidth, d_.majorantScale,
+                                               d_.majorantSmallestLog2});
     const Box3d& box = extent();
     if (box.empty()) return;
     RandomStream random(hashOf(0x6d65616e));
@@ -40,12 +40,12 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     }
 }
 
-const MajorantGrid& MediumPart::marchCells() const {
+const grid::MajorantGrid& MediumPart::marchCells() const {
     std::call_once(marchCells_->made, [this] {
         if (!d_.field || !(d_.field->range().max > 0)) return;
         // As if the optical depth were huge: then no cells that differ are merged.
         const double deep = 1e9 / d_.field->range().max;
-        marchCells_->cells = MajorantGrid(*d_.field, {deep, 1, blockLog2});
+        marchCells_->cells = grid::MajorantGrid(*d_.field, {deep, 1, grid::blockLog2});
     });
     return marchCells_->cells;
 }
@@ -97,7 +97,7 @@ float MediumPart::value(Vec3d world, int channel) const {
 
 Rgb MediumPart::albedoAt(Vec3d world) const {
     if (!d_.albedo) return Rgb(1.0f);
-    const Field& albedo = *d_.albedo;
+    const grid::Field& albedo = *d_.albedo;
     const Vec3d p = albedo.nearSupport(albedoIndex(world));
     return Rgb::map([&](int c) { return albedo.trilinear(p, albedo.channels() == 1 ? 0 : c); });
 }
@@ -129,4 +129,4 @@ Box3d Medium::worldBounds() const {
     return box;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -13,7 +13,7 @@
 #include "woodcock/grid/majorants.h"
 #include "woodcock/medium/emission.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// One additive part of the medium: sigma_t(x) = (absorption + scattering) x f(x) and sigma_s(x) =
 /// scattering x f(x) x albedo(x), per world unit and channel, with one phase function. A volume
@@ -22,12 +22,12 @@ namespace woodcock {
 class MediumPart {
 public:
     struct Description {
-        std::shared_ptr<const Field> field;   ///< null: f = 1 inside `box`, 0 outside
-        Box3d box;                            ///< of object space; only without a field
-        Affine3d worldFromIndex;              ///< or world from object, without a field
-        Rgb absorption{0.0f};                 ///< sigma_a where f (and albedo) is 1
-        Rgb scattering{1.0f};                 ///< sigma_s where f (and albedo) is 1
-        std::shared_ptr<const Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
+        std::shared_ptr<const grid::Field> field;   ///< null: f = 1 inside `box`, 0 outside
+        Box3d box;                                  ///< of object space; only without a field
+        Affine3d worldFromIndex;                    ///< or world from object, without a field
+        Rgb absorption{0.0f};                       ///< sigma_a where f (and albedo) is 1
+        Rgb scattering{1.0f};                       ///< sigma_s where f (and albedo) is 1
+        std::shared_ptr<const grid::Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
         Affine3d albedoWorldFromIndex;
         double g = 0;
         double majorantScale = 1;      ///< > 1 loosens the majorants; see MajorantGrid::Options
@@ -60,14 +60,14 @@ public:
     /// a Description.
     bool extinctionVaries() const { return d_.albedo && loss_ != 1; }
     float largestExtinction() const { return largestExtinction_; }
-    const Field* field() const { return d_.field.get(); }
-    const Field* albedo() const { return d_.albedo.get(); }
-    const MajorantGrid& majorants() const { return *majorants_; }
+    const grid::Field* field() const { return d_.field.get(); }
+    const grid::Field* albedo() const { return d_.albedo.get(); }
+    const grid::MajorantGrid& majorants() const { return *majorants_; }
     /// Cells for ray marching: as large as possible without mixing empty or constant parts with
     /// others. The first thread that asks makes them.
-    const MajorantGrid& marchCells() const;
+    const grid::MajorantGrid& marchCells() const;
 
-    IndexRay indexRay(Vec3d origin, Vec3d direction) const {
+    grid::IndexRay indexRay(Vec3d origin, Vec3d direction) const {
         return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
     }
     /// False only where the ray surely does not meet this part before tMax: a quick test, with a
@@ -85,7 +85,7 @@ public:
     Vec3d albedoIndex(Vec3d world) const { return albedoIndexFromWorld_.point(world); }
     /// Index-space box outside which f is the background.
     const Box3d& support() const { return support_; }
-    Range background() const { return background_; }
+    grid::Range background() const { return background_; }
     /// Index-space box outside which f is 0 although the field has a background; else null.
     const Box3d* limits() const { return limits_ ? &*limits_ : nullptr; }
     /// Index-space box of the part, but for a background without limits.
@@ -118,14 +118,14 @@ private:
     Box3d support_;
     std::optional<Box3d> limits_;
     Box3d reach_;  // of world space: a little more than where f is not 0
-    Range background_;
+    grid::Range background_;
     float largestExtinction_ = 0;
     Rgb channelWeight_;
     double meanExtinction_ = 0;
-    std::shared_ptr<const MajorantGrid> majorants_ = std::make_shared<MajorantGrid>();
+    std::shared_ptr<const grid::MajorantGrid> majorants_ = std::make_shared<grid::MajorantGrid>();
     struct Lazy {
         std::once_flag made;
-        MajorantGrid cells;
+        grid::MajorantGrid cells;
     };
     std::shared_ptr<Lazy> marchCells_ = std::make_shared<Lazy>();  // depend on the field only
 };
@@ -144,22 +144,23 @@ struct Medium {
 /// where that is not zero, as far as the part's limits.
 class PartWalk {
 public:
-    PartWalk(const MediumPart& part, const IndexRay& ray, double tMax)
+    PartWalk(const MediumPart& part, const grid::IndexRay& ray, double tMax)
         : PartWalk(part, part.majorants(), ray, tMax) {}
-    PartWalk(const MediumPart& part, const MajorantGrid& cells, const IndexRay& ray, double tMax)
+    PartWalk(const MediumPart& part, const grid::MajorantGrid& cells, const grid::IndexRay& ray,
+             double tMax)
         : background_(part.background()),
           homogeneous_(!part.field()),
           end_(tMax),
           enter_(0),
           leave_(tMax),
           cells_(enters(part, ray) && !homogeneous_
-                     ? CellWalk(cells, part.support(), ray, enter_, leave_)
-                     : CellWalk()) {}
+                     ? grid::CellWalk(cells, part.support(), ray, enter_, leave_)
+                     : grid::CellWalk()) {}
 
     /// False for segments of the background before and after the support.
-    bool insideSupport(const Segment& s) const { return s.t0 >= enter_ && s.t1 <= leave_; }
+    bool insideSupport(const grid::Segment& s) const { return s.t0 >= enter_ && s.t1 <= leave_; }
 
-    bool next(Segment& segment) {
+    bool next(grid::Segment& segment) {
         if (stage_ == Stage::Before) {
             stage_ = Stage::Inside;
             if (background_.max > 0 && enter_ > begin_) {
@@ -188,19 +189,19 @@ public:
 private:
     enum class Stage { Before, Inside, After, Done };
 
-    bool enters(const MediumPart& part, const IndexRay& ray) {
-        if (part.limits() && !clip(ray, *part.limits(), begin_, end_)) begin_ = end_;
+    bool enters(const MediumPart& part, const grid::IndexRay& ray) {
+        if (part.limits() && !grid::clip(ray, *part.limits(), begin_, end_)) begin_ = end_;
         enter_ = begin_, leave_ = end_;
-        if (!part.support().empty() && clip(ray, part.support(), enter_, leave_)) return true;
+        if (!part.support().empty() && grid::clip(ray, part.support(), enter_, leave_)) return true;
         enter_ = leave_ = end_;  // all background
         return false;
     }
 
-    Range background_;
+    grid::Range background_;
     bool homogeneous_;
     Stage stage_ = Stage::Before;
     double begin_ = 0, end_, enter_, leave_;
-    CellWalk cells_;
+    grid::CellWalk cells_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

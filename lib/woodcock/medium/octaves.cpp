@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/medium/octaves.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 Medium octaveMedium(const Medium& medium, int i) {
     Medium dimmed;
@@ -13,4 +13,4 @@ Medium octaveMedium(const Medium& medium, int i) {
     return dimmed;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -6,7 +6,7 @@
 
 #include "woodcock/medium/medium.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// Multiple scattering as a sum of single scatterings, "octaves": of octave i, sigma_s is
 /// multiplied by a^i, the extinction towards the light by b^i, and the phase function's g by c^i.
@@ -32,4 +32,4 @@ inline int draw(int n, double u) {
 /// sigma_t. It shares the fields and their bounds. Emission is left out.
 Medium octaveMedium(const Medium& medium, int i);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -7,15 +7,15 @@
 
 #include "woodcock/medium/medium.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1) {
     Vec3d depth;
     std::vector<double> planes;
     for (const MediumPart& part : medium.parts) {
-        const IndexRay ray = part.indexRay(origin + direction * t0, direction);
+        const grid::IndexRay ray = part.indexRay(origin + direction * t0, direction);
         PartWalk walk(part, ray, t1 - t0);
-        Segment s;
+        grid::Segment s;
         while (walk.next(s)) {
             const auto add = [&](double length, auto&& valueOf) {
                 for (int c = 0; c < 3; ++c) {
@@ -31,8 +31,8 @@ Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, doubl
                 add(s.t1 - s.t0, [&](int c) { return double{part.field()->background(c)}; });
                 continue;
             }
-            const Field& field = *part.field();
-            const double shift = field.lookup() == Lookup::Nearest ? 0.5 : 0;
+            const grid::Field& field = *part.field();
+            const double shift = field.lookup() == grid::Lookup::Nearest ? 0.5 : 0;
             planes = {s.t0, s.t1};
             for (int i = 0; i < 3; ++i) {
                 if (ray.direction[i] == 0) continue;
@@ -57,4 +57,4 @@ Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, doubl
     return {static_cast<float>(depth.x), static_cast<float>(depth.y), static_cast<float>(depth.z)};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -4,7 +4,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 struct Medium;
 
@@ -14,4 +14,4 @@ struct Medium;
 /// voxels. Slow: the reference for the estimators. Not for parts whose extinctionVaries().
 Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

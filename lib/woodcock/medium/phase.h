@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// Henyey-Greenstein with mean cosine g in (-1, 1): value per steradian for the cosine between the
 /// way the light travelled before and after. Integrates to one over the sphere. Henyey and
@@ -42,4 +42,4 @@ inline PhaseSample sampleHenyeyGreenstein(Vec3d forward, double g, double u0, do
     return {d / std::sqrt(dot(d, d)), q * q * q / (4 * pi * width * width)};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace woodcock {
+namespace woodcock::medium {
 
 namespace {
 
@@ -22,7 +22,7 @@ struct Lattice {
     Vec3i corner;
     double values[2][2][2];
 
-    Lattice(const Field& field, Vec3i v, int channel) : corner(v) {
+    Lattice(const grid::Field& field, Vec3i v, int channel) : corner(v) {
         for (int i : {0, 1})
             for (int j : {0, 1})
                 for (int k : {0, 1}) values[i][j][k] = field.voxel(v + Vec3i{i, j, k}, channel);
@@ -40,7 +40,7 @@ struct Lattice {
     /// Bounds of the reconstruction from a to b: along a line it is a cubic, whose Bezier points
     /// are means of its polar form, and that is the trilinear function with mixed arguments.
     /// Ramshaw 1989, "Blossoms are polar forms".
-    Range between(Vec3d a, Vec3d b) const {
+    grid::Range between(Vec3d a, Vec3d b) const {
         const double points[4] = {
             at(a.x, a.y, a.z), (at(b.x, a.y, a.z) + at(a.x, b.y, a.z) + at(a.x, a.y, b.z)) / 3,
             (at(b.x, b.y, a.z) + at(b.x, a.y, b.z) + at(a.x, b.y, b.z)) / 3, at(b.x, b.y, b.z)};
@@ -55,8 +55,8 @@ struct Lattice {
 
 /// Bounds of the values along a ray from a to b, both in the unit cube that begins at voxel `v`;
 /// for nearest lookups, in the unit cube around `v`.
-Range between(const Field& field, Vec3i v, Vec3d a, Vec3d b, int channel) {
-    if (field.lookup() == Lookup::Trilinear) return Lattice(field, v, channel).between(a, b);
+grid::Range between(const grid::Field& field, Vec3i v, Vec3d a, Vec3d b, int channel) {
+    if (field.lookup() == grid::Lookup::Trilinear) return Lattice(field, v, channel).between(a, b);
     const float value = field.voxel(v, channel);
     return {value, value};
 }
@@ -73,20 +73,21 @@ float RefinedWalk::liveExtinction(const MediumPart& part) const {
     return largest;
 }
 
-void RefinedWalk::cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
+void RefinedWalk::cut(const MediumPart& part, const grid::IndexRay& ray, double t,
+                      grid::Segment& segment) {
     if (!tight_) cell_ = segment;
     segment = piece(part, ray, t);
 }
 
 /// From `t` to at most the end of the cell being cut and of the voxel cell that holds it.
-Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t) {
+grid::Segment RefinedWalk::piece(const MediumPart& part, const grid::IndexRay& ray, double t) {
     const double largest = extinction_;
     collisions_ = 0;
     stale_ = false;
     tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) > shallowCell;
     if (!tight_) return {t, cell_.t1, cell_.range};
-    const Field& field = *part.field();
-    const double shift = field.lookup() == Lookup::Nearest ? 0.5 : 0;  // cubes around voxels
+    const grid::Field& field = *part.field();
+    const double shift = field.lookup() == grid::Lookup::Nearest ? 0.5 : 0;  // cubes around voxels
     const Vec3d from = ray.at(t);
     Vec3i v = floorToInt(from + Vec3d{shift, shift, shift});
     double end = cell_.t1;
@@ -98,14 +99,14 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
         end = std::min(end, faceAhead());
     }
     const bool grey = field.channels() == 1;
-    Range range;
+    grid::Range range;
     while (true) {
         range = {std::numeric_limits<float>::infinity(), 0};
-        std::array<Range, 3> channel;
+        std::array<grid::Range, 3> channel;
         float largestMin = 0;
         for (int c = 0; c < field.channels(); ++c) {
             if (!grey && !(live_ >> c & 1)) continue;
-            Range& r = channel[static_cast<std::size_t>(c)];
+            grid::Range& r = channel[static_cast<std::size_t>(c)];
             r = between(field, v, from, ray.at(end), c);
             const double share = grey ? 1 : part.extinction()[c] / largest;
             largestMin = std::max(largestMin, static_cast<float>(r.min * share));
@@ -115,7 +116,7 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
         for (int c = 0; c < field.channels(); ++c) {
             // A channel of small extinction may have large values. What counts is their product,
             // above the lower bound that all channels share.
-            const Range& r = channel[static_cast<std::size_t>(c)];
+            const grid::Range& r = channel[static_cast<std::size_t>(c)];
             const double share = grey ? 1 : part.extinction()[c] / largest;
             range.max = std::max(range.max, above(range.min, (double{r.max} - range.min) * share));
         }
@@ -128,4 +129,4 @@ Segment RefinedWalk::piece(const MediumPart& part, const IndexRay& ray, double t
     return {t, end, range};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

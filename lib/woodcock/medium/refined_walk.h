@@ -3,7 +3,7 @@
 
 #include "woodcock/medium/medium.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// A walk whose cells can be cut, while walking, into pieces. A piece has bounds of the
 /// reconstruction along that part of the ray. A cell's bounds are those of its voxels. Where one
@@ -14,7 +14,7 @@ namespace woodcock {
 /// may be chosen anew at any collision for the rest of the ray.
 class RefinedWalk {
 public:
-    RefinedWalk(const MediumPart& part, const IndexRay& ray, double tMax)
+    RefinedWalk(const MediumPart& part, const grid::IndexRay& ray, double tMax)
         : walk_(part, ray, tMax), extinction_(part.largestExtinction()) {}
 
     /// Sets the channels, as bits, that still carry energy. From the next segment or cut on, only
@@ -30,7 +30,7 @@ public:
     /// (range.max - range.min) it bounds their sigma_t above the segment's control.
     float extinction() const { return extinction_; }
 
-    bool next(const MediumPart& part, const IndexRay& ray, Segment& segment) {
+    bool next(const MediumPart& part, const grid::IndexRay& ray, grid::Segment& segment) {
         if (segment.t1 < cell_.t1) {
             segment = piece(part, ray, segment.t1);
             return true;
@@ -43,7 +43,8 @@ public:
     /// To be called after a collision at `t` in `segment` that the path survived: cuts the segment
     /// there if its bounds are far from tight, or were made for channels that have ended. True if
     /// it did; the segment then starts at `t`.
-    bool collided(const MediumPart& part, const IndexRay& ray, double t, Segment& segment) {
+    bool collided(const MediumPart& part, const grid::IndexRay& ray, double t,
+                  grid::Segment& segment) {
         if (tight_ ? !stale_ : ++collisions_ < patience) return false;
         cut(part, ray, t, segment);
         return true;
@@ -57,16 +58,16 @@ private:
     static constexpr int patience = 8;
 
     float liveExtinction(const MediumPart& part) const;
-    void cut(const MediumPart& part, const IndexRay& ray, double t, Segment& segment);
-    Segment piece(const MediumPart& part, const IndexRay& ray, double t);
+    void cut(const MediumPart& part, const grid::IndexRay& ray, double t, grid::Segment& segment);
+    grid::Segment piece(const MediumPart& part, const grid::IndexRay& ray, double t);
 
     PartWalk walk_;
-    unsigned live_ = 7;       // bits of channels
-    float extinction_;        // the largest of them
-    bool stale_ = false;      // `live_` has changed since the last cut
-    Segment cell_{0, 0, {}};  // that is being cut
+    unsigned live_ = 7;             // bits of channels
+    float extinction_;              // the largest of them
+    bool stale_ = false;            // `live_` has changed since the last cut
+    grid::Segment cell_{0, 0, {}};  // that is being cut
     int collisions_ = 0;
     bool tight_ = false;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -6,7 +6,7 @@
 #include "woodcock/base/random.h"
 #include "woodcock/base/spectrum.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// Russian roulette in one draw: a path survives while its weight stays above u x threshold. The
 /// probability of that is its lowest weight / threshold, by which a survivor is divided. The final
@@ -32,4 +32,4 @@ private:
     float threshold_, lowest_, killBelow_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

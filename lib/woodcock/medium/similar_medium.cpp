@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/medium/similar_medium.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 Medium similarMedium(const Medium& medium) {
     Medium similar;
@@ -17,4 +17,4 @@ Medium similarMedium(const Medium& medium) {
     return similar;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

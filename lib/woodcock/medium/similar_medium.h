@@ -3,7 +3,7 @@
 
 #include "woodcock/medium/medium.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 /// An isotropic medium in which light spreads as in `medium` after many scatterings: sigma_s' = (1
 /// - g) sigma_s, sigma_a' = sigma_a, g' = 0 for each part. The similarity relation of order 1, (1 -
@@ -15,4 +15,4 @@ namespace woodcock {
 /// Emission is left out.
 Medium similarMedium(const Medium& medium);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -7,7 +7,7 @@
 #include "woodcock/medium/refined_walk.h"
 #include "woodcock/medium/roulette.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 namespace {
 
@@ -19,7 +19,7 @@ struct Sampled {
 };
 
 template <int N>
-Spectrum<N> tap(const Field& field, Vec3d index, std::uint64_t bits) {
+Spectrum<N> tap(const grid::Field& field, Vec3d index, std::uint64_t bits) {
     const Vec3i v = field.stochasticVoxel(index, bits);
     if (N == 1 || field.channels() == 1) return Spectrum<N>(field.voxel(v));
     return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });
@@ -28,7 +28,7 @@ Spectrum<N> tap(const Field& field, Vec3d index, std::uint64_t bits) {
 /// f as above, but by full interpolation inside tight bounds.
 template <int N>
 Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64_t bits) {
-    const Field& field = *part.field();
+    const grid::Field& field = *part.field();
     if (part.unbounded()) index = field.nearSupport(index);  // else it is inside
     if (!tight) return tap<N>(field, index, bits);
     if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
@@ -38,15 +38,16 @@ Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64
 /// The albedo of a part that has a grid of it.
 template <int N>
 Spectrum<N> albedoTap(const MediumPart& part, Vec3d world, std::uint64_t bits) {
-    const Field& field = *part.albedo();
+    const grid::Field& field = *part.albedo();
     return tap<N>(field, field.nearSupport(part.albedoIndex(world)), bits);
 }
 
 /// The field's value at a tentative collision. Where the two bounds are equal, f is known without a
 /// lookup.
 template <int N>
-Sampled<N> sampleAt(const MediumPart& part, const IndexRay& ray, Vec3d origin, Vec3d direction,
-                    double t, Range range, bool tight, RandomStream& random) {
+Sampled<N> sampleAt(const MediumPart& part, const grid::IndexRay& ray, Vec3d origin,
+                    Vec3d direction, double t, grid::Range range, bool tight,
+                    RandomStream& random) {
     Sampled<N> s{Spectrum<N>(range.max), Spectrum<N>(1.0f)};
     if (range.min != range.max) s.f = density<N>(part, ray.at(t), tight, random.bits());
     if (part.albedo()) s.albedo = albedoTap<N>(part, origin + direction * t, random.bits());
@@ -124,10 +125,10 @@ public:
 
     const MediumPart& part() const { return *part_; }
     int index() const { return index_; }
-    const IndexRay& ray() const { return ray_; }
+    const grid::IndexRay& ray() const { return ray_; }
     double t() const { return t_; }
     float mu() const { return mu_; }
-    Range range() const { return segment_.range; }
+    grid::Range range() const { return segment_.range; }
     bool tight() const { return walk_.tight(); }
 
     /// To be called after a null collision that left these channels.
@@ -170,9 +171,9 @@ public:
 private:
     const MediumPart* part_;
     int index_;
-    IndexRay ray_;
+    grid::IndexRay ray_;
     RefinedWalk walk_;
-    Segment segment_{0, 0, {}};
+    grid::Segment segment_{0, 0, {}};
     float mu_ = 0;
     double t_ = 0, depth_;
     bool waiting_ = false, ended_ = false;
@@ -251,10 +252,10 @@ Spectrum<N> relativeExtinction(const MediumPart& part, const Spectrum<N>& albedo
 template <int N, bool Varies>
 bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
                TrackingCounters& counters) {
-    const IndexRay ray = part.indexRay(q.origin, q.direction);
+    const grid::IndexRay ray = part.indexRay(q.origin, q.direction);
     const Spectrum<N> extinction = channels<N>(part.extinction());
     RefinedWalk walk(part, ray, q.tMax);
-    Segment s{0, 0, {}};
+    grid::Segment s{0, 0, {}};
     Spectrum<N> ratio = q.contribution;
     const auto least = [&] { return Varies ? 0.0f : s.range.min; };
     double control = 0;  // integral of the lower bound
@@ -365,4 +366,4 @@ template void trackTransmittance<1>(const Medium&, std::span<TransmittanceQuery<
 template void trackTransmittance<3>(const Medium&, std::span<TransmittanceQuery<3>>,
                                     TrackingCounters&);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -8,7 +8,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::medium {
 
 struct Medium;
 
@@ -63,4 +63,4 @@ template <int N>
 void trackTransmittance(const Medium& medium, std::span<TransmittanceQuery<N>> queries,
                         TrackingCounters& counters);
 
-}  // namespace woodcock
+}  // namespace woodcock::medium

@@ -11,7 +11,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -392,4 +392,4 @@ private:
 
 ClosedMesh closedMesh(const TriangleMesh& mesh) { return Closer(mesh).close(); }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

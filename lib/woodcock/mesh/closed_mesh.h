@@ -6,7 +6,7 @@
 
 #include "woodcock/mesh/triangle_mesh.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 /// A mesh with a well-defined inside: closed parts, each of whose triangles all face outwards, or
 /// all inwards.
@@ -23,4 +23,4 @@ struct ClosedMesh {
 /// of triangles, and where triangles cannot all face one way; such a mesh has no inside.
 ClosedMesh closedMesh(const TriangleMesh& mesh);
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -8,7 +8,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 namespace {
 
 struct Plane {
@@ -175,4 +175,4 @@ SurfaceMesh facetedMesh(std::span<const FacetRing> rings) {
     return {weld(soup), {}, {}};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -5,7 +5,7 @@
 
 #include "woodcock/mesh/surface_mesh.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 /// A ring of facets around the y axis, as gem cutters describe them.
 struct FacetRing {
@@ -20,4 +20,4 @@ struct FacetRing {
 /// out of range, and where the facets leave it open.
 SurfaceMesh facetedMesh(std::span<const FacetRing> rings);
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -11,7 +11,7 @@
 #include "woodcock/grid/input_file.h"
 #include "woodcock/mesh/triangle_mesh.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -71,7 +71,7 @@ std::optional<FarText> withoutOrigin(const std::filesystem::path& file) {
     const bool obj = extension == ".obj" || extension == ".OBJ";
     const bool stl = extension == ".stl" || extension == ".STL";
     if (!obj && !stl) return {};
-    const std::string text = readInput(file);
+    const std::string text = grid::readInput(file);
     if (stl && isBinaryStl(text)) return {};
     const std::string_view keyword = obj ? "v" : "vertex";
     Box3d bounds;
@@ -98,4 +98,4 @@ std::optional<FarText> withoutOrigin(const std::filesystem::path& file) {
     return result;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

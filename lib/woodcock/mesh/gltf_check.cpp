@@ -10,7 +10,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/regular_file.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -93,4 +93,4 @@ void refuseDeepGltf(const std::filesystem::path& file) {
             fmt::format("its nodes follow each other more than {} levels deep", deepest));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -6,38 +6,38 @@
 #include <limits>
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/openvdb_exact_copy.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_transform.h"
-#include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/vdb/read_grids.h"
 #include "woodcock/mesh/surface_mesh.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-const GridListing& chooseLevelSet(const VdbFile& file, const std::string& name) {
-    const GridListing* found = nullptr;
-    for (const GridListing& grid : file.grids) {
+const grid::GridListing& chooseLevelSet(const grid::VdbFile& file, const std::string& name) {
+    const grid::GridListing* found = nullptr;
+    for (const grid::GridListing& grid : file.grids) {
         const bool named = grid.uniqueName == name || grid.name == name;
-        if (name.empty() ? grid.gridClass != GridClass::LevelSet : !named) continue;
+        if (name.empty() ? grid.gridClass != grid::GridClass::LevelSet : !named) continue;
         if (found && name.empty())
             throw inputError("{} holds several level sets: {}; name one of them",
-                             file.path.string(), describeGrids(file));
+                             file.path.string(), grid::describeGrids(file));
         if (!found) found = &grid;
     }
     if (!found)
         throw inputError("{} in {}; it has: {}",
                          name.empty() ? "no level set" : fmt::format("no grid '{}'", name),
-                         file.path.string(), describeGrids(file));
-    if (found->gridClass != GridClass::LevelSet)
+                         file.path.string(), grid::describeGrids(file));
+    if (found->gridClass != grid::GridClass::LevelSet)
         throw inputError("grid '{}' of {} is not a level set: its class is '{}'", found->uniqueName,
-                         file.path.string(), gridClassName(found->gridClass));
-    if (!isReadable(*found) || found->channels != 1)
+                         file.path.string(), grid::gridClassName(found->gridClass));
+    if (!grid::isReadable(*found) || found->channels != 1)
         throw inputError("level set '{}' of {} cannot be read: it holds {}", found->uniqueName,
                          file.path.string(), found->valueType);
     return *found;
@@ -60,7 +60,7 @@ SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& plac
         openvdb::BBoxd(active.min().asVec3d(), active.max().asVec3d()));
     const auto vec = [](const openvdb::Vec3d& v) { return Vec3d{v[0], v[1], v[2]}; };
     mesh.origin = originFor({vec(world.min()), vec(world.max())});
-    const auto transform = exactCopy(grid.transform());
+    const auto transform = grid::exactCopy(grid.transform());
     if (!(mesh.origin == Vec3d{}))
         transform->postTranslate({-mesh.origin.x, -mesh.origin.y, -mesh.origin.z});
     const auto local = grid.copyReplacingTransform(transform);
@@ -74,7 +74,7 @@ SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& plac
     surface.mesh = weld(mesh);
     if (surface.mesh.triangles.empty()) throw inputError("{} has no surface", place);
     // OpenVDB's polygons are clockwise from outside, in the grid's own space.
-    if (affineOf(*grid.transform().baseMap()).determinant() > 0) flip(surface);
+    if (grid::affineOf(*grid.transform().baseMap()).determinant() > 0) flip(surface);
     return surface;
 }
 
@@ -83,9 +83,10 @@ SurfaceMesh meshOf(const GridT& grid, double adaptivity, const std::string& plac
 SurfaceMesh levelSetMesh(const fs::path& path, const std::string& name, double adaptivity) {
     if (!(adaptivity >= 0 && adaptivity <= 1))
         throw usageError("an adaptivity of {}; it must be from 0 to 1", adaptivity);
-    const VdbFile file = listGrids(path);
-    const GridListing& listing = chooseLevelSet(file, name);
-    const openvdb::GridBase::Ptr grid = readVdbGrids(file, {listing.uniqueName}).grids.front();
+    const grid::VdbFile file = grid::listGrids(path);
+    const grid::GridListing& listing = chooseLevelSet(file, name);
+    const openvdb::GridBase::Ptr grid =
+        grid::readVdbGrids(file, {listing.uniqueName}).grids.front();
     const std::string place =
         fmt::format("level set '{}' of {}", listing.uniqueName, path.string());
     if (grid->isType<openvdb::FloatGrid>())
@@ -95,4 +96,4 @@ SurfaceMesh levelSetMesh(const fs::path& path, const std::string& name, double a
     throw inputError("{} holds {} where float or double is expected", place, grid->valueType());
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

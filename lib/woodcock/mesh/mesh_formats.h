@@ -10,7 +10,7 @@
 
 // What mesh_read.cpp needs of single formats.
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 /// The faces of a PLY file, cut into triangles, in the file's own units; with the normals and
 /// texture coordinates of its vertices where it has them. Errors: Input.
@@ -32,4 +32,4 @@ std::optional<FarText> withoutOrigin(const std::filesystem::path& file);
 /// Assimp finds other mistakes.
 void refuseDeepGltf(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

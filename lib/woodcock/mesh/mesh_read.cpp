@@ -24,7 +24,7 @@
 
 #endif
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace fs = std::filesystem;
 
@@ -356,4 +356,4 @@ SurfaceMesh readSurfaceMesh(const fs::path& file) {
     return surface;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -11,7 +11,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/grid/input_file.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -40,7 +40,8 @@ struct Shape {
 
 class PlyReader {
 public:
-    explicit PlyReader(const std::filesystem::path& file) : file_(file), bytes_(readInput(file)) {}
+    explicit PlyReader(const std::filesystem::path& file)
+        : file_(file), bytes_(grid::readInput(file)) {}
 
     std::vector<PlyElement> read() {
         readHeader();
@@ -225,4 +226,4 @@ bool plyHasFaces(const std::filesystem::path& file) {
     return false;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

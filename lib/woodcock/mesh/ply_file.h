@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 /// An element of a PLY file, such as its vertices or its faces.
 struct PlyElement {
@@ -41,4 +41,4 @@ std::vector<PlyElement> readPly(const std::filesystem::path& file);
 /// Whether there are faces among them. Errors: as of readPly().
 bool plyHasFaces(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

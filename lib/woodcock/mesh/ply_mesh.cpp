@@ -9,7 +9,7 @@
 #include "woodcock/mesh/ply_file.h"
 #include "woodcock/mesh/polygon.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -117,4 +117,4 @@ SurfaceMesh readPlyMesh(const fs::path& file) {
     return surface;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

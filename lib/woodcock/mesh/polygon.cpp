@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Vec3d> cor
     return EarCutter(corners).cut();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

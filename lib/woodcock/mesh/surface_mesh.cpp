@@ -8,7 +8,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -168,4 +168,4 @@ void flip(SurfaceMesh& mesh) {
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -10,7 +10,7 @@
 
 #include "woodcock/mesh/triangle_mesh.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 struct Vec2f {
     float u = 0, v = 0;
@@ -68,4 +68,4 @@ SurfaceMesh latheMesh(std::span<const std::array<double, 2>> profile, int segmen
 SurfaceMesh levelSetMesh(const std::filesystem::path& file, const std::string& grid,
                          double adaptivity);
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

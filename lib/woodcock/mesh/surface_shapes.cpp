@@ -4,7 +4,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/mesh/surface_mesh.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 SurfaceMesh boxMesh(const Box3d& box) {
     SurfaceMesh mesh;
@@ -104,4 +104,4 @@ SurfaceMesh latheMesh(std::span<const std::array<double, 2>> profile, int segmen
     return mesh;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

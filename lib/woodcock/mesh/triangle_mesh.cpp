@@ -9,7 +9,7 @@
 
 #include "woodcock/base/random.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 namespace {
 
@@ -81,4 +81,4 @@ Vec3d originFor(const Box3d& bounds) {
     return Vec3d{std::round(middle.x), std::round(middle.y), std::round(middle.z)} * unit;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -9,7 +9,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::mesh {
 
 /// Points of one position are one point, so that triangles that meet share their edges.
 struct TriangleMesh {
@@ -46,4 +46,4 @@ Box3d boundsOf(const TriangleMesh& mesh);
 /// floats would move them by more than a 100,000th of their extent.
 Vec3d originFor(const Box3d& bounds);
 
-}  // namespace woodcock
+}  // namespace woodcock::mesh

@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
+#include "woodcock/base/random.h"
 #include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/support/render_scene.h"
-#include "woodcock/base/random.h"
 
 namespace woodcock::proof {
 
@@ -88,7 +88,7 @@ const std::vector<Check>& checks() {
 
 std::vector<Case> run(const Check& check, const Options& options) {
     Lab lab(options);
-    test::sampleAdaptively(options.adaptive);
+    sampleAdaptively(options.adaptive);
     std::optional<Case> failure;
     try {
         check.run(lab);

@@ -82,7 +82,7 @@ private:
     void stopIfAsked() const;
 
     Options options_;
-    test::TempDir directory_;
+    TempDir directory_;
     std::vector<Case> cases_;
 };
 

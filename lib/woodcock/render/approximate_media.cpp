@@ -5,7 +5,7 @@
 #include "woodcock/medium/octaves.h"
 #include "woodcock/medium/similar_medium.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 ApproximateMedia::ApproximateMedia(const Scene& scene, const Approximations& choice) {
     if (choice.similarityAfter && choice.octaves > 0)
@@ -15,12 +15,13 @@ ApproximateMedia::ApproximateMedia(const Scene& scene, const Approximations& cho
             "choose one");
     const auto add = [&](auto&& replacementOf) {
         Set set{replacementOf(scene.medium)};
-        for (const Medium& medium : scene.interiorMedia) set.push_back(replacementOf(medium));
+        for (const medium::Medium& medium : scene.interiorMedia)
+            set.push_back(replacementOf(medium));
         sets.push_back(std::move(set));
     };
-    if (choice.similarityAfter) add(similarMedium);
+    if (choice.similarityAfter) add(medium::similarMedium);
     for (int i = 0; i < choice.octaves; ++i)
-        add([&](const Medium& medium) { return octaveMedium(medium, i); });
+        add([&](const medium::Medium& medium) { return medium::octaveMedium(medium, i); });
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// Approximations that save time. Each changes the expected picture, is off by default, and can be
 /// used alone. Those of fields (storage, lookup, level of detail) are chosen when fields are
@@ -29,4 +29,4 @@ struct Approximations {
     bool operator==(const Approximations&) const = default;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

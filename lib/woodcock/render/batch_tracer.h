@@ -12,7 +12,7 @@
 #include "woodcock/render/light_choice.h"
 #include "woodcock/render/path_state.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// N: tracked channels. Surfaces: whether the scene has surfaces; otherwise no code for them is
 /// compiled.
@@ -28,7 +28,7 @@ public:
         gatherMedia();
         if constexpr (Surfaces) {
             nestedMedia_.emplace(scene);
-            if (scene.camera.kind == Camera::Kind::Perspective)
+            if (scene.camera.kind == camera::Camera::Kind::Perspective)
                 aroundCamera_ =
                     nestedMedia_->cameraPosition(scene.camera.worldFromCamera.translation);
         }
@@ -73,7 +73,7 @@ private:
                .radiance = {},
                .from = {}};
         const auto u = p.sequence.draw(0);
-        const CameraRay ray =
+        const camera::CameraRay ray =
             scene_.camera.ray(job.x + u[0], job.y + u[1], options_.width, options_.height);
         p.origin = ray.origin, p.direction = ray.direction;
         p.flight = 1 - u[2];
@@ -81,7 +81,7 @@ private:
         ++counters_.paths;
         if constexpr (Surfaces)
             p.surfaces.start =
-                nestedMedia_->rayStart(scene_.camera.kind == Camera::Kind::Perspective
+                nestedMedia_->rayStart(scene_.camera.kind == camera::Camera::Kind::Perspective
                                            ? aroundCamera_
                                            : nestedMedia_->cameraPosition(p.origin),
                                        p.direction);
@@ -116,7 +116,7 @@ private:
         for (Path& p : paths_)
             walks_.push_back({p.origin, p.direction, flightOf(p).tMax, p.flight, p.random,
                               pathRoulette, false, p.throughput, 0, -1});
-        TrackingCounters c;
+        medium::TrackingCounters c;
         if constexpr (Surfaces) {
             for (std::size_t i = 0; i < paths_.size(); ++i) {
                 const MediumSummary& medium = *flightOf(paths_[i]).medium;
@@ -139,10 +139,10 @@ private:
     }
 
     /// In media that only absorb: the path escapes, weighted by the transmittance.
-    void absorbAlong(const MediumSummary& medium, DistanceQuery<N>& walk, Path& p,
-                     TrackingCounters& c) const {
-        TransmittanceQuery<N> q{walk.origin, walk.direction,  walk.tMax, walk.random,
-                                0,           walk.throughput, seen(p)};
+    void absorbAlong(const MediumSummary& medium, medium::DistanceQuery<N>& walk, Path& p,
+                     medium::TrackingCounters& c) const {
+        medium::TransmittanceQuery<N> q{walk.origin, walk.direction,  walk.tMax, walk.random,
+                                        0,           walk.throughput, seen(p)};
         findTransmittances(*medium.medium, {&q, 1}, c);
         if (seen(p) && options_.approximations.marchStep == 0)
             p.opacity = Spectrum<N>::map(
@@ -158,7 +158,7 @@ private:
 
     void shade(std::size_t i) {
         Path& p = paths_[i];
-        const DistanceQuery<N>& w = walks_[i];
+        const medium::DistanceQuery<N>& w = walks_[i];
         p.random = w.random, p.throughput = w.throughput;
         const bool scattered = w.part >= 0;
         if constexpr (Surfaces) {
@@ -180,13 +180,13 @@ private:
         } else if (options_.maxScatterings && p.scatterings >= *options_.maxScatterings) {
             p.alive = false;
         } else {
-            const Medium& medium = *flightOf(p).medium->medium;
+            const medium::Medium& medium = *flightOf(p).medium->medium;
             scatter(i, w.t, medium.parts[static_cast<std::size_t>(w.part)].g());
         }
     }
 
     void shadowWalk() {
-        TrackingCounters c;
+        medium::TrackingCounters c;
         counters_.shadowRays += shadows_.size();
         while (!shadows_.empty()) {
             if constexpr (Surfaces)
@@ -209,7 +209,7 @@ private:
                     continue;
                 }
                 s.secondLeg = false, s.mediumSet = s.secondMediumSet;
-                TransmittanceQuery<N> q = shadowQueries_[i];
+                medium::TransmittanceQuery<N> q = shadowQueries_[i];
                 q.origin = s.origin, q.direction = s.direction, q.tMax = s.tMax;
                 if constexpr (Surfaces) s.start.left.reset();
                 shadows_[left] = s, shadowQueries_[left] = q, ++left;
@@ -239,19 +239,21 @@ private:
 
     // ---- the two inner loops: by tracking, or by marching where that was chosen
 
-    void findEvents(const Medium& medium, std::span<DistanceQuery<N>> queries,
-                    TrackingCounters& c) const {
+    void findEvents(const medium::Medium& medium, std::span<medium::DistanceQuery<N>> queries,
+                    medium::TrackingCounters& c) const {
         if (options_.approximations.marchStep > 0)
-            marchDistance<N>(medium, marchSettings(options_.approximations), queries, c);
+            medium::marchDistance<N>(medium, marchSettings(options_.approximations), queries, c);
         else
-            trackDistance<N>(medium, queries, c);
+            medium::trackDistance<N>(medium, queries, c);
     }
-    void findTransmittances(const Medium& medium, std::span<TransmittanceQuery<N>> queries,
-                            TrackingCounters& c) const {
+    void findTransmittances(const medium::Medium& medium,
+                            std::span<medium::TransmittanceQuery<N>> queries,
+                            medium::TrackingCounters& c) const {
         if (options_.approximations.marchStep > 0)
-            marchTransmittance<N>(medium, marchSettings(options_.approximations), queries, c);
+            medium::marchTransmittance<N>(medium, marchSettings(options_.approximations), queries,
+                                          c);
         else
-            trackTransmittance<N>(medium, queries, c);
+            medium::trackTransmittance<N>(medium, queries, c);
     }
 
     // ---- events in media: batch_tracer_media.h
@@ -284,18 +286,19 @@ private:
     Onward onwardFrom(Path& p) const;
     /// Makes the path go on so, and returns Onward::phase.
     double enterMediumSet(Path& p) const;
-    void clampRadiance(FilmSample& sample);
+    void clampRadiance(image::FilmSample& sample);
 
     // ---- events on surfaces: batch_tracer_surfaces.h; light: batch_tracer_light.h
     void meetSurface(std::size_t i);
-    void bounce(std::size_t i, const SurfaceHit& hit, const Crossing& crossing);
+    void bounce(std::size_t i, const surface::SurfaceHit& hit, const Crossing& crossing);
     SurfaceState::LightSampled lightSampledAfter(SurfaceState::LightSampled before,
-                                                 const Bsdf& bsdf, const BsdfSample& b) const;
+                                                 const surface::Bsdf& bsdf,
+                                                 const surface::BsdfSample& b) const;
     /// Goes on behind a boundary that changes only the medium.
     void goOn(Path& p);
-    void addEmission(Path& p, const SurfaceHit& hit, const Bsdf& bsdf);
+    void addEmission(Path& p, const surface::SurfaceHit& hit, const surface::Bsdf& bsdf);
     /// Next-event estimation at a surface.
-    void lightSurface(std::size_t i, const EventNumbers& u, const SurfaceHit& hit,
+    void lightSurface(std::size_t i, const EventNumbers& u, const surface::SurfaceHit& hit,
                       const Crossing& crossing, Vec3d out, bool caught);
     /// For shadow catchers: adds the unoccluded light, from the direction that was drawn, of lights
     /// that next-event estimation leaves out.
@@ -303,9 +306,10 @@ private:
     void playRoulette(Path& p);
     /// Follows a shadow ray through boundaries that light passes, to its end or to the first
     /// surface that stops it.
-    void findShadowAcrossSurfaces(ShadowRay<Surfaces>& shadow, TransmittanceQuery<N>& q,
-                                  TrackingCounters& c);
-    bool arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit, double left) const;
+    void findShadowAcrossSurfaces(ShadowRay<Surfaces>& shadow, medium::TransmittanceQuery<N>& q,
+                                  medium::TrackingCounters& c);
+    bool arrives(const ShadowRay<Surfaces>& shadow, const surface::SurfaceHit& hit,
+                 double left) const;
     /// The transmittance of camera rays, and the first thing that they meet, by a separate walk.
     void findDepth(const Path& p);
     void addNextEvent(std::size_t i, const EventNumbers& u, const FlightShare& share);
@@ -334,9 +338,9 @@ private:
         return powerHeuristic(p.phasePdf, pdf());
     }
     std::optional<Vec3d> localLightPosition(int light) const {
-        const Light& l = scene_.lights.lights()[static_cast<std::size_t>(light)];
-        if (const auto* point = std::get_if<PointLight>(&l)) return point->position;
-        if (const auto* sphere = std::get_if<SphereLight>(&l)) return sphere->position;
+        const light::Light& l = scene_.lights.lights()[static_cast<std::size_t>(light)];
+        if (const auto* point = std::get_if<light::PointLight>(&l)) return point->position;
+        if (const auto* sphere = std::get_if<light::SphereLight>(&l)) return sphere->position;
         return {};
     }
 
@@ -398,19 +402,19 @@ private:
     bool octavesEnd_ =
         false;  // octaves end with next-event estimation: their flights meet no light
     LightChoice choice_;
-    EmissionSampler emission_;
+    medium::EmissionSampler emission_;
     RenderCounters counters_;
     std::vector<Path> paths_;
-    std::vector<DistanceQuery<N>> walks_;
+    std::vector<medium::DistanceQuery<N>> walks_;
     std::vector<ShadowRay<Surfaces>> shadows_;
-    std::vector<TransmittanceQuery<N>> shadowQueries_;
+    std::vector<medium::TransmittanceQuery<N>> shadowQueries_;
     // Where there are surfaces:
     std::optional<NestedMedia> nestedMedia_;
     NestedMedia::CameraPosition aroundCamera_;
     std::vector<Piece> pieces_;  // of one shadow ray
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render
 
 #include "woodcock/render/batch_tracer_approximate_media.h"
 #include "woodcock/render/batch_tracer_light.h"

@@ -6,22 +6,23 @@
 #include "woodcock/medium/octaves.h"
 #include "woodcock/render/batch_tracer.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::gatherMedia() {
-    std::vector<const Medium*> own{&scene_.medium};
+    std::vector<const medium::Medium*> own{&scene_.medium};
     if constexpr (Surfaces)
-        for (const Medium& medium : scene_.interiorMedia) own.push_back(&medium);
-    for (const Medium* medium : own) media_.emplace_back(*medium);
+        for (const medium::Medium& medium : scene_.interiorMedia) own.push_back(&medium);
+    for (const medium::Medium* medium : own) media_.emplace_back(*medium);
     replacesMedia_ = options_.approximateMedia && !options_.approximateMedia->sets.empty();
     if (!replacesMedia_) return;
     for (const ApproximateMedia::Set& set : options_.approximateMedia->sets)
         for (std::size_t i = 0; i < own.size(); ++i) media_.emplace_back(set[i], *own[i]);
     bool flightsMeetLight = Surfaces || needs_.emission;
-    for (const Light& light : scene_.lights.lights()) {
-        const auto* sun = std::get_if<Sun>(&light);
-        flightsMeetLight |= std::holds_alternative<Environment>(light) || (sun && !sun->delta());
+    for (const light::Light& light : scene_.lights.lights()) {
+        const auto* sun = std::get_if<light::Sun>(&light);
+        flightsMeetLight |=
+            std::holds_alternative<light::Environment>(light) || (sun && !sun->delta());
     }
     octavesEnd_ = options_.approximations.octaves > 0 && !flightsMeetLight;
 }
@@ -66,8 +67,9 @@ template <int N, bool Surfaces>
 auto BatchTracer<N, Surfaces>::onwardFrom(Path& p) const -> Onward {
     const int octaves = options_.approximations.octaves;
     if (octaves == 0) return {mediumSetAfter(p.scatterings + 1)};
-    const int i = octave::draw(octaves, p.random.uniform());
-    return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};
+    const int i = medium::octave::draw(octaves, p.random.uniform());
+    return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves),
+            medium::octave::phase(i)};
 }
 
 template <int N, bool Surfaces>
@@ -79,7 +81,7 @@ double BatchTracer<N, Surfaces>::enterMediumSet(Path& p) const {
 }
 
 template <int N, bool Surfaces>
-void BatchTracer<N, Surfaces>::clampRadiance(FilmSample& sample) {
+void BatchTracer<N, Surfaces>::clampRadiance(image::FilmSample& sample) {
     const auto most = static_cast<float>(options_.approximations.clamp);
     const float brightest = sample.radiance.maximum();
     if (!(most > 0 && brightest > most)) return;
@@ -89,4 +91,4 @@ void BatchTracer<N, Surfaces>::clampRadiance(FilmSample& sample) {
     sample.background *= most / brightest;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

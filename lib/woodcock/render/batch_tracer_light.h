@@ -5,7 +5,7 @@
 
 #include "woodcock/render/batch_tracer.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::addNextEvent(std::size_t i, const EventNumbers& u,
@@ -13,10 +13,10 @@ void BatchTracer<N, Surfaces>::addNextEvent(std::size_t i, const EventNumbers& u
     Path& p = paths_[i];
     const auto chosen = choice_.choose(p.from, u.pick);
     if (!chosen) return;
-    const LightSample s =
+    const light::LightSample s =
         scene_.lights.sample(chosen->light, p.from.position, u.light[0], u.light[1]);
     if (!(s.weight.maximum() > 0)) return;
-    const double phase = henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
+    const double phase = medium::henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
     if (const auto lightPosition = localLightPosition(chosen->light))
@@ -29,8 +29,8 @@ void BatchTracer<N, Surfaces>::addNextEvent(std::size_t i, const EventNumbers& u
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::addSphereHits(std::size_t i, const FlightShare* share) {
     for (int light : scene_.lights.local()) {
-        const auto* sphere =
-            std::get_if<SphereLight>(&scene_.lights.lights()[static_cast<std::size_t>(light)]);
+        const auto* sphere = std::get_if<light::SphereLight>(
+            &scene_.lights.lights()[static_cast<std::size_t>(light)]);
         if (!sphere || (!share && !sphere->visible)) continue;
         const Path& p = paths_[i];
         const double t = sphere->hit(p.origin, p.direction);
@@ -63,17 +63,17 @@ void BatchTracer<N, Surfaces>::addEquiangular(std::size_t i, double u, double pi
     const Equiangular e = flight.equiangular(lightPosition);
     const double t = e.sample(u), pdf = e.pdf(t);
     if (!(pdf > 0)) return;
-    const ScatterPoint at{p.origin + p.direction * t, p.direction, 0};
+    const light::ScatterPoint at{p.origin + p.direction * t, p.direction, 0};
     const double lightU = scaled - std::floor(scaled);
-    const LightSample s =
+    const light::LightSample s =
         scene_.lights.sample(light, at.position, lightU, paths_[i].random.uniform());
     if (!(s.weight.maximum() > 0)) return;
     const Onward onward = onwardFrom(paths_[i]);
     const double cosine = dot(at.forward, s.direction);
     Rgb scattered;  // sum over parts of sigma_s x phase
-    for (const MediumPart& part : flight.medium->medium->parts)
+    for (const medium::MediumPart& part : flight.medium->medium->parts)
         scattered += part.sigmaS(at.position) *
-                     static_cast<float>(henyeyGreenstein(cosine, part.g() * onward.phase));
+                     static_cast<float>(medium::henyeyGreenstein(cosine, part.g() * onward.phase));
     // Balance heuristic against the event, over the density of this point and light.
     const double weight =
         onward.amount * static_cast<double>(localLights.size()) / (pdf + flight.density(e, t));
@@ -96,7 +96,7 @@ void BatchTracer<N, Surfaces>::addMediumEmission(std::size_t i, double u) {
     if (seen(p)) p.result->film.glow = 1;
     // Points deep within dense media contribute little: beyond a depth of 9, roulette ends their
     // rays.
-    TransmittanceQuery<N>& query = shadowQueries_.back();
+    medium::TransmittanceQuery<N>& query = shadowQueries_.back();
     query.roulette = std::max(query.roulette, 1e-4f * query.contribution.maximum());
 }
 
@@ -120,4 +120,4 @@ bool BatchTracer<N, Surfaces>::addShadowRay(std::size_t i, Vec3d origin, Vec3d d
     return true;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

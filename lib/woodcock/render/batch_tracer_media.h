@@ -5,7 +5,7 @@
 
 #include "woodcock/render/batch_tracer.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::escape(Path& p) {
@@ -46,7 +46,8 @@ void BatchTracer<N, Surfaces>::scatter(std::size_t i, double t, double g) {
     }
     if (needs_.lightSampling) addNextEvent(i, u, share);
 
-    const PhaseSample s = sampleHenyeyGreenstein(p.direction, g, u.phase[0], u.phase[1]);
+    const medium::PhaseSample s =
+        medium::sampleHenyeyGreenstein(p.direction, g, u.phase[0], u.phase[1]);
     p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;
     p.flight = u.flight;
     ++p.scatterings;
@@ -80,4 +81,4 @@ EventNumbers BatchTracer<N, Surfaces>::numbers(Path& p) {
     return {{a[0], a[1]}, {a[2], a[3]}, 1 - b[0], b[1], b[2]};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

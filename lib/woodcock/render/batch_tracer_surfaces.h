@@ -5,14 +5,14 @@
 
 #include "woodcock/render/batch_tracer.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::meetSurface(std::size_t i) {
     Path& p = paths_[i];
     SurfaceState& s = p.surfaces;
-    const SurfaceHit hit = s.ahead;
-    const SurfaceObject& object = nestedMedia_->object(hit);
+    const surface::SurfaceHit hit = s.ahead;
+    const surface::SurfaceObject& object = nestedMedia_->object(hit);
     const Crossing crossing = nestedMedia_->cross(s.start.inside, p.direction, hit);
     p.origin = hit.position;
     s.start.left = hit;
@@ -46,7 +46,7 @@ void BatchTracer<N, Surfaces>::meetSurface(std::size_t i) {
 }
 
 template <int N, bool Surfaces>
-void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
+void BatchTracer<N, Surfaces>::bounce(std::size_t i, const surface::SurfaceHit& hit,
                                       const Crossing& crossing) {
     Path& p = paths_[i];
     SurfaceState& s = p.surfaces;
@@ -61,7 +61,8 @@ void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
         if (needs_.lightSampling) lightSurface(i, u, hit, crossing, out, caught);
     }
 
-    const BsdfSample b = crossing.bsdf.sample(out, {u.phase[0], u.phase[1], p.random.uniform()});
+    const surface::BsdfSample b =
+        crossing.bsdf.sample(out, {u.phase[0], u.phase[1], p.random.uniform()});
     multiply(p, b.weight);
     if (!(brightness(p) > 0)) {
         p.alive = false;
@@ -80,7 +81,8 @@ void BatchTracer<N, Surfaces>::bounce(std::size_t i, const SurfaceHit& hit,
 
 template <int N, bool Surfaces>
 SurfaceState::LightSampled BatchTracer<N, Surfaces>::lightSampledAfter(
-    SurfaceState::LightSampled before, const Bsdf& bsdf, const BsdfSample& b) const {
+    SurfaceState::LightSampled before, const surface::Bsdf& bsdf,
+    const surface::BsdfSample& b) const {
     using enum SurfaceState::LightSampled;
     if (!b.delta) return AtLastEvent;
     // Next-event estimation lights the smooth part only: it cannot find a delta part's direction.
@@ -96,13 +98,14 @@ void BatchTracer<N, Surfaces>::goOn(Path& p) {
 }
 
 template <int N, bool Surfaces>
-void BatchTracer<N, Surfaces>::addEmission(Path& p, const SurfaceHit& hit, const Bsdf& bsdf) {
+void BatchTracer<N, Surfaces>::addEmission(Path& p, const surface::SurfaceHit& hit,
+                                           const surface::Bsdf& bsdf) {
     const Rgb radiance = bsdf.emitted(-p.direction);
     if (!(radiance.maximum() > 0)) return;
     const auto pdf = [&] {
         const std::uint32_t emitter = nestedMedia_->emitter(hit);
-        const MeshLight* light = scene_.lights.mesh();
-        if (emitter == SurfaceObject::dark || !light) return 0.0;
+        const light::MeshLight* light = scene_.lights.mesh();
+        if (emitter == surface::SurfaceObject::dark || !light) return 0.0;
         return light->pdf(p.from.position, emitter, hit.position) *
                choice_.probability(scene_.lights.meshIndex(), p.from);
     };
@@ -111,12 +114,13 @@ void BatchTracer<N, Surfaces>::addEmission(Path& p, const SurfaceHit& hit, const
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u,
-                                            const SurfaceHit& hit, const Crossing& crossing,
-                                            Vec3d out, bool caught) {
+                                            const surface::SurfaceHit& hit,
+                                            const Crossing& crossing, Vec3d out, bool caught) {
     Path& p = paths_[i];
     const auto chosen = choice_.choose(p.from, u.pick);
     if (!chosen) return;
-    const LightSample l = scene_.lights.sample(chosen->light, hit.position, u.light[0], u.light[1]);
+    const light::LightSample l =
+        scene_.lights.sample(chosen->light, hit.position, u.light[0], u.light[1]);
     if (!(l.weight.maximum() > 0) || nestedMedia_->startsOn(hit, l.emitter)) return;
     const Rgb f = crossing.bsdf.evaluate(out, l.direction);
     if (!(f.maximum() > 0)) return;
@@ -136,8 +140,8 @@ void BatchTracer<N, Surfaces>::lightSurface(std::size_t i, const EventNumbers& u
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::addUnoccluded(Path& p) {
-    for (const Light& light : scene_.lights.lights()) {
-        const auto* environment = std::get_if<Environment>(&light);
+    for (const light::Light& light : scene_.lights.lights()) {
+        const auto* environment = std::get_if<light::Environment>(&light);
         if (environment && environment->constant())
             p.result->catcher.unlit +=
                 (toRgb(p.throughput) * tint(p) * environment->radiance(p.direction)).mean();
@@ -158,16 +162,16 @@ void BatchTracer<N, Surfaces>::playRoulette(Path& p) {
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::findShadowAcrossSurfaces(ShadowRay<Surfaces>& shadow,
-                                                        TransmittanceQuery<N>& q,
-                                                        TrackingCounters& c) {
+                                                        medium::TransmittanceQuery<N>& q,
+                                                        medium::TrackingCounters& c) {
     if (!(q.contribution.maximum() > 0)) return;
     pieces_.clear();
     NestedMedia::RayStart place = shadow.start;
     Vec3d origin = q.origin;
     double left = q.tMax;
-    SurfaceHit hit;
+    surface::SurfaceHit hit;
     Rgb passed(1.0f);
-    const bool toSurface = shadow.emitter != LightSample::none;
+    const bool toSurface = shadow.emitter != light::LightSample::none;
     while (true) {
         counters_.surfaceRays += !shadow.withinFlight;
         bool hits = !shadow.withinFlight &&
@@ -193,7 +197,7 @@ void BatchTracer<N, Surfaces>::findShadowAcrossSurfaces(ShadowRay<Surfaces>& sha
     }
     q.contribution *= passed.mean();
     for (const Piece& piece : pieces_) {
-        const Medium& medium = *media_[piece.medium].medium;
+        const medium::Medium& medium = *media_[piece.medium].medium;
         if (medium.parts.empty()) continue;
         q.origin = piece.origin, q.tMax = piece.length;
         findTransmittances(medium, {&q, 1}, c);
@@ -204,32 +208,32 @@ void BatchTracer<N, Surfaces>::findShadowAcrossSurfaces(ShadowRay<Surfaces>& sha
 /// Where an emitter coincides with other surfaces, a shadow ray reaches it only if it is the one
 /// that counts.
 template <int N, bool Surfaces>
-bool BatchTracer<N, Surfaces>::arrives(const ShadowRay<Surfaces>& shadow, const SurfaceHit& hit,
-                                       double left) const {
+bool BatchTracer<N, Surfaces>::arrives(const ShadowRay<Surfaces>& shadow,
+                                       const surface::SurfaceHit& hit, double left) const {
     if (hit.coincident.any) return nestedMedia_->emitter(hit) == shadow.emitter;
     return hit.t > left * beforeLight;
 }
 
 template <int N, bool Surfaces>
 void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
-    DistanceQuery<N> q{p.origin,
-                       p.direction,
-                       infinity,
-                       p.flight,
-                       RandomStream(RandomStream(p.random).bits()),
-                       0,
-                       true,
-                       Spectrum<N>(1.0f),
-                       0,
-                       -1};
-    TrackingCounters c;
-    DepthSample& depth = p.result->depth;
-    const Medium* medium = &scene_.medium;
+    medium::DistanceQuery<N> q{p.origin,
+                               p.direction,
+                               infinity,
+                               p.flight,
+                               RandomStream(RandomStream(p.random).bits()),
+                               0,
+                               true,
+                               Spectrum<N>(1.0f),
+                               0,
+                               -1};
+    medium::TrackingCounters c;
+    image::DepthSample& depth = p.result->depth;
+    const medium::Medium* medium = &scene_.medium;
     double behind = 0;  // distance to where the query starts
     if constexpr (Surfaces) {
         NestedMedia::RayStart place = p.surfaces.start;
         while (true) {
-            SurfaceHit hit;
+            surface::SurfaceHit hit;
             const bool hits =
                 nestedMedia_->nearest(q.origin, q.direction, infinity, place, true, hit);
             q.tMax = hits ? hit.t : infinity;
@@ -266,8 +270,8 @@ void BatchTracer<N, Surfaces>::findDepth(const Path& p) {
     depth.weight = weight;
     if (!options_.featureLayers) return;
     const Vec3d met = q.origin + q.direction * q.t;
-    depth.weightedAlbedo = toRgb(q.throughput) * scatteringAlbedo(*medium, met);
-    depth.weightedNormal = (densityNormal(*medium, met) * weight).template as<float>();
+    depth.weightedAlbedo = toRgb(q.throughput) * medium::scatteringAlbedo(*medium, met);
+    depth.weightedNormal = (medium::densityNormal(*medium, met) * weight).template as<float>();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

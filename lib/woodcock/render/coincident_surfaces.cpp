@@ -13,17 +13,17 @@
 //     does a hair above the floor.
 // A path goes from layer to layer, by steps of no length.
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
 /// On which side of the place's first normal the inside of a surface lies: 1 behind it, -1 before
 /// it.
-double sideOf(const CoincidentSurface& surface, const SurfaceHit& hit) {
+double sideOf(const surface::CoincidentSurface& surface, const surface::SurfaceHit& hit) {
     return hit.coincident.turned ? -surface.facing : surface.facing;
 }
 
-Vec3d firstNormal(const SurfaceHit& hit) {
+Vec3d firstNormal(const surface::SurfaceHit& hit) {
     return hit.coincident.turned ? -hit.normal : hit.normal;
 }
 
@@ -32,7 +32,7 @@ Vec3d firstNormal(const SurfaceHit& hit) {
 /// By priority, then by whether the surface emits towards the side (1: that of the first normal),
 /// then by order: later ones rank higher. An emitter of one side counts least from behind, where it
 /// is black.
-NestedMedia::Rank NestedMedia::rank(const CoincidentSurface& surface, double side) const {
+NestedMedia::Rank NestedMedia::rank(const surface::CoincidentSurface& surface, double side) const {
     int light = 1;
     if (const std::uint8_t shines = shines_[surface.object]; shines > 0)
         light = shines == 2 || side > 0 ? 2 : 0;
@@ -40,17 +40,19 @@ NestedMedia::Rank NestedMedia::rank(const CoincidentSurface& surface, double sid
             surface.primitive};
 }
 
-bool NestedMedia::inLayer(const CoincidentSurface& surface, const SurfaceHit& hit) const {
+bool NestedMedia::inLayer(const surface::CoincidentSurface& surface,
+                          const surface::SurfaceHit& hit) const {
     if (hit.coincident.forCamera && !set_.objects[surface.object].cameraVisible) return false;
     if (!holds_[surface.object]) return false;
     if (hit.coincident.layer == OneBoundary) return true;
     return (sideOf(surface, hit) > 0) == (hit.coincident.layer == Back);
 }
 
-bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const MediumStack& inside,
-                            bool cameraRay, SurfaceHit& next) const {
+bool NestedMedia::nextLayer(const surface::SurfaceHit& hit, Vec3d direction,
+                            const MediumStack& inside, bool cameraRay,
+                            surface::SurfaceHit& next) const {
     if (hit.coincident.layer == OneBoundary || hit.coincident.layer == FromCamera) return false;
-    std::vector<CoincidentSurface> all;
+    std::vector<surface::CoincidentSurface> all;
     set_.geometry.coincidentSurfaces(hit, all);
     if (all.size() < 2 && hit.coincident.layer == NoLayer &&
         !(cameraRay && !object(hit).cameraVisible)) {
@@ -61,15 +63,15 @@ bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const Medium
     const bool forward = dot(direction, firstNormal(hit)) < 0;
     // The best of each kind, as it is seen from the front and from the back.
     struct Best {
-        const CoincidentSurface* surface = nullptr;
+        const surface::CoincidentSurface* surface = nullptr;
         Rank rank;
-        void add(const CoincidentSurface& s, const Rank& r) {
+        void add(const surface::CoincidentSurface& s, const Rank& r) {
             if (!surface || r > rank) surface = &s, rank = r;
         }
     };
     std::array<Best, 2> solid, sheet;
     std::array<bool, 2> interior{};  // in front and behind
-    for (const CoincidentSurface& s : all) {
+    for (const surface::CoincidentSurface& s : all) {
         if (cameraRay && !set_.objects[s.object].cameraVisible) continue;
         const double side = sideOf(s, hit);
         if (holds_[s.object]) {
@@ -107,10 +109,10 @@ bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const Medium
     while (layer > NoLayer && layer < FromCamera && !exists(layer));
     if (layer <= NoLayer || layer >= FromCamera) return false;
 
-    SurfaceHit place = hit;
+    surface::SurfaceHit place = hit;
     place.coincident.layer = static_cast<std::uint8_t>(layer);
     place.coincident.forCamera = cameraRay;
-    const CoincidentSurface* counts = nullptr;
+    const surface::CoincidentSurface* counts = nullptr;
     if (layer == Solid || layer == FrontSheet || layer == BackSheet) {
         // A sheet alone may be met from behind.
         const std::size_t seenFrom = layer == BackSheet || (layer == Solid && !forward);
@@ -121,11 +123,11 @@ bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const Medium
         MediumStack near = inside, beyond = inside;
         crossLayer(place, all, direction, near, beyond);
         const std::uint32_t from = filling(near), to = filling(beyond);
-        for (const CoincidentSurface& s : all) {
+        for (const surface::CoincidentSurface& s : all) {
             if (!inLayer(s, place)) continue;
-            const auto order = [&](const CoincidentSurface& c) {
+            const auto order = [&](const surface::CoincidentSurface& c) {
                 const bool changes = from != to && (c.instance == from || c.instance == to);
-                const bool passes = std::holds_alternative<InterfaceMaterial>(
+                const bool passes = std::holds_alternative<surface::InterfaceMaterial>(
                     set_.materials[set_.objects[c.object].material]);
                 return std::tuple(changes, !passes, rank(c, 1));
             };
@@ -137,8 +139,9 @@ bool NestedMedia::nextLayer(const SurfaceHit& hit, Vec3d direction, const Medium
     return true;
 }
 
-void NestedMedia::crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurface> surfaces,
-                             Vec3d direction, MediumStack& near, MediumStack& beyond) const {
+void NestedMedia::crossLayer(const surface::SurfaceHit& hit,
+                             std::span<const surface::CoincidentSurface> surfaces, Vec3d direction,
+                             MediumStack& near, MediumStack& beyond) const {
     const bool forward = dot(direction, firstNormal(hit)) < 0;
     for (std::size_t i = 0; i < surfaces.size();) {
         // Faces of one body that lie back to back cancel. Those that face the same way are one.
@@ -155,26 +158,27 @@ void NestedMedia::crossLayer(const SurfaceHit& hit, std::span<const CoincidentSu
     }
 }
 
-bool NestedMedia::startsOn(const SurfaceHit& hit, std::uint32_t emitter) const {
-    if (emitter == SurfaceObject::dark) return false;
+bool NestedMedia::startsOn(const surface::SurfaceHit& hit, std::uint32_t emitter) const {
+    if (emitter == surface::SurfaceObject::dark) return false;
     if (!hit.coincident.any) return this->emitter(hit) == emitter;
-    std::vector<CoincidentSurface> all;
+    std::vector<surface::CoincidentSurface> all;
     set_.geometry.coincidentSurfaces(hit, all);
-    return std::any_of(all.begin(), all.end(), [&](const CoincidentSurface& s) {
+    return std::any_of(all.begin(), all.end(), [&](const surface::CoincidentSurface& s) {
         const std::uint32_t first = set_.firstEmitter[s.instance];
-        return first != SurfaceObject::dark && first + s.primitive == emitter;
+        return first != surface::SurfaceObject::dark && first + s.primitive == emitter;
     });
 }
 
 NestedMedia::CameraPosition NestedMedia::cameraPosition(Vec3d position) const {
     CameraPosition start{position, {}, {}};
-    SurfaceHit place;
+    surface::SurfaceHit place;
     place.position = position;
     set_.geometry.coincidentSurfaces(place, start.touched);
     if (!anyHolds_) return start;
     const auto touched = [&](std::uint32_t instance) {
-        return std::any_of(start.touched.begin(), start.touched.end(),
-                           [&](const CoincidentSurface& s) { return s.instance == instance; });
+        return std::any_of(
+            start.touched.begin(), start.touched.end(),
+            [&](const surface::CoincidentSurface& s) { return s.instance == instance; });
     };
     for (const std::uint32_t instance : set_.geometry.enclosing(position, holds_))
         if (objectOf(instance).cameraVisible && !touched(instance)) start.inside.enter(instance);
@@ -189,7 +193,7 @@ NestedMedia::RayStart NestedMedia::rayStart(const CameraPosition& start, Vec3d d
         bool inwards = true;  // right for bodies that are convex there
         for (; i < start.touched.size() && start.touched[i].instance == instance; ++i)
             inwards = inwards && dot(direction, start.touched[i].normal) < 0;
-        const SurfaceObject& object = objectOf(instance);
+        const surface::SurfaceObject& object = objectOf(instance);
         if (inwards && object.holdsMedium && object.cameraVisible) place.inside.enter(instance);
     }
     place.left.emplace();
@@ -200,4 +204,4 @@ NestedMedia::RayStart NestedMedia::rayStart(const CameraPosition& start, Vec3d d
     return place;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -6,7 +6,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// Distances along a ray, within [t0, t1], in proportion to the inverse square distance to a light:
 /// Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating
@@ -39,4 +39,4 @@ private:
     double t0_ = 0, t1_ = 0, nearest_ = 0, distance_ = 0, angle0_ = 0, angle1_ = 0;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

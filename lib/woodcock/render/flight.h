@@ -9,21 +9,21 @@
 #include "woodcock/medium/medium.h"
 #include "woodcock/render/equiangular.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// What sampling along a ray knows of a medium beforehand.
 struct MediumSummary {
-    const Medium* medium;  ///< that rays go through
-    std::span<const EmissionPart> emission;
+    const medium::Medium* medium;  ///< that rays go through
+    std::span<const medium::EmissionPart> emission;
     Box3d bounds;
     double meanExtinction = 0;
     bool unbounded = false, scatters = false;
 
-    explicit MediumSummary(const Medium& m) : MediumSummary(m, m) {}
+    explicit MediumSummary(const medium::Medium& m) : MediumSummary(m, m) {}
     /// `m` is used in place of `original`, and has the emission of `original`.
-    MediumSummary(const Medium& m, const Medium& original)
+    MediumSummary(const medium::Medium& m, const medium::Medium& original)
         : medium(&m), emission(original.emission), bounds(m.worldBounds()) {
-        for (const MediumPart& p : m.parts) {
+        for (const medium::MediumPart& p : m.parts) {
             meanExtinction += p.meanExtinction();
             unbounded |= p.unbounded();
             scatters |= p.scatters();
@@ -39,7 +39,8 @@ struct Flight {
 
     Equiangular equiangular(Vec3d lightPosition) const {
         double t0 = 0, t1 = tMax;
-        if (!medium->unbounded && !clip({origin, direction}, medium->bounds, t0, t1)) return {};
+        if (!medium->unbounded && !grid::clip({origin, direction}, medium->bounds, t0, t1))
+            return {};
         return {origin, direction, lightPosition, t0, t1, length(medium->bounds.size()) * 1e-9};
     }
     /// The density, per world unit, with which tracking would find its event at `t` if the medium
@@ -68,4 +69,4 @@ struct FlightShare {
     }
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

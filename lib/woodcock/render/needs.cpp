@@ -3,13 +3,13 @@
 
 #include "woodcock/render/scene.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 Needs findNeeds(const Scene& scene) {
     Needs n = scene.forcedNeeds;
     Box3d bounds;  // of what scatters
-    const auto look = [&](const Medium& medium) {
-        for (const MediumPart& p : medium.parts) {
+    const auto look = [&](const medium::Medium& medium) {
+        for (const medium::MediumPart& p : medium.parts) {
             n.chromatic |= p.chromatic();
             n.scattering |= p.scatters();
         }
@@ -19,14 +19,14 @@ Needs findNeeds(const Scene& scene) {
         if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
     };
     look(scene.medium);
-    for (const Medium& medium : scene.interiorMedia) look(medium);
+    for (const medium::Medium& medium : scene.interiorMedia) look(medium);
     n.surfaces |= scene.surfaces != nullptr;
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
-        const Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];
-        const auto* point = std::get_if<PointLight>(&light);
-        const Vec3d p = point ? point->position : std::get<SphereLight>(light).position;
+        const light::Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];
+        const auto* point = std::get_if<light::PointLight>(&light);
+        const Vec3d p = point ? point->position : std::get<light::SphereLight>(light).position;
         n.localLights |=
             n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) < reach;
     }
@@ -65,4 +65,4 @@ std::string unusedOf(const Needs& needs) {
 
 std::string Needs::describe() const { return usedOf(*this); }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

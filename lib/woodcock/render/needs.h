@@ -4,20 +4,20 @@
 #include <cstdint>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::render {
 
 struct Scene;
 
 /// What a scene needs of the path loop. It is found once, and only what is needed is run.
 struct Needs {
-    bool chromatic = false;      ///< the medium's channels differ: three are tracked instead of one
-    bool overlap = false;        ///< more than one medium component
-    bool scattering = false;     ///< sigma_s > 0 somewhere: otherwise camera rays only
+    bool chromatic = false;   ///< the medium's channels differ: three are tracked instead of one
+    bool overlap = false;     ///< more than one medium component
+    bool scattering = false;  ///< sigma_s > 0 somewhere: otherwise camera rays only
     bool lightSampling =
-        false;  ///< a light that sampling the phase function would miss or sample badly
-    bool surfaces = false;       ///< rays look for surfaces, and media lie within them
-    bool emission = false;       ///< media that emit: a point of every flight is sampled
-    bool localLights = false;    ///< lights near or inside the medium: equiangular sampling
+        false;              ///< a light that sampling the phase function would miss or sample badly
+    bool surfaces = false;  ///< rays look for surfaces, and media lie within them
+    bool emission = false;  ///< media that emit: a point of every flight is sampled
+    bool localLights = false;  ///< lights near or inside the medium: equiangular sampling
 
     /// One line: what the scene needs and what was left out.
     std::string describe() const;
@@ -39,4 +39,4 @@ struct RenderCounters {
     std::uint64_t clamped = 0;      ///< paths that brought more than Approximations::clamp
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -6,7 +6,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 void MediumStack::enter(std::uint32_t instance) {
     const auto end = instances_.begin() + count_;
@@ -29,25 +29,25 @@ void MediumStack::leave(std::uint32_t instance) {
 
 namespace {
 
-std::uint8_t shiningSides(std::span<const Material> materials, std::uint32_t index) {
-    if (const auto* emissive = std::get_if<EmissiveMaterial>(&materials[index]))
+std::uint8_t shiningSides(std::span<const surface::Material> materials, std::uint32_t index) {
+    if (const auto* emissive = std::get_if<surface::EmissiveMaterial>(&materials[index]))
         return emissive->bothSides ? 2 : 1;
-    if (const auto* mix = std::get_if<MixMaterial>(&materials[index]))
+    if (const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]))
         return std::max(shiningSides(materials, mix->first), shiningSides(materials, mix->second));
     return 0;
 }
 
-bool hasHoles(std::span<const Material> materials, std::uint32_t index) {
-    const auto* mix = std::get_if<MixMaterial>(&materials[index]);
-    return mix && (std::holds_alternative<InterfaceMaterial>(materials[mix->first]) ||
-                   std::holds_alternative<InterfaceMaterial>(materials[mix->second]));
+bool hasHoles(std::span<const surface::Material> materials, std::uint32_t index) {
+    const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]);
+    return mix && (std::holds_alternative<surface::InterfaceMaterial>(materials[mix->first]) ||
+                   std::holds_alternative<surface::InterfaceMaterial>(materials[mix->second]));
 }
 
 }  // namespace
 
 NestedMedia::NestedMedia(const Scene& scene)
     : set_(*scene.surfaces), holds_(scene.surfaces->holdsMedium()) {
-    for (const SurfaceObject& object : set_.objects) {
+    for (const surface::SurfaceObject& object : set_.objects) {
         anyHolds_ |= object.holdsMedium;
         anyInvisible_ |= !object.cameraVisible;
         shines_.push_back(shiningSides(set_.materials, object.material));
@@ -77,14 +77,14 @@ std::uint32_t NestedMedia::medium(const MediumStack& inside) const {
 }
 
 Crossing NestedMedia::cross(const MediumStack& inside, Vec3d direction,
-                            const SurfaceHit& hit) const {
+                            const surface::SurfaceHit& hit) const {
     const bool holds = holds_[hit.object];
     const bool entering = dot(direction, hit.normal) < 0;
     MediumStack near = inside, beyond = inside;
-    BsdfPoint point{hit.normal, hit.shadingNormal, hit.u, hit.v, 1, 1};
+    surface::BsdfPoint point{hit.normal, hit.shadingNormal, hit.u, hit.v, 1, 1};
     bool hidden = false;
     if (holds && hit.coincident.any) {
-        std::vector<CoincidentSurface> surfaces;
+        std::vector<surface::CoincidentSurface> surfaces;
         set_.geometry.coincidentSurfaces(hit, surfaces);
         crossLayer(hit, surfaces, direction, near, beyond);
         const std::uint32_t from = filling(near), to = filling(beyond);
@@ -105,21 +105,21 @@ Crossing NestedMedia::cross(const MediumStack& inside, Vec3d direction,
         // An opaque surface in water: no light gets through, whatever its index.
         point.iorOutside = point.iorInside = ior(filling(inside));
     }
-    Bsdf bsdf(set_.materials, objectOf(hit.instance).material, point);
+    surface::Bsdf bsdf(set_.materials, objectOf(hit.instance).material, point);
     const bool passes = hidden || bsdf.passes();
     return {near, beyond, std::move(bsdf), passes};
 }
 
 bool NestedMedia::nearest(Vec3d origin, Vec3d direction, double tMax, const RayStart& start,
-                          bool cameraRay, SurfaceHit& hit) const {
-    const SurfaceHit* left = start.left ? &*start.left : nullptr;
+                          bool cameraRay, surface::SurfaceHit& hit) const {
+    const surface::SurfaceHit* left = start.left ? &*start.left : nullptr;
     if (left && left->coincident.any && nextLayer(*left, direction, start.inside, cameraRay, hit))
         return hit.t < tMax;
     if (!set_.geometry.intersect(origin, direction, tMax, left, hit)) return false;
     double travelled = 0;
     while (true) {
         if (hit.coincident.any) {
-            const SurfaceHit place = hit;
+            const surface::SurfaceHit place = hit;
             if (nextLayer(place, direction, start.inside, cameraRay, hit)) {
                 hit.t = place.t;
                 break;
@@ -128,7 +128,7 @@ bool NestedMedia::nearest(Vec3d origin, Vec3d direction, double tMax, const RayS
             break;
         }
         travelled += hit.t;
-        const SurfaceHit passed = hit;
+        const surface::SurfaceHit passed = hit;
         if (!set_.geometry.intersect(passed.position, direction, tMax - travelled, &passed, hit))
             return false;
     }
@@ -136,4 +136,4 @@ bool NestedMedia::nearest(Vec3d origin, Vec3d direction, double tMax, const RayS
     return true;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -11,7 +11,7 @@
 #include "woodcock/render/scene.h"
 #include "woodcock/surface/bsdf.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// The closed surfaces that a path is inside of, by instance. The one of highest priority decides
 /// which medium is there: Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
@@ -34,7 +34,7 @@ private:
 struct Crossing {
     MediumStack near;    ///< what the ray is inside of before the surface
     MediumStack beyond;  ///< and behind it
-    Bsdf bsdf;
+    surface::Bsdf bsdf;
     /// Light goes on unchanged: an interface, equal indices of refraction, or a surface within
     /// another one of higher priority.
     bool passes;
@@ -50,14 +50,14 @@ public:
     /// Where a ray starts.
     struct RayStart {
         MediumStack inside = {};
-        std::optional<SurfaceHit> left = {};  ///< the surface that it starts on
+        std::optional<surface::SurfaceHit> left = {};  ///< the surface that it starts on
     };
 
     /// A point from which camera rays start: what encloses it, and which surfaces it lies on.
     struct CameraPosition {
         Vec3d position;
         MediumStack inside;
-        std::vector<CoincidentSurface> touched;
+        std::vector<surface::CoincidentSurface> touched;
     };
     CameraPosition cameraPosition(Vec3d position) const;
     /// The start of a ray from there. A ray that starts on a surface is inside of it if it goes
@@ -67,21 +67,24 @@ public:
     /// Index of the medium that counts: 0 is the scene's own, others are
     /// Scene::interiorMedia[index - 1].
     std::uint32_t medium(const MediumStack& inside) const;
-    Crossing cross(const MediumStack& inside, Vec3d direction, const SurfaceHit& hit) const;
+    Crossing cross(const MediumStack& inside, Vec3d direction,
+                   const surface::SurfaceHit& hit) const;
 
-    const SurfaceObject& object(const SurfaceHit& hit) const { return set_.objects[hit.object]; }
+    const surface::SurfaceObject& object(const surface::SurfaceHit& hit) const {
+        return set_.objects[hit.object];
+    }
     /// The hit's triangle in the scene's MeshLight, or SurfaceObject::dark.
-    std::uint32_t emitter(const SurfaceHit& hit) const {
+    std::uint32_t emitter(const surface::SurfaceHit& hit) const {
         const std::uint32_t first = set_.firstEmitter[hit.instance];
-        return first == SurfaceObject::dark ? first : first + hit.primitive;
+        return first == surface::SurfaceObject::dark ? first : first + hit.primitive;
     }
     /// Whether this emitter is the hit's triangle, or lies in the same place.
-    bool startsOn(const SurfaceHit& hit, std::uint32_t emitter) const;
+    bool startsOn(const surface::SurfaceHit& hit, std::uint32_t emitter) const;
     /// The nearest hit before `tMax` (world units); false: none. Camera rays go through what is
     /// invisible to them. Where surfaces coincide it is the next layer of them: see
     /// coincident_surfaces.cpp.
     bool nearest(Vec3d origin, Vec3d direction, double tMax, const RayStart& start, bool cameraRay,
-                 SurfaceHit& hit) const;
+                 surface::SurfaceHit& hit) const;
 
 private:
     static constexpr std::uint32_t outside = 0xffffffffu;
@@ -101,23 +104,24 @@ private:
     };
     /// What decides among surfaces that coincide: the larger rank counts.
     using Rank = std::tuple<int, int, std::uint32_t, std::uint32_t, std::uint32_t>;
-    Rank rank(const CoincidentSurface& surface, double side) const;
-    bool inLayer(const CoincidentSurface& surface, const SurfaceHit& hit) const;
+    Rank rank(const surface::CoincidentSurface& surface, double side) const;
+    bool inLayer(const surface::CoincidentSurface& surface, const surface::SurfaceHit& hit) const;
     /// The first layer beyond `hit` in a direction; `hit` may be a layer itself. False: none.
-    bool nextLayer(const SurfaceHit& hit, Vec3d direction, const MediumStack& inside,
-                   bool cameraRay, SurfaceHit& next) const;
+    bool nextLayer(const surface::SurfaceHit& hit, Vec3d direction, const MediumStack& inside,
+                   bool cameraRay, surface::SurfaceHit& next) const;
     /// Leaves and enters what a ray crosses with all closed surfaces of a layer.
-    void crossLayer(const SurfaceHit& hit, std::span<const CoincidentSurface> surfaces,
-                    Vec3d direction, MediumStack& near, MediumStack& beyond) const;
+    void crossLayer(const surface::SurfaceHit& hit,
+                    std::span<const surface::CoincidentSurface> surfaces, Vec3d direction,
+                    MediumStack& near, MediumStack& beyond) const;
 
     /// The instance of highest priority, or `outside`.
     std::uint32_t filling(const MediumStack& inside) const;
     double ior(std::uint32_t instance) const;
-    const SurfaceObject& objectOf(std::uint32_t instance) const {
+    const surface::SurfaceObject& objectOf(std::uint32_t instance) const {
         return set_.objects[set_.geometry.instances()[instance].object];
     }
 
-    const SurfaceSet& set_;
+    const surface::SurfaceSet& set_;
     std::vector<bool> holds_;  ///< by object: light gets inside
     /// By object: it sends light out of its front (1), of both sides (2), or of none.
     std::vector<std::uint8_t> shines_;
@@ -126,4 +130,4 @@ private:
     bool anyInvisible_ = false;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -13,7 +13,7 @@
 #include "woodcock/render/nested_media.h"
 #include "woodcock/render/path_tracer.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -49,7 +49,7 @@ struct EventNumbers {
 /// A path's state where the scene has surfaces.
 struct SurfaceState {
     NestedMedia::RayStart start;  ///< where the flight starts
-    SurfaceHit ahead;        ///< the nearest surface, at tMax
+    surface::SurfaceHit ahead;    ///< the nearest surface, at tMax
     bool hitsAhead = false;
     double tMax = infinity;
     Rgb tint{1.0f};  ///< colour of surfaces, where the throughput has one channel
@@ -75,9 +75,9 @@ struct PathState {
         opacity{};  // of absorbing media on the camera's ray: 1 - throughput without rounding
     Rgb radiance;
     std::int64_t scatterings = 0;
-    ScatterPoint from;    // the last scattering event, for MIS at what its direction hits
-    double phasePdf = 0;  // of that direction
-    double flight = 1;    // draws the next optical depth
+    light::ScatterPoint from;  // the last scattering event, for MIS at what its direction hits
+    double phasePdf = 0;       // of that direction
+    double flight = 1;         // draws the next optical depth
     double equiangular = 0, localLightPick = 0;  // draw its equiangular point, and the light for it
     bool alive = true;
     std::uint8_t mediumSet = 0;  // of approximate media that the flight goes through; 0: none
@@ -91,15 +91,15 @@ struct ShadowRay {
     std::size_t path;
     Rgb colour;
     bool secondLeg = false;
-    bool transparent = false;   // passes dielectrics
-    bool inFront = false;       // brings light of the camera's first flight, before any surface
-    bool withinFlight = false;  // no surface lies in its way
+    bool transparent = false;    // passes dielectrics
+    bool inFront = false;        // brings light of the camera's first flight, before any surface
+    bool withinFlight = false;   // no surface lies in its way
     std::uint8_t mediumSet = 0;  // which media it goes through
     std::uint8_t secondMediumSet = 0;
-    std::uint32_t emitter = LightSample::none;  // the triangle that it goes to
-    Vec3d origin = {}, direction = {};          // of the second leg
+    std::uint32_t emitter = light::LightSample::none;  // the triangle that it goes to
+    Vec3d origin = {}, direction = {};                 // of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, NestedMedia::RayStart, Nothing> start = {};
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -3,7 +3,7 @@
 
 #include "woodcock/render/batch_tracer.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
@@ -21,4 +21,4 @@ std::unique_ptr<PathTracer> PathTracer::make(const Scene& scene, const Needs& ne
     return needs.chromatic ? makeFor<3>(scene, needs, options) : makeFor<1>(scene, needs, options);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -14,10 +14,10 @@
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// How rays are marched where approximations.marchStep is above 0.
-inline MarchSettings marchSettings(const Approximations& approximations) {
+inline medium::MarchSettings marchSettings(const Approximations& approximations) {
     return {approximations.marchStep, approximations.jackknife};
 }
 
@@ -29,9 +29,9 @@ struct PathJob {
 
 /// What one camera path found.
 struct PathResult {
-    FilmSample film;
-    DepthSample depth;      ///< only with depthLayers or featureLayers
-    CatcherSample
+    image::FilmSample film;
+    image::DepthSample depth;  ///< only with depthLayers or featureLayers
+    image::CatcherSample
         catcher;  ///< where the camera sees a shadow catcher; its radiance is not in `film`
 };
 
@@ -63,4 +63,4 @@ public:
                                             const Options& options);
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -7,7 +7,7 @@
 
 #include "woodcock/render/scene.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
@@ -37,7 +37,7 @@ public:
         for (std::size_t i = 0; i < scene.medium.parts.size(); ++i)
             checkPart(scene.medium.parts[i], i, scene.medium.parts.size());
         checkCamera(scene.camera.worldFromCamera.translation);
-        for (const Light& light : scene.lights.lights()) checkLight(light);
+        for (const light::Light& light : scene.lights.lights()) checkLight(light);
     }
     std::vector<std::string> take() { return std::move(found_); }
 
@@ -47,7 +47,7 @@ private:
         found_.push_back(fmt::format(format, std::forward<Args>(args)...));
     }
 
-    void checkPart(const MediumPart& part, std::size_t index, std::size_t count) {
+    void checkPart(const medium::MediumPart& part, std::size_t index, std::size_t count) {
         const std::string name =
             count == 1 ? "the volume"
                        : fmt::format("part {} of {} of the volumes", index + 1, count);
@@ -91,13 +91,13 @@ private:
                 text(eye), rounding, size, text(bounds_.centre()));
     }
 
-    void checkLight(const Light& light) {
-        if (const auto* point = std::get_if<PointLight>(&light))
+    void checkLight(const light::Light& light) {
+        if (const auto* point = std::get_if<light::PointLight>(&light))
             checkLocalLight("a point light", point->position, point->intensity.maximum());
-        if (const auto* sphere = std::get_if<SphereLight>(&light))
+        if (const auto* sphere = std::get_if<light::SphereLight>(&light))
             checkLocalLight("a sphere light", sphere->position,
                             pi * sphere->radius * sphere->radius * sphere->radiance.maximum());
-        if (const auto* sun = std::get_if<Sun>(&light); sun && !sun->delta()) {
+        if (const auto* sun = std::get_if<light::Sun>(&light); sun && !sun->delta()) {
             const double radiance = sun->radiance(sun->towards()).maximum();
             if (!std::isfinite(radiance) || !std::isfinite(sun->pdf(sun->towards())))
                 add("a sun is so narrow that the radiance of its disc is beyond the largest float, "
@@ -125,4 +125,4 @@ private:
 
 std::vector<std::string> precisionWarnings(const Scene& scene) { return Findings(scene).take(); }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

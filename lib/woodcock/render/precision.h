@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::render {
 
 struct Scene;
 
@@ -12,4 +12,4 @@ struct Scene;
 /// sentence that says what, where, by how much, and what to do. Empty for scenes of ordinary size.
 std::vector<std::string> precisionWarnings(const Scene& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::render

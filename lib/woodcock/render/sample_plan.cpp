@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
@@ -34,8 +34,8 @@ struct Found {
     double foreground = 0;  ///< the same without the background
     double coverage = 0, events = 0, weight = 0;
 
-    static Found of(const Film& film, int x, int y) {
-        const Film::Pixel& p = film.at(x, y);
+    static Found of(const image::Film& film, int x, int y) {
+        const image::Film::Pixel& p = film.at(x, y);
         const auto n = static_cast<double>(p.samples);
         if (n < 2) return {};
         Found f{.events = p.events / n, .weight = 1};
@@ -44,7 +44,7 @@ struct Found {
             f.radiance += m / 3;
             f.variance += std::max(0.0, (p.radianceSquared[c] - n * m * m) / (n - 1)) / 3;
         }
-        const Film::Foreground shown = film.foreground(x, y);
+        const image::Film::Foreground shown = film.foreground(x, y);
         f.foreground = shown.radiance, f.coverage = std::min(1.0, shown.coverage);
         return f;
     }
@@ -101,11 +101,11 @@ struct Neighbourhood {
 
 }  // namespace
 
-SamplePlan::SamplePlan(const Film& pilot, int samples)
+SamplePlan::SamplePlan(const image::Film& pilot, int samples)
     : pixels_(static_cast<std::size_t>(pilot.crop().width()) *
               static_cast<std::size_t>(pilot.crop().height())),
       pilot_(static_cast<std::uint32_t>(samples)) {
-    const Film::Window crop = pilot.crop();
+    const image::Film::Window crop = pilot.crop();
     const int width = crop.width(), height = crop.height();
     const auto indexOf = [&](int x, int y) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -200,4 +200,4 @@ void SamplePlan::apportion(const std::vector<PixelPlan>& places, int even,
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -6,7 +6,7 @@
 
 #include "woodcock/image/film.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// How many samples each pixel gets. The number is proportional to the pixel's relative standard
 /// error, divided by the square root of the cost of a sample there. That gives the least relative
@@ -30,7 +30,7 @@ namespace woodcock {
 class SamplePlan {
 public:
     /// `pilot` holds the first `samples` samples of every pixel of its crop.
-    SamplePlan(const Film& pilot, int samples);
+    SamplePlan(const image::Film& pilot, int samples);
 
     /// Each pixel's number of samples, row by row over the crop, for the work of `even` samples in
     /// every pixel as the pilot predicts it. Each colour stays below its half of the work by less
@@ -54,4 +54,4 @@ private:
     std::vector<PixelPlan> colours_[2];
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

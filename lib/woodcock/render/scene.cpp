@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/scene.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 Box3d Scene::bounds() const {
     Box3d all = medium.worldBounds();
@@ -11,4 +11,4 @@ Box3d Scene::bounds() const {
     return all;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -10,16 +10,16 @@
 #include "woodcock/render/needs.h"
 #include "woodcock/surface/surface_set.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// A scene as light meets it: scene/ builds it, and a render session renders it. Immutable while
 /// rendering and shared by all threads.
 struct Scene {
-    Medium medium;  ///< outside of all surfaces
-    LightSet lights;
-    Camera camera = {};
-    std::shared_ptr<const SurfaceSet> surfaces = {};  ///< null: none
-    std::vector<Medium> interiorMedia =
+    medium::Medium medium;  ///< outside of all surfaces
+    light::LightSet lights;
+    camera::Camera camera = {};
+    std::shared_ptr<const surface::SurfaceSet> surfaces = {};  ///< null: none
+    std::vector<medium::Medium> interiorMedia =
         {};  ///< inside of surfaces: SurfaceObject::medium - 1 is the index
     /// Needs that are run although the scene does not have them, to measure their cost. See
     /// forceNeed() in trade/needs_cost.h.
@@ -29,4 +29,4 @@ struct Scene {
     Box3d bounds() const;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

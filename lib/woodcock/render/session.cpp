@@ -18,7 +18,7 @@
 #include "woodcock/render/tile_order.h"
 #include "woodcock/render/work_estimate.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
@@ -34,7 +34,7 @@ double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void validate(const RenderSettings& s, const Film::Window& crop) {
+void validate(const RenderSettings& s, const image::Film::Window& crop) {
     if (s.width < 1 || s.height < 1)
         throw usageError("the image is {} x {}; both must be at least 1", s.width, s.height);
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > s.width || crop.y1 > s.height || crop.width() < 1 ||
@@ -59,11 +59,12 @@ void add(RenderCounters& a, const RenderCounters& b) {
 
 void prepare(const Scene& scene, const Approximations& approximations) {
     if (approximations.marchStep == 0) return;
-    prepareMarch(scene.medium, marchSettings(approximations));
-    for (const Medium& medium : scene.interiorMedia)
-        prepareMarch(medium, marchSettings(approximations));
+    medium::prepareMarch(scene.medium, marchSettings(approximations));
+    for (const medium::Medium& medium : scene.interiorMedia)
+        medium::prepareMarch(medium, marchSettings(approximations));
     for (const ApproximateMedia::Set& set : ApproximateMedia(scene, approximations).sets)
-        for (const Medium& medium : set) prepareMarch(medium, marchSettings(approximations));
+        for (const medium::Medium& medium : set)
+            medium::prepareMarch(medium, marchSettings(approximations));
 }
 
 /// Samples [first, end) of each pixel, or as much work.
@@ -77,7 +78,7 @@ struct Pass {
 /// added in their order. So the sums depend neither on threads nor on the length of passes.
 class Session {
 public:
-    Session(const Scene& scene, const RenderSettings& settings, Film::Window crop)
+    Session(const Scene& scene, const RenderSettings& settings, image::Film::Window crop)
         : scene_(scene),
           settings_(settings),
           crop_(crop),
@@ -247,7 +248,7 @@ private:
     std::vector<std::size_t> pathsOf(const Pass& pass) const {
         std::vector<std::size_t> paths;
         paths.reserve(tiles_.size());
-        for (const Film::Window& tile : tiles_) {
+        for (const image::Film::Window& tile : tiles_) {
             const auto width = static_cast<std::size_t>(tile.width());
             if (pass.endOf.empty()) {
                 paths.push_back(width * static_cast<std::size_t>(tile.height()) *
@@ -270,7 +271,7 @@ private:
                static_cast<std::size_t>(x - crop_.x0);
     }
 
-    std::vector<PathJob> jobsOf(const Film::Window& tile, const Pass& pass) const {
+    std::vector<PathJob> jobsOf(const image::Film::Window& tile, const Pass& pass) const {
         std::vector<PathJob> jobs;
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x) {
@@ -312,13 +313,13 @@ private:
 
     const Scene& scene_;
     const RenderSettings settings_;
-    const Film::Window crop_;
+    const image::Film::Window crop_;
     const Needs needs_;
     const ApproximateMedia approximateMedia_;
-    Film film_;
+    image::Film film_;
     std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
     std::vector<std::uint32_t> counts_;  // and the pixels' numbers of samples by it
-    const std::vector<Film::Window> tiles_;
+    const std::vector<image::Film::Window> tiles_;
     const Clock::time_point start_ = Clock::now();
     double lookSeconds_ = 0, sinceLook_ = 0;
     StopReason reason_ = StopReason::Complete;
@@ -335,11 +336,11 @@ private:
 
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress) {
-    const Film::Window crop =
-        settings.crop.value_or(Film::Window{0, 0, settings.width, settings.height});
+    const image::Film::Window crop =
+        settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     validate(settings, crop);
     prepare(scene, settings.approximations);
     return Session(scene, settings, crop).run(onProgress);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -12,12 +12,12 @@
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 struct RenderSettings {
     int width = 960, height = 540;
-    std::optional<Film::Window> crop;     ///< absent: the whole image
-    int firstSample = 0, endSample = 64;  ///< the half-open range of sample indices to render
+    std::optional<image::Film::Window> crop;  ///< absent: the whole image
+    int firstSample = 0, endSample = 64;      ///< the half-open range of sample indices to render
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
@@ -45,7 +45,7 @@ struct RenderProgress {
 enum class StopReason { Complete, TimeLimit, NoiseReached, Interrupted };
 
 struct RenderResult {
-    Film film;
+    image::Film film;
     Needs needs;
     StopReason reason = StopReason::Complete;
     /// Samples [firstSample, endSample) are complete in every pixel; of an adaptive render, as much
@@ -68,4 +68,4 @@ struct RenderResult {
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress = {});
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
@@ -19,10 +19,10 @@ double keyOf(int column, int row) {
 
 }  // namespace
 
-std::vector<Film::Window> scatteredTiles(Film::Window crop, int size) {
+std::vector<image::Film::Window> scatteredTiles(image::Film::Window crop, int size) {
     struct Keyed {
         double key;
-        Film::Window tile;
+        image::Film::Window tile;
     };
     std::vector<Keyed> keyed;
     for (int y = crop.y0 / size * size; y < crop.y1; y += size)
@@ -32,10 +32,10 @@ std::vector<Film::Window> scatteredTiles(Film::Window crop, int size) {
                               std::min(x + size, crop.x1), std::min(y + size, crop.y1)}});
     std::stable_sort(keyed.begin(), keyed.end(),
                      [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
-    std::vector<Film::Window> tiles;
+    std::vector<image::Film::Window> tiles;
     tiles.reserve(keyed.size());
     for (const Keyed& k : keyed) tiles.push_back(k.tile);
     return tiles;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -8,7 +8,7 @@
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/render/scene.h"
 
-namespace woodcock {
+namespace woodcock::render {
 
 namespace {
 
@@ -17,8 +17,8 @@ constexpr double closedShare = 0.1;  // mean free path in units of the medium's 
 constexpr std::size_t raysPerSide = 5;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double distanceToSurface(const Scene& scene, const CameraRay& ray) {
-    SurfaceHit hit;
+double distanceToSurface(const Scene& scene, const camera::CameraRay& ray) {
+    surface::SurfaceHit hit;
     if (!scene.surfaces ||
         !scene.surfaces->geometry.intersect(ray.origin, ray.direction, infinity, nullptr, hit))
         return infinity;
@@ -26,7 +26,7 @@ double distanceToSurface(const Scene& scene, const CameraRay& ray) {
 }
 
 /// The part with the shortest mean free path at a point; absent where there is none.
-std::optional<ClosedView> densestAt(const Medium& medium, Vec3d point) {
+std::optional<ClosedView> densestAt(const medium::Medium& medium, Vec3d point) {
     double most = 0;
     ClosedView found;
     for (std::size_t i = 0; i < medium.parts.size(); ++i) {
@@ -41,7 +41,7 @@ std::optional<ClosedView> densestAt(const Medium& medium, Vec3d point) {
 
 std::optional<ClosedView> findClosedView(const Scene& scene, int width, int height) {
     std::array<double, raysPerSide * raysPerSide> depths;
-    const CameraRay middle = scene.camera.ray(width / 2.0, height / 2.0, width, height);
+    const camera::CameraRay middle = scene.camera.ray(width / 2.0, height / 2.0, width, height);
     std::optional<ClosedView> view = densestAt(scene.medium, middle.origin);
     if (!view) return std::nullopt;
     const Box3d bounds = scene.medium.parts[view->part].worldBounds();
@@ -53,9 +53,9 @@ std::optional<ClosedView> findClosedView(const Scene& scene, int width, int heig
     for (std::size_t i = 0; i < depths.size(); ++i) {
         const double x = (static_cast<double>(i % raysPerSide) + 0.5) / raysPerSide * width;
         const double y = (static_cast<double>(i / raysPerSide) + 0.5) / raysPerSide * height;
-        const CameraRay ray = scene.camera.ray(x, y, width, height);
-        depths[i] = exactOpticalDepth(scene.medium, ray.origin, ray.direction, 0,
-                                      distanceToSurface(scene, ray))
+        const camera::CameraRay ray = scene.camera.ray(x, y, width, height);
+        depths[i] = medium::exactOpticalDepth(scene.medium, ray.origin, ray.direction, 0,
+                                              distanceToSurface(scene, ray))
                         .mean();
     }
     std::sort(depths.begin(), depths.end());
@@ -64,4 +64,4 @@ std::optional<ClosedView> findClosedView(const Scene& scene, int width, int heig
     return view;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace woodcock {
+namespace woodcock::render {
 
 struct Scene;
 
@@ -21,4 +21,4 @@ struct ClosedView {
 /// camera is inside of surfaces.
 std::optional<ClosedView> findClosedView(const Scene& scene, int width, int height);
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace woodcock {
+namespace woodcock::render {
 
 void WorkEstimate::begin(double samples, const std::vector<std::size_t>& paths) {
     now_ = samples, expected_ = done_ = 0;
@@ -28,4 +28,4 @@ double WorkEstimate::samplesDone() const {
     return complete_ + now_ * share;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::render

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::render {
 
 /// Estimates how much of a render is done from the cost of its tiles so far. All samples of a pass
 /// are assumed to cost the same, as SamplePlan plans them. Within a pass, each tile counts as much
@@ -35,4 +35,4 @@ private:
     double expected_ = 0, done_ = 0;  ///< of this pass, in seconds or, in the first one, paths
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::render

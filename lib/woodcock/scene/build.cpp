@@ -6,43 +6,45 @@
 #include "woodcock/scene/build_surfaces.h"
 #include "woodcock/scene/level_of_detail.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
-Light buildLight(const SunDescription& sun, EnvironmentMap&&) {
-    return Sun(sun.direction, sun.irradiance, sun.angularDiameter, sun.visible);
+light::Light buildLight(const SunDescription& sun, light::EnvironmentMap&&) {
+    return light::Sun(sun.direction, sun.irradiance, sun.angularDiameter, sun.visible);
 }
-Light buildLight(const EnvironmentDescription& environment, EnvironmentMap&& map) {
-    if (map.empty()) return Environment(environment.radiance, environment.visible);
-    return Environment(std::move(map), environment.radiance, worldFromLight(environment),
-                       environment.visible);
+light::Light buildLight(const EnvironmentDescription& environment, light::EnvironmentMap&& map) {
+    if (map.empty()) return light::Environment(environment.radiance, environment.visible);
+    return light::Environment(std::move(map), environment.radiance, worldFromLight(environment),
+                              environment.visible);
 }
-Light buildLight(const PointDescription& point, EnvironmentMap&&) {
-    return PointLight{point.position, point.intensity};
+light::Light buildLight(const PointDescription& point, light::EnvironmentMap&&) {
+    return light::PointLight{point.position, point.intensity};
 }
-Light buildLight(const SphereDescription& sphere, EnvironmentMap&&) {
-    return SphereLight{sphere.position, sphere.radius, sphere.radiance, sphere.visible};
+light::Light buildLight(const SphereDescription& sphere, light::EnvironmentMap&&) {
+    return light::SphereLight{sphere.position, sphere.radius, sphere.radiance, sphere.visible};
 }
 
-LightSet buildLights(const SceneDescription& description, std::vector<EnvironmentMap> maps,
-                     BuiltSurfaces& surfaces) {
-    std::vector<Light> lights;
+light::LightSet buildLights(const SceneDescription& description,
+                            std::vector<light::EnvironmentMap> maps, BuiltSurfaces& surfaces) {
+    std::vector<light::Light> lights;
     maps.resize(description.lights.size());  // lights that were chosen after loading have no image
     for (size_t i = 0; i < maps.size(); ++i)
         lights.push_back(
             std::visit([&](const auto& light) { return buildLight(light, std::move(maps[i])); },
                        description.lights[i].light));
     if (!surfaces.emitters.empty())
-        lights.push_back(MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
-    return LightSet(std::move(lights));
+        lights.push_back(
+            light::MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
+    return light::LightSet(std::move(lights));
 }
 
-Camera buildCamera(const CameraDescription& description) {
+camera::Camera buildCamera(const CameraDescription& description) {
     const bool orthographic = description.kind == CameraDescription::Kind::Orthographic;
     if (!description.pose || (orthographic && !description.height))
         throw usageError("the camera has not been placed yet");
-    Camera camera;
-    camera.kind = orthographic ? Camera::Kind::Orthographic : Camera::Kind::Perspective;
+    camera::Camera camera;
+    camera.kind =
+        orthographic ? camera::Camera::Kind::Orthographic : camera::Camera::Kind::Perspective;
     camera.worldFromCamera = worldFromCamera(*description.pose);
     camera.fovY = description.fovY;
     if (orthographic) camera.height = *description.height;
@@ -53,8 +55,8 @@ Camera buildCamera(const CameraDescription& description) {
 
 }  // namespace
 
-RenderSettings renderSettings(const RenderDescription& render) {
-    RenderSettings settings;
+render::RenderSettings renderSettings(const RenderDescription& render) {
+    render::RenderSettings settings;
     settings.width = render.width;
     settings.height = render.height;
     settings.endSample = render.spp;
@@ -71,7 +73,7 @@ RenderSettings renderSettings(const RenderDescription& render) {
 Affine3d worldFromCamera(const CameraPose& pose) {
     if (const auto* matrix = std::get_if<Affine3d>(&pose)) return *matrix;
     const LookAt& lookAt = std::get<LookAt>(pose);
-    return lookAtTransform(lookAt.eye, lookAt.target, lookAt.up);
+    return camera::lookAtTransform(lookAt.eye, lookAt.target, lookAt.up);
 }
 
 Affine3d worldFromLight(const EnvironmentDescription& environment) {
@@ -82,9 +84,9 @@ Affine3d worldFromLight(const EnvironmentDescription& environment) {
     return up * Affine3d::rotate(1, environment.rotation);
 }
 
-Scene buildScene(const SceneDescription& description, LoadedScene loaded,
-                 std::vector<std::string>* notes) {
-    const Camera camera = buildCamera(description.camera);
+render::Scene buildScene(const SceneDescription& description, LoadedScene loaded,
+                         std::vector<std::string>* notes) {
+    const camera::Camera camera = buildCamera(description.camera);
     for (std::string& note : coarsenForCamera(description, camera, loaded))
         if (notes) notes->push_back(std::move(note));
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
@@ -93,4 +95,4 @@ Scene buildScene(const SceneDescription& description, LoadedScene loaded,
             std::move(surfaces.set), std::move(surfaces.interiorMedia)};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -7,55 +7,61 @@
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/load_textures.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
-using Image = std::shared_ptr<const TextureImage>;
+using Image = std::shared_ptr<const surface::TextureImage>;
 
-Material buildMaterial(const DiffuseDescription& m, const Image& image, const SceneDescription&) {
-    return DiffuseMaterial{makeTexture(m.colour, image)};
+surface::Material buildMaterial(const DiffuseDescription& m, const Image& image,
+                                const SceneDescription&) {
+    return surface::DiffuseMaterial{makeTexture(m.colour, image)};
 }
-Material buildMaterial(const ConductorDescription& m, const Image& image, const SceneDescription&) {
-    ConductorMaterial conductor;
+surface::Material buildMaterial(const ConductorDescription& m, const Image& image,
+                                const SceneDescription&) {
+    surface::ConductorMaterial conductor;
     conductor.fresnelColour = makeTexture(m.colour, image);
     conductor.roughness = m.roughness;
     conductor.schlick = !m.etaK;
     if (m.etaK) std::tie(conductor.eta, conductor.k) = *m.etaK;
     return conductor;
 }
-Material buildMaterial(const DielectricDescription& m, const Image&, const SceneDescription&) {
-    return DielectricMaterial{m.ior, m.roughness};
+surface::Material buildMaterial(const DielectricDescription& m, const Image&,
+                                const SceneDescription&) {
+    return surface::DielectricMaterial{m.ior, m.roughness};
 }
-Material buildMaterial(const InterfaceDescription&, const Image&, const SceneDescription&) {
-    return InterfaceMaterial();
+surface::Material buildMaterial(const InterfaceDescription&, const Image&,
+                                const SceneDescription&) {
+    return surface::InterfaceMaterial();
 }
-Material buildMaterial(const EmissiveDescription& m, const Image& image, const SceneDescription&) {
-    return EmissiveMaterial{Texture(m.radiance.colour, image), m.bothSides};
+surface::Material buildMaterial(const EmissiveDescription& m, const Image& image,
+                                const SceneDescription&) {
+    return surface::EmissiveMaterial{surface::Texture(m.radiance.colour, image), m.bothSides};
 }
-Material buildMaterial(const MixDescription& m, const Image& image, const SceneDescription& scene) {
-    return MixMaterial{materialIndex(scene, m.first), materialIndex(scene, m.second),
-                       makeTexture(m.weight, image)};
+surface::Material buildMaterial(const MixDescription& m, const Image& image,
+                                const SceneDescription& scene) {
+    return surface::MixMaterial{materialIndex(scene, m.first), materialIndex(scene, m.second),
+                                makeTexture(m.weight, image)};
 }
 
 /// The longer side of the largest image that decides about emission; 0: there is none.
-int finestTexture(const std::vector<Material>& materials, std::uint32_t index) {
-    const auto side = [](const Texture& texture) {
+int finestTexture(const std::vector<surface::Material>& materials, std::uint32_t index) {
+    const auto side = [](const surface::Texture& texture) {
         return texture.image ? std::max(texture.image->width(), texture.image->height()) : 0;
     };
-    if (const auto* emissive = std::get_if<EmissiveMaterial>(&materials[index]))
+    if (const auto* emissive = std::get_if<surface::EmissiveMaterial>(&materials[index]))
         return side(emissive->radiance);
-    if (const auto* mix = std::get_if<MixMaterial>(&materials[index]))
+    if (const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]))
         return std::max({side(mix->weight), finestTexture(materials, mix->first),
                          finestTexture(materials, mix->second)});
     return 0;
 }
 
 /// How often to cut the sides of a triangle, so that the pieces are about two texels wide.
-int cutsOf(const std::array<Vec2f, 3>& uv, int texels) {
+int cutsOf(const std::array<mesh::Vec2f, 3>& uv, int texels) {
     constexpr int most = 64;
     float longest = 0;
     for (size_t i = 0; i < 3; ++i) {
-        const Vec2f a = uv[i], b = uv[(i + 1) % 3];
+        const mesh::Vec2f a = uv[i], b = uv[(i + 1) % 3];
         longest = std::max({longest, std::abs(a.u - b.u), std::abs(a.v - b.v)});
     }
     const double pieces = std::ceil(double{longest} * texels / 2);
@@ -63,8 +69,8 @@ int cutsOf(const std::array<Vec2f, 3>& uv, int texels) {
 }
 
 /// Mean over a triangle, from the centres of the equal pieces that `cuts` leave of it.
-Emission meanOver(const std::vector<Material>& materials, std::uint32_t index,
-                  const std::array<Vec2f, 3>& uv, int cuts) {
+Emission meanOver(const std::vector<surface::Material>& materials, std::uint32_t index,
+                  const std::array<mesh::Vec2f, 3>& uv, int cuts) {
     Vec3d sum;
     Emission mean;
     const auto add = [&](double b1, double b2) {
@@ -90,24 +96,24 @@ std::uint32_t materialIndex(const SceneDescription& description, std::string_vie
         findNamed(description.materials, name).value_or(description.materials.size()));
 }
 
-std::vector<Material> buildMaterials(const SceneDescription& description,
-                                     const LoadedScene& loaded) {
-    std::vector<Material> materials;
+std::vector<surface::Material> buildMaterials(const SceneDescription& description,
+                                              const LoadedScene& loaded) {
+    std::vector<surface::Material> materials;
     for (size_t i = 0; i < description.materials.size(); ++i)
         materials.push_back(std::visit(
             [&](const auto& m) { return buildMaterial(m, loaded.textures[i], description); },
             description.materials[i].material));
-    materials.emplace_back(DiffuseMaterial());
+    materials.emplace_back(surface::DiffuseMaterial());
     return materials;
 }
 
-Emission emissionAt(const std::vector<Material>& materials, std::uint32_t index, double u, double v,
-                    bool front) {
-    if (const auto* emissive = std::get_if<EmissiveMaterial>(&materials[index])) {
+Emission emissionAt(const std::vector<surface::Material>& materials, std::uint32_t index, double u,
+                    double v, bool front) {
+    if (const auto* emissive = std::get_if<surface::EmissiveMaterial>(&materials[index])) {
         const bool dark = !front && !emissive->bothSides;
         return {dark ? Rgb(0.0f) : emissive->radiance.at(u, v), emissive->bothSides};
     }
-    const auto* mix = std::get_if<MixMaterial>(&materials[index]);
+    const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]);
     if (!mix) return {};
     const float weight = mix->weight.at(u, v).mean();
     const Emission first = emissionAt(materials, mix->first, u, v, front),
@@ -116,18 +122,18 @@ Emission emissionAt(const std::vector<Material>& materials, std::uint32_t index,
             first.bothSides || second.bothSides};
 }
 
-bool emissionVaries(const std::vector<Material>& materials, std::uint32_t index) {
-    return std::holds_alternative<MixMaterial>(materials[index]) ||
+bool emissionVaries(const std::vector<surface::Material>& materials, std::uint32_t index) {
+    return std::holds_alternative<surface::MixMaterial>(materials[index]) ||
            finestTexture(materials, index) > 0;
 }
 
-std::vector<Emission> meanEmission(const std::vector<Material>& materials, std::uint32_t material,
-                                   const SurfaceMesh& mesh) {
+std::vector<Emission> meanEmission(const std::vector<surface::Material>& materials,
+                                   std::uint32_t material, const mesh::SurfaceMesh& mesh) {
     const int texels = mesh.uvs.empty() ? 0 : finestTexture(materials, material);
     std::vector<Emission> emission;
     bool dark = true;
     for (size_t i = 0; i < mesh.mesh.triangles.size(); ++i) {
-        const auto uv = mesh.uvs.empty() ? std::array<Vec2f, 3>{} : mesh.uvs[i];
+        const auto uv = mesh.uvs.empty() ? std::array<mesh::Vec2f, 3>{} : mesh.uvs[i];
         emission.push_back(meanOver(materials, material, uv, cutsOf(uv, texels)));
         dark &= !(emission.back().radiance.maximum() > 0);
     }
@@ -135,4 +141,4 @@ std::vector<Emission> meanEmission(const std::vector<Material>& materials, std::
     return emission;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

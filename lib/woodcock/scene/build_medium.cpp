@@ -5,10 +5,10 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
-using Part = MediumPart::Description;
+using Part = medium::MediumPart::Description;
 
 Part fieldPart(const VolumeDescription& volume, const LoadedField& loaded) {
     Part part;
@@ -56,10 +56,11 @@ std::vector<Part> parts(const VolumeDescription& volume, const HomogeneousBox& c
 }
 
 /// Parts that emit nothing are left out.
-std::vector<EmissionPart> emission(const VolumeDescription& volume, const LoadedVolume& loaded) {
-    std::vector<EmissionPart> all;
+std::vector<medium::EmissionPart> emission(const VolumeDescription& volume,
+                                           const LoadedVolume& loaded) {
+    std::vector<medium::EmissionPart> all;
     const auto add = [&](const LoadedField& field, Rgb scale) {
-        EmissionPart::Description part;
+        medium::EmissionPart::Description part;
         part.worldFromIndex = volume.worldFromObject;
         if (field) {
             part.field = field.field;
@@ -86,9 +87,9 @@ std::vector<Part> activeParts(const VolumeDescription& volume, const LoadedVolum
 
 }  // namespace
 
-Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
-                   std::string_view inside) {
-    Medium medium;
+medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
+                           std::string_view inside) {
+    medium::Medium medium;
     for (size_t i = 0; i < description.volumes.size(); ++i) {
         const VolumeDescription& volume = description.volumes[i];
         if (volume.inside != inside) continue;
@@ -97,7 +98,7 @@ Medium buildMedium(const SceneDescription& description, const LoadedScene& loade
             part.majorantScale = description.render.majorantScale;
             medium.parts.emplace_back(std::move(part));
         }
-        for (EmissionPart& part : emission(volume, loaded.volumes[i]))
+        for (medium::EmissionPart& part : emission(volume, loaded.volumes[i]))
             medium.emission.push_back(std::move(part));
     }
     return medium;
@@ -113,4 +114,4 @@ std::vector<size_t> volumesOfParts(const SceneDescription& description, const Lo
     return volumes;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -10,22 +10,22 @@
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/surface_bounds.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 constexpr std::size_t mostEmitters = std::size_t{1} << 26;
 
-Shape shapeOf(const SurfaceDescription& surface, const LoadedSurface& loaded) {
+surface::Shape shapeOf(const SurfaceDescription& surface, const LoadedSurface& loaded) {
     if (loaded.mesh) return loaded.mesh;
-    if (std::holds_alternative<SphereShape>(surface.shape)) return UnitSphere();
-    if (std::holds_alternative<DiskShape>(surface.shape)) return UnitDisk();
-    return InfinitePlane();
+    if (std::holds_alternative<SphereShape>(surface.shape)) return surface::UnitSphere();
+    if (std::holds_alternative<DiskShape>(surface.shape)) return surface::UnitDisk();
+    return surface::InfinitePlane();
 }
 
 /// Of one emissive mesh, from its first emitter on.
 struct EmissiveInstance {
     std::uint32_t firstEmitter;
-    std::shared_ptr<const SurfaceMesh> mesh;
+    std::shared_ptr<const mesh::SurfaceMesh> mesh;
     std::uint32_t material;
     bool mirrored;
 };
@@ -39,9 +39,9 @@ public:
 
     BuiltSurfaces build() {
         for (size_t i = 0; i < description_.surfaces.size(); ++i) add(i);
-        built_.set = std::make_shared<SurfaceSet>(
-            SurfaceSet{Geometry(std::move(shapes_), std::move(instances_)), std::move(objects_),
-                       std::move(materials_), std::move(firstEmitter_)});
+        built_.set = std::make_shared<surface::SurfaceSet>(surface::SurfaceSet{
+            surface::Geometry(std::move(shapes_), std::move(instances_)), std::move(objects_),
+            std::move(materials_), std::move(firstEmitter_)});
         if (emissionVaries_) built_.radianceAt = radianceAt();
         return std::move(built_);
     }
@@ -51,7 +51,7 @@ private:
         const SurfaceDescription& surface = description_.surfaces[index];
         const LoadedSurface& loaded = loaded_.surfaces[index];
         const SurfaceNature nature = natureOf(description_, index);
-        SurfaceObject object;
+        surface::SurfaceObject object;
         object.name = surface.name.empty() ? fmt::format("surface[{}]", index) : surface.name;
         object.material = materialIndex(description_, surface.material);
         object.holdsMedium = nature.encloses;
@@ -77,14 +77,14 @@ private:
                 surface.worldFromObject * instance * loaded.objectFromMesh;
             instances_.push_back({shape, object, worldFromShape});
             firstEmitter_.push_back(
-                emission.empty() ? SurfaceObject::dark
+                emission.empty() ? surface::SurfaceObject::dark
                                  : addEmitters(loaded.mesh, emission, worldFromShape, material));
         }
     }
 
     /// Shapes that are the same are one.
-    std::uint32_t addShape(const Shape& shape) {
-        const auto* mesh = std::get_if<std::shared_ptr<const SurfaceMesh>>(&shape);
+    std::uint32_t addShape(const surface::Shape& shape) {
+        const auto* mesh = std::get_if<std::shared_ptr<const mesh::SurfaceMesh>>(&shape);
         const auto next = static_cast<std::uint32_t>(shapes_.size());
         const auto [known, isNew] =
             known_.try_emplace({shape.index(), mesh ? mesh->get() : nullptr}, next);
@@ -92,7 +92,7 @@ private:
         return known->second;
     }
 
-    std::uint32_t addEmitters(const std::shared_ptr<const SurfaceMesh>& mesh,
+    std::uint32_t addEmitters(const std::shared_ptr<const mesh::SurfaceMesh>& mesh,
                               const std::vector<Emission>& emission, const Affine3d& worldFromMesh,
                               std::uint32_t material) {
         const size_t first = built_.emitters.size();
@@ -118,7 +118,7 @@ private:
         return static_cast<std::uint32_t>(first);
     }
 
-    MeshLight::RadianceAt radianceAt() {
+    light::MeshLight::RadianceAt radianceAt() {
         return [set = built_.set, instances = std::move(emissive_)](
                    std::uint32_t emitter, double b1, double b2, bool front) {
             const auto after = std::upper_bound(
@@ -128,7 +128,7 @@ private:
             if (instance.mirrored) std::swap(b1, b2);
             const auto& uvs = instance.mesh->uvs;
             const auto uv =
-                uvs.empty() ? std::array<Vec2f, 3>{} : uvs[emitter - instance.firstEmitter];
+                uvs.empty() ? std::array<mesh::Vec2f, 3>{} : uvs[emitter - instance.firstEmitter];
             const double b0 = 1 - b1 - b2;
             return emissionAt(set->materials, instance.material,
                               b0 * uv[0].u + b1 * uv[1].u + b2 * uv[2].u,
@@ -140,7 +140,7 @@ private:
     /// What SurfaceObject::medium says of it.
     std::uint32_t addInterior(size_t index) {
         const SurfaceDescription& surface = description_.surfaces[index];
-        Medium medium;
+        medium::Medium medium;
         if (!surface.name.empty()) medium = buildMedium(description_, loaded_, surface.name);
         if (surface.interior) fill(medium, *surface.interior, index);
         if (!medium.parts.empty() || !medium.emission.empty()) {
@@ -155,10 +155,10 @@ private:
     }
 
     /// Evenly.
-    void fill(Medium& medium, const InteriorDescription& interior, size_t index) const {
+    void fill(medium::Medium& medium, const InteriorDescription& interior, size_t index) const {
         const Box3d space = spaceAround(description_, loaded_, index);
         if ((interior.sigmaA + interior.sigmaS).maximum() > 0) {
-            MediumPart::Description part;
+            medium::MediumPart::Description part;
             part.box = space;
             part.absorption = interior.sigmaA;
             part.scattering = interior.sigmaS;
@@ -166,7 +166,7 @@ private:
             medium.parts.emplace_back(std::move(part));
         }
         if (interior.emission.maximum() > 0) {
-            EmissionPart::Description part;
+            medium::EmissionPart::Description part;
             part.box = space;
             part.scale = interior.emission;
             medium.emission.emplace_back(std::move(part));
@@ -175,11 +175,11 @@ private:
 
     const SceneDescription& description_;
     const LoadedScene& loaded_;
-    std::vector<Material> materials_;
-    std::vector<Shape> shapes_;
-    std::map<std::pair<std::size_t, const SurfaceMesh*>, std::uint32_t> known_;
-    std::vector<ShapeInstance> instances_;
-    std::vector<SurfaceObject> objects_;
+    std::vector<surface::Material> materials_;
+    std::vector<surface::Shape> shapes_;
+    std::map<std::pair<std::size_t, const mesh::SurfaceMesh*>, std::uint32_t> known_;
+    std::vector<surface::ShapeInstance> instances_;
+    std::vector<surface::SurfaceObject> objects_;
     std::vector<std::uint32_t> firstEmitter_;
     std::vector<EmissiveInstance> emissive_;
     bool emissionVaries_ = false;
@@ -194,4 +194,4 @@ BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedSce
     return Builder(description, loaded).build();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

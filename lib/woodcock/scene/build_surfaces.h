@@ -9,13 +9,13 @@
 #include "woodcock/scene/load.h"
 #include "woodcock/surface/surface_set.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 struct BuiltSurfaces {
-    std::shared_ptr<const SurfaceSet> set;  ///< null: none
-    std::vector<Medium> interiorMedia;      ///< as of Scene
-    std::vector<MeshLight::Triangle> emitters;
-    MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
+    std::shared_ptr<const surface::SurfaceSet> set;  ///< null: none
+    std::vector<medium::Medium> interiorMedia;       ///< as of Scene
+    std::vector<light::MeshLight::Triangle> emitters;
+    light::MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
 };
 
 /// The surfaces of a scene, what they hold, and the triangles that emit light: those of all
@@ -23,4 +23,4 @@ struct BuiltSurfaces {
 /// transforms that flatten a surface, and where there are more emitters than can be counted.
 BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

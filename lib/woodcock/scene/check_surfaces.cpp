@@ -10,7 +10,7 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/scene/keys/sections.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// The materials that a surface is made of: none for the default, one, or the two of a mixture.
@@ -197,10 +197,8 @@ SurfaceNature natureOf(const SceneDescription& scene, size_t index) {
     return nature;
 }
 
-std::string_view typeName(const MaterialDescription& material) {
-    return tagOf(material.material);
-}
+std::string_view typeName(const MaterialDescription& material) { return tagOf(material.material); }
 
 void checkSurfaces(const SceneDescription& scene) { Check(scene).all(); }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

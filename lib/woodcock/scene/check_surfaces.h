@@ -3,7 +3,7 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// What a surface is by its material, and by what it is to hold.
 struct SurfaceNature {
@@ -34,4 +34,4 @@ std::optional<size_t> findNamed(const std::vector<Named>& all, std::string_view 
 /// place, for the first mistake.
 void checkSurfaces(const SceneDescription& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

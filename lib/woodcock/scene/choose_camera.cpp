@@ -10,7 +10,7 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/rounding.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 constexpr double margin = 0.08;  // of the picture, on every side that is tight
@@ -116,7 +116,7 @@ LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& point
     if (given.eye) return lookAtFrom(scene, roundTo(bounds.centre(), grain), above);
     if (given.up) up = std::abs(above.z) > std::abs(above.y) ? UpAxis::Z : UpAxis::Y;
     const Vec3d centre = given.target.value_or(bounds.centre());
-    const Affine3d camera = lookAtTransform(withUp({0.55, 0.35, 1}, up), {0, 0, 0}, above);
+    const Affine3d camera = camera::lookAtTransform(withUp({0.55, 0.35, 1}, up), {0, 0, 0}, above);
     std::vector<Vec3d> inCamera;
     Extent x, y, z;
     for (const Vec3d& p : points) {
@@ -203,4 +203,4 @@ void turnCamera(CameraDescription& camera, const std::vector<Vec3d>& points) {
     pose.translation = centre + turned(pose.translation - centre, axis, degrees);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -8,7 +8,7 @@
 #include "woodcock/base/vec.h"
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // What completeScene() does for the camera. `points` are those of sceneOutline().
 
@@ -24,4 +24,4 @@ std::optional<std::string> chooseCamera(SceneDescription& scene, std::vector<Vec
 /// matrix places, around the points' middle.
 void turnCamera(CameraDescription& camera, const std::vector<Vec3d>& points);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 
 #include "woodcock/scene/build.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
     CyclesMedium medium{.sigmaA = sigmaA, .sigmaS = sigmaS};
@@ -51,4 +51,4 @@ Affine3d cyclesImageFromWorld(const EnvironmentDescription& environment) {
     return cyclesFromLight * worldFromLight(environment).inverse();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -17,7 +17,7 @@
 #include "woodcock/scene/rounding.h"
 #include "woodcock/scene/write.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 constexpr double typicalDepth = 10;
@@ -25,7 +25,7 @@ constexpr double typicalDepth = 10;
 /// Median of the line integrals of the field (world units, mean of channels) over a lattice of rays
 /// along its three index axes, of those that meet more than wisps. By sums at unit steps or
 /// coarser: a choice needs no more. Zero for an empty field.
-double typicalIntegral(const Field& field, const Affine3d& worldFromIndex) {
+double typicalIntegral(const grid::Field& field, const Affine3d& worldFromIndex) {
     const Box3d box = field.extent();
     if (box.empty()) return 0;
     constexpr int raysPerSide = 24, mostSteps = 512;
@@ -99,7 +99,7 @@ std::string glowIntensity(const VolumeDescription& volume, const LoadedVolume& l
     if (!loaded.density) return "";
     const Affine3d world = volume.worldFromObject * loaded.density.objectFromIndex;
     const double size = length(world.box(loaded.density.field->support()).size());
-    const double intensity = 200 / (size * double{blackbodyRadiance(hottest).maximum()});
+    const double intensity = 200 / (size * double{medium::blackbodyRadiance(hottest).maximum()});
     if (!(intensity > 0) || !std::isfinite(intensity) || intensity > 1e14) return "";
     return fmt::format(", intensity = {}", tomlNumber(roundTo(intensity, magnitude(intensity))));
 }
@@ -209,4 +209,4 @@ std::vector<std::string> completeScene(SceneDescription& description, const Load
     return notes;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

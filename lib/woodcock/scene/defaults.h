@@ -8,7 +8,7 @@
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// The scene file that stands for VDB files alone: a [[volume]] for each, with paths as given
 /// (relative to the working directory). What it leaves open, completeScene() chooses.
@@ -23,4 +23,4 @@ std::string defaultSceneText(const std::vector<std::filesystem::path>& vdbFiles)
 /// completed description fixes all. Throws Error{Input} on an eye that cannot look at the volumes.
 std::vector<std::string> completeScene(SceneDescription& description, const LoadedScene& loaded);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

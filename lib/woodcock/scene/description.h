@@ -17,7 +17,7 @@
 #include "woodcock/render/approximations.h"
 #include "woodcock/scene/places.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// A scene as its file says it: plain values, checked for type and range, nothing loaded yet.
 /// Lengths are world units, angles degrees, colours scene-linear.
@@ -89,7 +89,7 @@ struct VolumeDescription {
     float g = 0;               ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     Affine3d worldFromObject;  ///< applied after the grid's own transform
     std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all
-    Storage storage = Storage::Auto;
+    grid::Storage storage = grid::Storage::Auto;
     /// Absent: Clip, and Endless inside of a surface.
     std::optional<Background> background = {};
     bool repair = false;  ///< NaN, infinite and negative voxels become zero instead of an error
@@ -219,7 +219,7 @@ struct LatheShape {
 
 /// See facetedMesh().
 struct FacetShape {
-    std::vector<FacetRing> rings;
+    std::vector<mesh::FacetRing> rings;
     bool operator==(const FacetShape&) const = default;
 };
 
@@ -286,9 +286,9 @@ struct RenderDescription {
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
     std::optional<int> maxBounces;      ///< off surfaces; absent: unlimited
-    Approximations approximations;
-    Storage storage = Storage::Auto;    ///< of volumes that say nothing
-    Lookup lookup = Lookup::Trilinear;  ///< Nearest is biased
+    render::Approximations approximations;
+    grid::Storage storage = grid::Storage::Auto;    ///< of volumes that say nothing
+    grid::Lookup lookup = grid::Lookup::Trilinear;  ///< Nearest is biased
     /// Biased: grids are coarsened by powers of two as long as their voxels, where they are next to
     /// the camera, stay below so many pixels; 0: never.
     double levelOfDetail = 0;
@@ -327,4 +327,4 @@ struct SceneDescription {
     bool operator==(const SceneDescription&) const = default;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -12,7 +12,7 @@
 #include "woodcock/grid/input_file.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 constexpr std::string_view expected =
@@ -95,7 +95,7 @@ private:
 }  // namespace
 
 std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file) {
-    const std::string text = readInput(file);
+    const std::string text = grid::readInput(file);
     std::vector<Affine3d> instances;
     size_t number = 0;
     for (std::string_view rest = text; !rest.empty();) {
@@ -109,4 +109,4 @@ std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file) {
     return instances;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 
 #include "woodcock/base/affine.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// The places where a surface stands, from a text file with a line for each: `x y z`; `x y z
 /// scale`; `x y z scale rx ry rz` (degrees, about x, y and z in this order, after scaling); or the
@@ -14,4 +14,4 @@ namespace woodcock {
 /// Throws Error{Input} that names the file and the line.
 std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -10,12 +10,12 @@
 
 #include "woodcock/grid/coarsen.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 constexpr int mostLevels = 30;  // more than halve any index away
 
-using FieldPointer = std::shared_ptr<const Field>;
+using FieldPointer = std::shared_ptr<const grid::Field>;
 
 /// Fields at lower resolutions, each made once.
 class Pyramid {
@@ -27,7 +27,7 @@ public:
             const FieldPointer finer = level(field, weights, levels - 1);
             const FieldPointer finerWeights =
                 weights ? level(weights, nullptr, levels - 1) : nullptr;
-            coarse = std::make_shared<Field>(coarsened(*finer, finerWeights.get()));
+            coarse = std::make_shared<grid::Field>(grid::coarsened(*finer, finerWeights.get()));
         }
         return coarse;
     }
@@ -44,15 +44,15 @@ double voxelWidth(const Affine3d& worldFromIndex) {
 
 }  // namespace
 
-double pixelWidth(const Camera& camera, int height, const Box3d& box) {
-    if (camera.kind == Camera::Kind::Orthographic) return camera.height / height;
+double pixelWidth(const camera::Camera& camera, int height, const Box3d& box) {
+    if (camera.kind == camera::Camera::Kind::Orthographic) return camera.height / height;
     const Vec3d eye = camera.worldFromCamera.translation;
     const double distance = length(max(Vec3d{}, max(box.lower - eye, eye - box.upper)));
     return distance * 2 * std::tan(camera.fovY * pi / 360) / height;
 }
 
-std::vector<std::string> coarsenForCamera(const SceneDescription& description, const Camera& camera,
-                                          LoadedScene& loaded) {
+std::vector<std::string> coarsenForCamera(const SceneDescription& description,
+                                          const camera::Camera& camera, LoadedScene& loaded) {
     const RenderDescription& render = description.render;
     std::vector<std::string> notes;
     if (!(render.levelOfDetail > 0)) return notes;
@@ -69,7 +69,7 @@ std::vector<std::string> coarsenForCamera(const SceneDescription& description, c
             double pixels = voxelWidth(worldFromIndex) / pixel;
             int levels = 0;
             for (; 2 * pixels <= render.levelOfDetail && levels < mostLevels; ++levels)
-                pixels *= 2, grid.objectFromIndex = grid.objectFromIndex * fineFromCoarse();
+                pixels *= 2, grid.objectFromIndex = grid.objectFromIndex * grid::fineFromCoarse();
             if (levels == 0) return;
             grid.field = pyramid.level(grid.field, weights, levels);
             std::string note = fmt::format(
@@ -88,4 +88,4 @@ std::vector<std::string> coarsenForCamera(const SceneDescription& description, c
     return notes;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/write.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 bool changesALight(const std::string& assignment) {
     return overriddenKey(assignment).starts_with("light[");
@@ -49,4 +49,4 @@ void keepOverriddenSuns(toml::table& scene) {
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -9,7 +9,7 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Whether an override ("light[0].azimuth=200") is one of a light in a list of lights.
 bool changesALight(const std::string& assignment);
@@ -26,4 +26,4 @@ std::vector<LightDescription> foreseenLights(const SceneDescription& scene);
 /// Suns with a direction beside elevation and azimuth, of which one side was overridden, keep that.
 void keepOverriddenSuns(toml::table& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

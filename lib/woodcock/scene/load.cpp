@@ -13,51 +13,53 @@
 #include "woodcock/scene/load_albedo.h"
 #include "woodcock/scene/load_textures.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// What a grid is read for.
 enum class Purpose { Density, Coefficient, Albedo };
 
 /// Of the volume's media: an albedo is no medium, and reaches everywhere.
-GridReach reachOf(const VolumeDescription& volume) {
+grid::GridReach reachOf(const VolumeDescription& volume) {
     const Background usual = volume.inside.empty() ? Background::Clip : Background::Endless;
-    return volume.background.value_or(usual) == Background::Clip ? GridReach::ActiveVoxels
-                                                                 : GridReach::Everywhere;
+    return volume.background.value_or(usual) == Background::Clip ? grid::GridReach::ActiveVoxels
+                                                                 : grid::GridReach::Everywhere;
 }
 
 /// Reads files and grids, each once.
 class Loader {
 public:
     /// `usual`: the storage of volumes that say nothing.
-    Loader(Storage usual, Lookup lookup) : usual_(usual), lookup_(lookup) {}
+    Loader(grid::Storage usual, grid::Lookup lookup) : usual_(usual), lookup_(lookup) {}
 
-    const VdbFile& file(const std::filesystem::path& path) {
+    const grid::VdbFile& file(const std::filesystem::path& path) {
         if (const auto found = files_.find(path); found != files_.end()) return found->second;
-        const VdbFile& listed = files_[path] = listGrids(path);
+        const grid::VdbFile& listed = files_[path] = grid::listGrids(path);
         note(listed.warning);
         return listed;
     }
 
     LoadedField field(const VolumeDescription& volume, const std::string& name, Purpose purpose,
-                      GridReach reach) {
-        const VdbFile& vdb = file(volume.file);
+                      grid::GridReach reach) {
+        const grid::VdbFile& vdb = file(volume.file);
         if (vdb.grids.empty()) return nothingOf(vdb, name);
-        FoundGrid found = name.empty() ? findGrid(vdb, GridRole::Density) : findGrid(vdb, name);
+        grid::FoundGrid found =
+            name.empty() ? grid::findGrid(vdb, grid::GridRole::Density) : grid::findGrid(vdb, name);
         const bool albedo = purpose == Purpose::Albedo;
-        if (albedo) reach = GridReach::Everywhere;
+        if (albedo) reach = grid::GridReach::Everywhere;
         const auto key = std::tuple(volume.file, found.grid.uniqueName, storageOf(volume),
                                     volume.repair, purpose, reach);
         if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
         note(std::move(found.note));
         // A velocity that happens to be nowhere negative is no density.
         const bool velocity =
-            purpose == Purpose::Density && isNamedFor(found.grid, GridRole::Velocity);
-        const LoadOptions options{.use = velocity ? GridUse::Scalar : GridUse::Colour,
-                                  .reach = reach,
-                                  .storage = storageOf(volume),
-                                  .repair = volume.repair};
-        LoadedGrid grid = loadGrid(vdb, found.grid, options);
+            purpose == Purpose::Density && grid::isNamedFor(found.grid, grid::GridRole::Velocity);
+        const grid::LoadOptions options{
+            .use = velocity ? grid::GridUse::Scalar : grid::GridUse::Colour,
+            .reach = reach,
+            .storage = storageOf(volume),
+            .repair = volume.repair};
+        grid::LoadedGrid grid = grid::loadGrid(vdb, found.grid, options);
         for (std::string& text : grid.notes) note(std::move(text));
         if (purpose == Purpose::Density && found.grid.channels == 3)
             note(
@@ -67,7 +69,7 @@ public:
         if (!albedo && volume.inside.empty()) noteBackground(vdb, found.grid, grid.field);
         if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
         grid.field.setLookup(lookup_);
-        const LoadedField loaded{std::make_shared<Field>(std::move(grid.field)),
+        const LoadedField loaded{std::make_shared<grid::Field>(std::move(grid.field)),
                                  grid.worldFromIndex, found.grid.uniqueName};
         return fields_[key] = loaded;
     }
@@ -75,20 +77,21 @@ public:
     /// What glows of a temperature grid. Each volume has its own scale, so nothing is shared.
     LoadedField blackbody(const VolumeDescription& volume, float& ambient) {
         const BlackbodyDescription& b = *volume.blackbody;
-        const VdbFile& vdb = file(volume.file);
+        const grid::VdbFile& vdb = file(volume.file);
         if (vdb.grids.empty()) return nothingOf(vdb, b.temperature);
-        FoundGrid found = b.temperature.empty() ? findGrid(vdb, GridRole::Temperature)
-                                                : findGrid(vdb, b.temperature);
+        grid::FoundGrid found = b.temperature.empty()
+                                    ? grid::findGrid(vdb, grid::GridRole::Temperature)
+                                    : grid::findGrid(vdb, b.temperature);
         note(std::move(found.note));
-        LoadOptions options{.reach = GridReach::ActiveVoxels,
-                            .storage = storageOf(volume),
-                            .nonNegative = false,
-                            .repair = volume.repair};
-        options.convert = [&](FieldSource source) {
+        grid::LoadOptions options{.reach = grid::GridReach::ActiveVoxels,
+                                  .storage = storageOf(volume),
+                                  .nonNegative = false,
+                                  .repair = volume.repair};
+        options.convert = [&](grid::FieldSource source) {
             ambient = source.background[0];
-            return blackbodySource(std::move(source), b.scale, b.offset);
+            return medium::blackbodySource(std::move(source), b.scale, b.offset);
         };
-        LoadedGrid grid = loadGrid(vdb, found.grid, options);
+        grid::LoadedGrid grid = grid::loadGrid(vdb, found.grid, options);
         for (std::string& text : grid.notes) note(std::move(text));
         const double brightest = double{grid.field.range().max} * b.intensity * b.colour.maximum();
         if (!(brightest < std::numeric_limits<float>::max()))
@@ -98,7 +101,7 @@ public:
                 found.grid.uniqueName, vdb.path.string(),
                 b.scale * double{grid.statistics.voxels.max[0]} + b.offset);
         grid.field.setLookup(lookup_);
-        return {std::make_shared<Field>(std::move(grid.field)), grid.worldFromIndex,
+        return {std::make_shared<grid::Field>(std::move(grid.field)), grid.worldFromIndex,
                 found.grid.uniqueName};
     }
 
@@ -106,12 +109,12 @@ public:
     /// long.
     float largest(const VolumeDescription& volume, const std::string& name) {
         constexpr std::uint64_t long_ = std::uint64_t{64} << 20;
-        const VdbFile& vdb = file(volume.file);
-        const FoundGrid found = findGrid(vdb, name);
+        const grid::VdbFile& vdb = file(volume.file);
+        const grid::FoundGrid found = grid::findGrid(vdb, name);
         if (found.grid.fileBytes > long_) return 0;
         try {
-            const LoadOptions options{.nonNegative = false, .repair = true};
-            return loadGrid(vdb, found.grid, options).statistics.voxels.max[0];
+            const grid::LoadOptions options{.nonNegative = false, .repair = true};
+            return grid::loadGrid(vdb, found.grid, options).statistics.voxels.max[0];
         } catch (const Error&) {
             return 0;  // what is wrong with it is told where it is used
         }
@@ -120,18 +123,19 @@ public:
     std::vector<std::string> takeNotes() { return std::move(notes_); }
 
 private:
-    Storage storageOf(const VolumeDescription& volume) const {
-        return volume.storage == Storage::Auto ? usual_ : volume.storage;
+    grid::Storage storageOf(const VolumeDescription& volume) const {
+        return volume.storage == grid::Storage::Auto ? usual_ : volume.storage;
     }
     /// Of a file without grids, as some programs write frames that hold nothing.
-    LoadedField nothingOf(const VdbFile& vdb, const std::string& name) {
+    LoadedField nothingOf(const grid::VdbFile& vdb, const std::string& name) {
         note(fmt::format("{} holds no grids: there is nothing in it to be drawn",
                          vdb.path.string()));
-        return {std::make_shared<Field>(buildField({}, Storage::Float)),
+        return {std::make_shared<grid::Field>(grid::buildField({}, grid::Storage::Float)),
                 {},
                 name.empty() ? "density" : name};
     }
-    void noteBackground(const VdbFile& vdb, const GridListing& grid, const Field& field) {
+    void noteBackground(const grid::VdbFile& vdb, const grid::GridListing& grid,
+                        const grid::Field& field) {
         if (field.limits())
             note(
                 "background = \"endless\" in a scene's [[volume]] fills all of space with what a "
@@ -147,10 +151,11 @@ private:
         if (!text.empty() && !known) notes_.push_back(std::move(text));
     }
 
-    Storage usual_;
-    Lookup lookup_;
-    std::map<std::filesystem::path, VdbFile> files_;
-    std::map<std::tuple<std::filesystem::path, std::string, Storage, bool, Purpose, GridReach>,
+    grid::Storage usual_;
+    grid::Lookup lookup_;
+    std::map<std::filesystem::path, grid::VdbFile> files_;
+    std::map<std::tuple<std::filesystem::path, std::string, grid::Storage, bool, Purpose,
+                        grid::GridReach>,
              LoadedField>
         fields_;
     std::vector<std::string> notes_;
@@ -158,8 +163,8 @@ private:
 
 /// Blender is the one writer of VDB whose up axis is z; its gas simulations give themselves away by
 /// this key, everything else by its name.
-bool writtenByBlender(const VdbFile& file) {
-    for (const GridListing& grid : file.grids)
+bool writtenByBlender(const grid::VdbFile& file) {
+    for (const grid::GridListing& grid : file.grids)
         for (const auto& [key, value] : grid.metadata)
             if (key == "file_base_resolution" || value.find("Blender") != std::string::npos)
                 return true;
@@ -167,20 +172,20 @@ bool writtenByBlender(const VdbFile& file) {
 }
 
 /// The first grid of velocities, unless it is one of those that are used.
-std::string unusedVelocities(const VdbFile& file, const LoadedVolume& loaded) {
+std::string unusedVelocities(const grid::VdbFile& file, const LoadedVolume& loaded) {
     const auto isUsed = [&](const std::string& name) {
         for (const LoadedField* field : {&loaded.density, &loaded.albedo, &loaded.emission,
                                          &loaded.blackbody, &loaded.sigmaA, &loaded.sigmaS})
             if (field->grid == name) return true;
         return false;
     };
-    for (const GridListing& grid : file.grids)
-        if (meansVelocity(grid) && !isUsed(grid.uniqueName)) return grid.uniqueName;
+    for (const grid::GridListing& grid : file.grids)
+        if (grid::meansVelocity(grid) && !isUsed(grid.uniqueName)) return grid.uniqueName;
     return {};
 }
 
 /// What glows everywhere is infinitely bright.
-void requireDarkBackground(const VdbFile& file, const LoadedField& emission) {
+void requireDarkBackground(const grid::VdbFile& file, const LoadedField& emission) {
     if (emission.field->limits()) return;
     for (int c = 0; c < emission.field->channels(); ++c)
         if (emission.field->background(c) != 0)
@@ -197,17 +202,17 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     const auto placeOf = [&](std::string_view key) {
         return findPlace(scene.places, fmt::format("volume[{}].{}", index, key));
     };
-    const VdbFile& file =
-        inPlace(placeOf("file"), [&]() -> const VdbFile& { return loader.file(volume.file); });
+    const grid::VdbFile& file = inPlace(
+        placeOf("file"), [&]() -> const grid::VdbFile& { return loader.file(volume.file); });
     // The first of these keys that was written is to blame.
     const auto load = [&](const std::string& grid, Purpose purpose,
-                          std::initializer_list<std::string_view> keys, GridReach reach) {
+                          std::initializer_list<std::string_view> keys, grid::GridReach reach) {
         std::string place;
         for (const std::string_view key : keys)
             if (place.empty()) place = placeOf(key);
         return inPlace(place, [&] { return loader.field(volume, grid, purpose, reach); });
     };
-    const GridReach reach = reachOf(volume);
+    const grid::GridReach reach = reachOf(volume);
     if (const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients)) {
         loaded.density = load(c->density, Purpose::Density, {"density", "file"}, reach);
         if (!c->albedoGrid.empty())
@@ -228,17 +233,18 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
         // No surface ends what emits: without being asked, it ends with its active voxels.
         loaded.emission =
             load(emission->grid, density ? Purpose::Density : Purpose::Coefficient, keys,
-                 volume.background == Background::Endless ? reach : GridReach::ActiveVoxels);
+                 volume.background == Background::Endless ? reach : grid::GridReach::ActiveVoxels);
         inPlace(placeOf("emission"), [&] { requireDarkBackground(file, loaded.emission); });
     }
     if (volume.blackbody)
         loaded.blackbody =
             inPlace(placeOf("blackbody"), [&] { return loader.blackbody(volume, loaded.ambient); });
-    const auto nameOf = [&](GridRole role) {
-        return hasRole(file, role) ? findGrid(file, role).grid.uniqueName : std::string();
+    const auto nameOf = [&](grid::GridRole role) {
+        return grid::hasRole(file, role) ? grid::findGrid(file, role).grid.uniqueName
+                                         : std::string();
     };
-    loaded.temperatures = nameOf(GridRole::Temperature);
-    loaded.flames = nameOf(GridRole::Emission);
+    loaded.temperatures = nameOf(grid::GridRole::Temperature);
+    loaded.flames = nameOf(grid::GridRole::Emission);
     if (!loaded.temperatures.empty() && !volume.blackbody && !volume.emission &&
         placeOf("file").empty())
         loaded.hottest = loader.largest(volume, loaded.temperatures);
@@ -247,10 +253,10 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     return loaded;
 }
 
-EnvironmentMap loadMap(const LightDescription& light) {
+light::EnvironmentMap loadMap(const LightDescription& light) {
     const auto* environment = std::get_if<EnvironmentDescription>(&light.light);
     if (!environment || environment->image.empty()) return {};
-    Image image = readImage(environment->image);
+    image::Image image = image::readImage(environment->image);
     return {image.width, image.height, std::move(image.rgb)};
 }
 
@@ -280,4 +286,4 @@ void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded) {
     if (loaded.environmentMaps.size() != scene.lights.size()) loadMaps(scene, loaded);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -12,11 +12,11 @@
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/surface/texture.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// A grid in memory; several volumes may share its field.
 struct LoadedField {
-    std::shared_ptr<const Field> field;
+    std::shared_ptr<const grid::Field> field;
     Affine3d objectFromIndex;  ///< the grid's own transform
     std::string grid;          ///< its name in the file
 
@@ -42,11 +42,12 @@ struct LoadedVolume {
 
 /// All that a scene reads from disk.
 struct LoadedScene {
-    std::vector<LoadedVolume> volumes;            ///< one for each volume of the description
-    std::vector<EnvironmentMap> environmentMaps;  ///< one for each light; empty for most
-    std::vector<LoadedSurface> surfaces;          ///< one for each surface
-    std::vector<std::shared_ptr<const TextureImage>> textures;  ///< one for each material, or null
-    std::vector<std::string> notes;                             ///< what the user should know
+    std::vector<LoadedVolume> volumes;                   ///< one for each volume of the description
+    std::vector<light::EnvironmentMap> environmentMaps;  ///< one for each light; empty for most
+    std::vector<LoadedSurface> surfaces;                 ///< one for each surface
+    std::vector<std::shared_ptr<const surface::TextureImage>>
+        textures;                    ///< one for each material, or null
+    std::vector<std::string> notes;  ///< what the user should know
 };
 
 /// Reads the grids and meshes that the scene uses, each once, and its images. Throws Error{Input}
@@ -56,4 +57,4 @@ LoadedScene loadScene(const SceneDescription& scene);
 /// The images of lights that completeScene() chose as --set asked for. Throws Error{Input}.
 void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

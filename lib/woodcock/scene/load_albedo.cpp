@@ -6,7 +6,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// Sets values above 1 to 1; returns how many voxels (of `channels` values) had one.
@@ -23,16 +23,17 @@ std::uint64_t limit(std::span<float> values, int channels) {
 
 }  // namespace
 
-std::string limitAlbedo(const VdbFile& file, const GridListing& grid, const LoadOptions& options,
-                        Field& field) {
+std::string limitAlbedo(const grid::VdbFile& file, const grid::GridListing& grid,
+                        const grid::LoadOptions& options, grid::Field& field) {
     const float largest = field.range().max;
     if (!(largest > 1)) return {};
 
     // Rare enough to read the voxels once more.
-    FieldSource source = readGridSource(file, grid, {options.repair, options.repair}).field;
+    grid::FieldSource source =
+        grid::readGridSource(file, grid, {options.repair, options.repair}).field;
     std::atomic<std::uint64_t> count = 0;
     const auto channels = static_cast<size_t>(source.channels);
-    for (FieldTile& tile : source.tiles)
+    for (grid::FieldTile& tile : source.tiles)
         if (limit(std::span(tile.value).first(channels), source.channels) > 0)
             count += static_cast<std::uint64_t>(tile.size) * static_cast<std::uint64_t>(tile.size) *
                      static_cast<std::uint64_t>(tile.size);
@@ -41,7 +42,7 @@ std::string limitAlbedo(const VdbFile& file, const GridListing& grid, const Load
         copy(i, values);
         count += limit(values, source.channels);
     };
-    Field limited = buildField(source, field.storage());
+    grid::Field limited = grid::buildField(source, field.storage());
 
     const std::string found =
         fmt::format("albedo grid '{}' in {} holds {} voxel{} above 1 (up to {})", grid.uniqueName,
@@ -55,4 +56,4 @@ std::string limitAlbedo(const VdbFile& file, const GridListing& grid, const Load
     return found + ": set to 1";
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -5,12 +5,12 @@
 
 #include "woodcock/grid/vdb/load_field.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Sees to it that an albedo grid, loaded as `field`, holds nothing above 1: throws Error{Input}
 /// with the count of such voxels, or, where the options say repair, sets them to 1 and returns a
 /// note. Empty where there was nothing to do.
-std::string limitAlbedo(const VdbFile& file, const GridListing& grid, const LoadOptions& options,
-                        Field& field);
+std::string limitAlbedo(const grid::VdbFile& file, const grid::GridListing& grid,
+                        const grid::LoadOptions& options, grid::Field& field);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

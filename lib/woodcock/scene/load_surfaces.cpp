@@ -8,25 +8,25 @@
 #include "woodcock/scene/instance_file.h"
 #include "woodcock/scene/unit_shapes.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
-using Mesh = std::shared_ptr<const SurfaceMesh>;
+using Mesh = std::shared_ptr<const mesh::SurfaceMesh>;
 
 constexpr double defaultSmooth = 60;  // degrees, where a shape brings no normals of its own
 constexpr int emitterRings = 48, emitterSectors = 256;
 
-void smooth(SurfaceMesh& mesh, double angle) {
+void smooth(mesh::SurfaceMesh& mesh, double angle) {
     if (angle > 0)
-        smoothNormals(mesh, angle);
+        mesh::smoothNormals(mesh, angle);
     else
         mesh.normals.clear();
 }
 
-SurfaceMesh readShape(const MeshShape& shape, std::optional<double> angle) {
+mesh::SurfaceMesh readShape(const MeshShape& shape, std::optional<double> angle) {
     const bool levelSet = shape.file.extension() == ".vdb" || shape.file.extension() == ".nvdb";
-    SurfaceMesh mesh =
-        levelSet ? levelSetMesh(shape.file, shape.levelSet, 0) : readSurfaceMesh(shape.file);
+    mesh::SurfaceMesh mesh = levelSet ? mesh::levelSetMesh(shape.file, shape.levelSet, 0)
+                                      : mesh::readSurfaceMesh(shape.file);
     if (angle || levelSet) smooth(mesh, angle.value_or(defaultSmooth));
     return mesh;
 }
@@ -70,35 +70,36 @@ private:
             std::tuple(shape.file, shape.levelSet, surface.smooth.value_or(-1), nature.encloses);
         Mesh& mesh = files_[key];
         if (!mesh) {
-            SurfaceMesh read = readShape(shape, surface.smooth);
+            mesh::SurfaceMesh read = readShape(shape, surface.smooth);
             if (read.droppedTriangles > 0)
                 notes_.push_back(fmt::format("{} holds {} triangle{} of no area: left out",
                                              shape.file.string(), read.droppedTriangles,
                                              read.droppedTriangles == 1 ? "" : "s"));
             if (nature.encloses) close(read, shape.file.string());
-            mesh = std::make_shared<SurfaceMesh>(std::move(read));
+            mesh = std::make_shared<mesh::SurfaceMesh>(std::move(read));
         }
         return {mesh, Affine3d::translate(mesh->mesh.origin), {}};
     }
     LoadedSurface shaped(const LatheShape& shape, const SurfaceDescription& surface,
                          const SurfaceNature& nature) {
         const double angle = surface.smooth.value_or(defaultSmooth);
-        SurfaceMesh mesh = latheMesh(shape.profile, shape.segments, angle);
+        mesh::SurfaceMesh mesh = mesh::latheMesh(shape.profile, shape.segments, angle);
         if (angle == 0) mesh.normals.clear();
         if (nature.encloses) close(mesh, "the lathe");
-        return {std::make_shared<SurfaceMesh>(std::move(mesh)), {}, {}};
+        return {std::make_shared<mesh::SurfaceMesh>(std::move(mesh)), {}, {}};
     }
     LoadedSurface shaped(const FacetShape& shape, const SurfaceDescription&, const SurfaceNature&) {
-        return {std::make_shared<SurfaceMesh>(facetedMesh(shape.rings)), {}, {}};
+        return {std::make_shared<mesh::SurfaceMesh>(mesh::facetedMesh(shape.rings)), {}, {}};
     }
     LoadedSurface shaped(const BoxShape& shape, const SurfaceDescription&, const SurfaceNature&) {
-        if (!box_) box_ = std::make_shared<SurfaceMesh>(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+        if (!box_)
+            box_ = std::make_shared<mesh::SurfaceMesh>(mesh::boxMesh({{0, 0, 0}, {1, 1, 1}}));
         return {box_, Affine3d::translate(shape.box.lower) * Affine3d::scale(shape.box.size()), {}};
     }
     LoadedSurface shaped(const SphereShape& shape, const SurfaceDescription&,
                          const SurfaceNature& nature) {
         if (nature.emits && !sphere_)
-            sphere_ = std::make_shared<SurfaceMesh>(sphereMesh(emitterRings));
+            sphere_ = std::make_shared<mesh::SurfaceMesh>(sphereMesh(emitterRings));
         const Vec3d scale = Vec3d{1, 1, 1} * shape.radius;
         return {nature.emits ? sphere_ : nullptr,
                 Affine3d::translate(shape.centre) * Affine3d::scale(scale),
@@ -106,20 +107,22 @@ private:
     }
     LoadedSurface shaped(const DiskShape& shape, const SurfaceDescription&,
                          const SurfaceNature& nature) {
-        if (nature.emits && !disk_) disk_ = std::make_shared<SurfaceMesh>(diskMesh(emitterSectors));
+        if (nature.emits && !disk_)
+            disk_ = std::make_shared<mesh::SurfaceMesh>(diskMesh(emitterSectors));
         return {nature.emits ? disk_ : nullptr, Affine3d::scale(Vec3d{1, 1, 1} * shape.radius), {}};
     }
     LoadedSurface shaped(const PlaneShape& shape, const SurfaceDescription&, const SurfaceNature&) {
         if (!shape.size) return {};
-        if (!rectangle_) rectangle_ = std::make_shared<SurfaceMesh>(rectangleMesh(1, 1));
+        if (!rectangle_)
+            rectangle_ = std::make_shared<mesh::SurfaceMesh>(mesh::rectangleMesh(1, 1));
         return {rectangle_, Affine3d::scale({(*shape.size)[0], 1, (*shape.size)[1]}), {}};
     }
 
     /// Sees to it that a mesh encloses something.
-    void close(SurfaceMesh& mesh, const std::string& name) {
-        const Closedness found = checkClosed(mesh.mesh);
+    void close(mesh::SurfaceMesh& mesh, const std::string& name) {
+        const mesh::Closedness found = mesh::checkClosed(mesh.mesh);
         if (found.inwards) {
-            flip(mesh);
+            mesh::flip(mesh);
             notes_.push_back(fmt::format(
                 "{} faces inwards: turned over, as its material tells inside from outside", name));
         } else if (!found.closed) {
@@ -160,4 +163,4 @@ std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
     return loaded;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -8,13 +8,14 @@
 #include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// What a surface's description names, or says in numbers.
 struct LoadedSurface {
-    std::shared_ptr<const SurfaceMesh> mesh;  ///< null: a sphere, disk or plane without triangles
-    Affine3d objectFromMesh;                  ///< boxes, say, are all one mesh
-    std::vector<Affine3d> instances;          ///< of the description or its file; never empty
+    std::shared_ptr<const mesh::SurfaceMesh>
+        mesh;                         ///< null: a sphere, disk or plane without triangles
+    Affine3d objectFromMesh;          ///< boxes, say, are all one mesh
+    std::vector<Affine3d> instances;  ///< of the description or its file; never empty
 };
 
 /// Reads meshes, each file once, and the places of instances. Meshes that have to enclose something
@@ -23,4 +24,4 @@ struct LoadedSurface {
 std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
                                         std::vector<std::string>& notes);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

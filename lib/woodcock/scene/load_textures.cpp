@@ -7,7 +7,7 @@
 
 #include "woodcock/image/read_texture.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// What a colour space conversion of white may give.
@@ -18,24 +18,26 @@ class Reader {
 public:
     explicit Reader(const SceneDescription& scene) : scene_(scene) {}
 
-    std::shared_ptr<const TextureImage> read(const std::filesystem::path& file,
-                                             const std::string& colourSpace,
-                                             const std::string& place) {
+    std::shared_ptr<const surface::TextureImage> read(const std::filesystem::path& file,
+                                                      const std::string& colourSpace,
+                                                      const std::string& place) {
         auto& image = known_[{file, colourSpace}];
         if (image) return image;
         if (!config_)
             inPlace(findPlace(scene_.places, "ocio"), [&] { config_.emplace(scene_.ocio); });
         inPlace(place, [&] {
-            Image read = readTexture(file, colourSpace, *config_);
-            image = std::make_shared<TextureImage>(read.width, read.height, std::move(read.rgb));
+            image::Image read = image::readTexture(file, colourSpace, *config_);
+            image = std::make_shared<surface::TextureImage>(read.width, read.height,
+                                                            std::move(read.rgb));
         });
         return image;
     }
 
 private:
     const SceneDescription& scene_;
-    std::optional<ColorConfig> config_;
-    std::map<std::pair<std::filesystem::path, std::string>, std::shared_ptr<const TextureImage>>
+    std::optional<image::ColorConfig> config_;
+    std::map<std::pair<std::filesystem::path, std::string>,
+             std::shared_ptr<const surface::TextureImage>>
         known_;
 };
 
@@ -54,16 +56,17 @@ NamedTexture textureOf(const MixDescription& m) { return {&m.weight, "weight", t
 
 }  // namespace
 
-Texture makeTexture(const TextureDescription& description,
-                    std::shared_ptr<const TextureImage> image) {
-    Texture texture(description.colour, std::move(image));
+surface::Texture makeTexture(const TextureDescription& description,
+                             std::shared_ptr<const surface::TextureImage> image) {
+    surface::Texture texture(description.colour, std::move(image));
     const float largest = texture.maximum().maximum();
     if (texture.image && largest > 1 && largest <= almostOne) texture.colour *= 1 / largest;
     return texture;
 }
 
-std::vector<std::shared_ptr<const TextureImage>> loadTextures(const SceneDescription& scene) {
-    std::vector<std::shared_ptr<const TextureImage>> textures;
+std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
+    const SceneDescription& scene) {
+    std::vector<std::shared_ptr<const surface::TextureImage>> textures;
     Reader reader(scene);
     for (size_t i = 0; i < scene.materials.size(); ++i) {
         const NamedTexture named =
@@ -91,4 +94,4 @@ std::vector<std::shared_ptr<const TextureImage>> loadTextures(const SceneDescrip
     return textures;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/scene/unit_shapes.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 constexpr float wisp = 0.01f;
@@ -23,18 +23,19 @@ Vec3i blockOf(Vec3d p) {
 
 /// The part of the box that lies in the row of blocks along x through (y, z), if any of it is more
 /// than a wisp.
-Box3d occupiedPart(const Field& field, Vec3i first, Vec3i last) {
+Box3d occupiedPart(const grid::Field& field, Vec3i first, Vec3i last) {
     const float least = wisp * field.range().max;
     Box3d part;
     for (Vec3i b = first; b.x <= last.x; ++b.x)
-        if (blockRange(field, b).max > least) {
+        if (grid::blockRange(field, b).max > least) {
             const Vec3d corner = b.as<double>() * 8;
             part.add(Box3d{corner, corner + Vec3d{8, 8, 8}});
         }
     return part;
 }
 
-void addField(const Field& field, const Affine3d& worldFromIndex, std::vector<Vec3d>& points) {
+void addField(const grid::Field& field, const Affine3d& worldFromIndex,
+              std::vector<Vec3d>& points) {
     const Box3d extent = field.extent();
     if (extent.empty()) return;
     const Vec3d size = extent.size() / 8 + Vec3d{1, 1, 1};
@@ -53,7 +54,7 @@ void addField(const Field& field, const Affine3d& worldFromIndex, std::vector<Ve
 /// In the space of its mesh; none for an infinite plane.
 std::vector<Vec3d> pointsOf(const SurfaceDescription& surface, const LoadedSurface& loaded) {
     std::vector<Vec3d> points;
-    const auto add = [&](const SurfaceMesh& mesh) {
+    const auto add = [&](const mesh::SurfaceMesh& mesh) {
         for (const Vec3f& p : mesh.mesh.points) points.push_back(p.as<double>());
     };
     if (loaded.mesh)
@@ -100,4 +101,4 @@ std::vector<Vec3d> sceneOutline(const SceneDescription& description, const Loade
     return points;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

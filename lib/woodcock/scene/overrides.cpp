@@ -14,7 +14,7 @@
 #include "woodcock/base/toml_text.h"
 #include "woodcock/scene/keys/sections.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// A key of a table, or an index into an array.
@@ -168,4 +168,4 @@ std::string overriddenKey(const std::string& text) {
     return path;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

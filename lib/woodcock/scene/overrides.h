@@ -4,7 +4,7 @@
 #include <toml++/toml.h>
 #include <string>
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Sets one value of a parsed scene file: "volume[0].scale=2", "render.spp=16". The value is TOML;
 /// what is not (bare words, paths) is taken as a string. Missing tables of the path are made,
@@ -16,4 +16,4 @@ void applyOverride(toml::table& scene, const std::string& text);
 /// What an override sets, without spaces: "volume[0].scale" of "volume[0].scale = 2".
 std::string overriddenKey(const std::string& text);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -7,7 +7,7 @@
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/quality.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// The tables of a list such as [[volume]]; none where the key is missing.
@@ -74,7 +74,7 @@ void checkLightChanges(const SceneDescription& scene) {
 }  // namespace
 
 std::vector<LightDescription> readLights(const TomlTable& scene,
-                                          const std::filesystem::path& base) {
+                                         const std::filesystem::path& base) {
     std::vector<LightDescription> lights;
     for (const TomlTable& light : tablesOf(scene, "light"))
         lights.push_back(readLight(light, base));
@@ -111,4 +111,4 @@ SceneDescription parseScene(const std::filesystem::path& file,
                           overrides);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

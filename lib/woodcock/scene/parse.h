@@ -8,7 +8,7 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Reads and checks a scene file; nothing that it names is opened. Relative paths in it are
 /// relative to its directory. Each of `overrides` ("volume[0].scale=2", "render.spp=16") replaces
@@ -23,4 +23,4 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
                                 const std::filesystem::path& baseDirectory,
                                 const std::vector<std::string>& overrides = {});
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

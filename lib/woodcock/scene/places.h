@@ -9,7 +9,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Where the values of a scene were written, for messages: "volume[0].scale" -> "scene.toml:4:9",
 /// or the "--set ..." or option that gave it. Values that nobody wrote are not in it.
@@ -32,4 +32,4 @@ decltype(auto) inPlace(const std::string& place, Action action) {
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/scene/keys/sections.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 /// Keys of which one at most has a meaning: where one is written, a quality does not bring the
@@ -56,8 +56,8 @@ std::vector<std::string> methodKeys() {
     return renderKeys([](const KeyInfo& key) { return key.method; });
 }
 
-bool isReducedPrecision(Storage storage) {
-    return storage != Storage::Auto && storage != Storage::Float;
+bool isReducedPrecision(grid::Storage storage) {
+    return storage != grid::Storage::Auto && storage != grid::Storage::Float;
 }
 
 void eraseChoices(toml::table& scene) {
@@ -96,4 +96,4 @@ std::vector<std::string> biasedChoices(const SceneDescription& scene) {
     return keys;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -8,7 +8,7 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // Qualities are names for sets of choices: values of keys of [render].
 
@@ -33,7 +33,7 @@ std::vector<std::string> methodKeys();
 void eraseChoices(toml::table& scene);
 
 /// Whether voxels are rounded where a float would not be.
-bool isReducedPrecision(Storage storage);
+bool isReducedPrecision(grid::Storage storage);
 
 /// Gives [render] the choices of the quality that it names, but for those that are written beside
 /// it and what contradicts them. Throws Error{Input} on unknown names.
@@ -43,4 +43,4 @@ void expandQuality(toml::table& scene);
 /// "render.clamp", "volume[0].storage".
 std::vector<std::string> biasedChoices(const SceneDescription& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

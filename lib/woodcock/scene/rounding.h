@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // Numbers that people can read, where any near the exact one will do. Of scene/ only.
 
@@ -19,4 +19,4 @@ inline Vec3d roundTo(Vec3d v, int exponent) {
 }
 inline int magnitude(double v) { return static_cast<int>(std::floor(std::log10(v))); }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/scene/scene_files.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 TextureDescription* textureOf(MaterialDescription& material) {
@@ -32,4 +32,4 @@ std::vector<std::filesystem::path*> sceneFiles(SceneDescription& scene) {
     return files;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,10 +6,10 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// The files that a scene reads, but for the OpenColorIO config: of volumes, lights, materials and
 /// surfaces.
 std::vector<std::filesystem::path*> sceneFiles(SceneDescription& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

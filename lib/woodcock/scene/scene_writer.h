@@ -10,7 +10,7 @@
 #include "woodcock/base/path_variables.h"
 #include "woodcock/base/toml_text.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Lines of a scene file.
 class SceneWriter {
@@ -52,4 +52,4 @@ private:
     std::string text_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

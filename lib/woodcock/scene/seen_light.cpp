@@ -6,7 +6,7 @@
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/light_changes.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 bool glows(const VolumeDescription& volume) {
@@ -44,4 +44,4 @@ bool environmentIsHidden(const SceneDescription& scene) {
     return hidden;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

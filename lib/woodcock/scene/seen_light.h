@@ -3,7 +3,7 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// Whether a volume, a surface or what a surface holds emits light.
 bool anyVolumeOrSurfaceGlows(const SceneDescription& scene);
@@ -14,4 +14,4 @@ bool anythingGlows(const SceneDescription& scene);
 /// Whether no environment is visible to camera rays; lights that are still to be chosen count.
 bool environmentIsHidden(const SceneDescription& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/outline.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 Box3d meshBounds(const LoadedSurface& loaded) {
@@ -57,4 +57,4 @@ Box3d spaceAround(const SceneDescription& scene, const LoadedScene& loaded, size
     return grown(all, 1e9 * length(all.size()));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -3,7 +3,7 @@
 
 #include "woodcock/scene/load.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// World boxes of the instances of a surface, all together; empty for an infinite plane.
 Box3d surfaceBounds(const SurfaceDescription& surface, const LoadedSurface& loaded);
@@ -12,4 +12,4 @@ Box3d surfaceBounds(const SurfaceDescription& surface, const LoadedSurface& load
 /// bounds that. Below an infinite plane it reaches 1e9 times as far as all there is in the scene.
 Box3d spaceAround(const SceneDescription& scene, const LoadedScene& loaded, size_t surface);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

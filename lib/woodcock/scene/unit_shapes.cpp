@@ -3,13 +3,13 @@
 
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 Vec3f toFloat(Vec3d p) { return p.as<float>(); }
 float share(int i, int of) { return static_cast<float>(i) / static_cast<float>(of); }
 
-double areaOf(const TriangleMesh& mesh) {
+double areaOf(const mesh::TriangleMesh& mesh) {
     double area = 0;
     for (const auto& t : mesh.triangles) {
         const Vec3d a = mesh.points[t[0]].as<double>(), b = mesh.points[t[1]].as<double>(),
@@ -19,14 +19,14 @@ double areaOf(const TriangleMesh& mesh) {
     return area;
 }
 
-void scaleToArea(TriangleMesh& mesh, double area) {
+void scaleToArea(mesh::TriangleMesh& mesh, double area) {
     const double scale = std::sqrt(area / areaOf(mesh));
     for (Vec3f& p : mesh.points) p = toFloat(p.as<double>() * scale);
 }
 
 }  // namespace
 
-SurfaceMesh sphereMesh(int rings) {
+mesh::SurfaceMesh sphereMesh(int rings) {
     const int sectors = 2 * rings;
     // A ring's points lie at the same latitude; the first and the last ring are the poles.
     const auto at = [&](int ring, int sector) -> Vec3d {
@@ -39,7 +39,7 @@ SurfaceMesh sphereMesh(int rings) {
         if (ring == rings) return std::uint32_t{1};
         return static_cast<std::uint32_t>(2 + (ring - 1) * sectors + sector % sectors);
     };
-    SurfaceMesh sphere;
+    mesh::SurfaceMesh sphere;
     sphere.mesh.points = {{0, -1, 0}, {0, 1, 0}};
     for (int ring = 1; ring < rings; ++ring)
         for (int sector = 0; sector < sectors; ++sector)
@@ -48,7 +48,7 @@ SurfaceMesh sphereMesh(int rings) {
     const auto add = [&](Corner a, Corner b, Corner c) {
         std::array<std::uint32_t, 3> triangle;
         std::array<Vec3f, 3> normals;
-        std::array<Vec2f, 3> uvs;
+        std::array<mesh::Vec2f, 3> uvs;
         for (size_t i = 0; const auto& [ring, sector] : {a, b, c}) {
             triangle[i] = index(ring, sector);
             normals[i] = toFloat(at(ring, sector));
@@ -67,8 +67,8 @@ SurfaceMesh sphereMesh(int rings) {
     return sphere;
 }
 
-SurfaceMesh diskMesh(int sectors) {
-    SurfaceMesh disk;
+mesh::SurfaceMesh diskMesh(int sectors) {
+    mesh::SurfaceMesh disk;
     disk.mesh.points = {{0, 0, 0}};
     for (int i = 0; i < sectors; ++i) {
         const double angle = 2 * pi * i / sectors;
@@ -86,4 +86,4 @@ SurfaceMesh diskMesh(int sectors) {
     return disk;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

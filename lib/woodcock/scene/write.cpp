@@ -5,7 +5,7 @@
 
 #include "woodcock/scene/keys/sections.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 void write(SceneWriter& out, const VolumeDescription& volume) {
@@ -88,4 +88,4 @@ std::string sceneDigest(const SceneDescription& scene) {
     return fmt::format("{:016x}", hashOf(out.text()));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -6,7 +6,7 @@
 
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// The scene file that parses back to an equal description; what is at its default is left out.
 /// Relative paths of `scene` count from the working directory; the text is made to lie in
@@ -23,4 +23,4 @@ std::string writeLight(const LightDescription& light);
 /// limits of time and noise. Identifies; secures nothing.
 std::string sceneDigest(const SceneDescription& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

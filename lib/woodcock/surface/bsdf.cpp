@@ -9,19 +9,19 @@
 #include "woodcock/surface/fresnel.h"
 #include "woodcock/surface/microfacet.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// The point as seen from direction `out`: all normals are on that side.
 struct Bsdf::View {
     Vec3d out;
-    Vec3d normal, shading;        ///< the surface's own, and the interpolated one
-    Vec3d facing;  ///< the mean normal of the facets: `shading`, or that bent towards `out`
-    Vec3d s, t;                   ///< complete `facing` to a frame
-    Vec3d local;                  ///< `out` in that frame, above its horizon
-    double cosine = 0;            ///< of `out` to `normal`; at most 0: the point cannot be seen
+    Vec3d normal, shading;  ///< the surface's own, and the interpolated one
+    Vec3d facing;       ///< the mean normal of the facets: `shading`, or that bent towards `out`
+    Vec3d s, t;         ///< complete `facing` to a frame
+    Vec3d local;        ///< `out` in that frame, above its horizon
+    double cosine = 0;  ///< of `out` to `normal`; at most 0: the point cannot be seen
     double iorHere = 1,
-           eta = 1;  ///< index of refraction on this side; that of the other side over it
-    bool outside = true;          ///< this is the side of the surface's own normal
+           eta = 1;       ///< index of refraction on this side; that of the other side over it
+    bool outside = true;  ///< this is the side of the surface's own normal
 
     Vec3d toFacets(Vec3d v) const { return {dot(v, s), dot(v, t), dot(v, facing)}; }
     Vec3d fromFacets(Vec3d v) const { return s * v.x + t * v.y + facing * v.z; }
@@ -424,4 +424,4 @@ Rgb Bsdf::albedo() const {
     return sum;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -9,7 +9,7 @@
 #include "woodcock/surface/facet_energy.h"
 #include "woodcock/surface/material.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// A point of a surface, as its material needs it.
 struct BsdfPoint {
@@ -123,4 +123,4 @@ private:
     BsdfPoint point_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -13,7 +13,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 namespace {
 
@@ -207,4 +207,4 @@ void EmbreeTree::around(Vec3d point, double radius,
                   const_cast<std::function<void(std::uint32_t)>*>(&visit));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

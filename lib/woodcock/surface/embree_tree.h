@@ -10,7 +10,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// Embree, version 3 or 4: trees of triangles or boxes in which a ray finds candidates in floats. A
 /// tree lies in a frame of about unit size.
@@ -82,4 +82,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

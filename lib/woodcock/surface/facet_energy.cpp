@@ -11,7 +11,7 @@
 #include "woodcock/surface/fresnel.h"
 #include "woodcock/surface/microfacet.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 namespace {
 
@@ -136,4 +136,4 @@ const FacetEnergy& facetEnergy(double alpha, double eta) {
     return *known;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

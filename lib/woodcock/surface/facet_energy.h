@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// How much light single scattering on rough facets loses, because other facets hide it: in truth
 /// it meets a second facet, and more. For facets that absorb nothing.
@@ -45,4 +45,4 @@ struct FacetEnergy {
 /// eighth call after this one; a copy is valid for ever.
 const FacetEnergy& facetEnergy(double alpha, double eta);
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

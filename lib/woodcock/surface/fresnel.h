@@ -6,7 +6,7 @@
 
 #include "woodcock/base/spectrum.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// What a plane boundary between two indices of refraction does to unpolarised light.
 struct Refraction {
@@ -47,4 +47,4 @@ inline Rgb schlickReflectance(double cosine, Rgb normal) {
     return normal + (Rgb(1.0f) - normal) * f;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

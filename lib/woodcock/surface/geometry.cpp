@@ -7,7 +7,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/surface/geometry_impl.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 Geometry::Impl::Impl(std::vector<Shape> s, std::vector<ShapeInstance> i)
     : shapes(std::move(s)), instances(std::move(i)) {
@@ -33,7 +33,7 @@ void Geometry::Impl::prepareShape(const Shape& shape) {
         p.box = {{-1, 0, -1}, {1, 0, 1}};
     } else if (std::holds_alternative<InfinitePlane>(shape)) {
         p.kind = PreparedShape::Kind::Plane;
-    } else if (const auto& mesh = *std::get<std::shared_ptr<const SurfaceMesh>>(shape);
+    } else if (const auto& mesh = *std::get<std::shared_ptr<const mesh::SurfaceMesh>>(shape);
                !mesh.mesh.triangles.empty()) {
         if (!device) device.emplace();
         p.mesh.emplace(mesh, *device);
@@ -264,7 +264,7 @@ void Geometry::Impl::completeShape(Vec3d p, SurfaceHit& hit) const {
 void Geometry::Impl::completeMesh(const MeshPoint& point, SurfaceHit& hit) const {
     const std::uint32_t i = hit.instance;
     const FramedMesh& framed = *shapeOf(i).mesh;
-    const SurfaceMesh& mesh = framed.mesh();
+    const mesh::SurfaceMesh& mesh = framed.mesh();
     const std::uint32_t primitive = point.triangle;
     const std::array<double, 3>& w = point.weights;
     const Triangle triangle = framed.triangle(primitive);
@@ -328,4 +328,4 @@ std::size_t Geometry::memoryBytes() const {
            impl_->finite.capacity() * sizeof(std::uint32_t);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

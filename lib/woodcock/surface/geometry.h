@@ -9,14 +9,15 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/mesh/surface_mesh.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// Shapes in object space, all facing outwards. A plane is infinite, y = 0, and faces +y; below it
 /// is inside. A disk lies in y = 0, has radius 1, and encloses nothing.
 struct UnitSphere {};
 struct UnitDisk {};
 struct InfinitePlane {};
-using Shape = std::variant<UnitSphere, UnitDisk, InfinitePlane, std::shared_ptr<const SurfaceMesh>>;
+using Shape =
+    std::variant<UnitSphere, UnitDisk, InfinitePlane, std::shared_ptr<const mesh::SurfaceMesh>>;
 
 /// A shape with its transform. A transform of negative determinant does not turn it inside out.
 struct ShapeInstance {
@@ -99,4 +100,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

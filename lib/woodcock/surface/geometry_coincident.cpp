@@ -8,7 +8,7 @@
 // Surfaces that coincide. Two faces that are meant to be one plane differ by rounding: of floats in
 // the corners of meshes, and of doubles in transforms. Exactly that much is tolerated.
 
-namespace woodcock {
+namespace woodcock::surface {
 
 namespace {
 
@@ -148,4 +148,4 @@ SurfaceHit Geometry::inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& o
     return own;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

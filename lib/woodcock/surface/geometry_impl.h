@@ -14,7 +14,7 @@
 // instance are found in the frame of its shape, so no digits are lost, wherever it is in the world
 // and however small it is beside others.
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// A shape in its own frame.
 struct PreparedShape {
@@ -32,8 +32,8 @@ inline Vec3d timesTransposed(const Columns& m, Vec3d v) {
 
 struct NearestSurface {
     bool found = false;
-    double t = 0;           ///< of the nearest so far
-    double slack = 0;       ///< the possible rounding error of t
+    double t = 0;             ///< of the nearest so far
+    double slack = 0;         ///< the possible rounding error of t
     bool coincident = false;  ///< another surface was met within that error
     std::uint32_t instance = 0;
     MeshPoint point;  ///< of meshes
@@ -97,4 +97,4 @@ struct Geometry::Impl {
                                                    std::uint32_t primitive) const;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::surface {
 
 Frame::Frame(const Box3d& box) {
     if (box.empty()) return;
@@ -14,8 +14,8 @@ Frame::Frame(const Box3d& box) {
     if (largest > 0) scale = std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000));
 }
 
-FramedMesh::FramedMesh(const SurfaceMesh& mesh, const EmbreeDevice& device) : mesh_(&mesh) {
-    const Box3d box = boundsOf(mesh.mesh);
+FramedMesh::FramedMesh(const mesh::SurfaceMesh& mesh, const EmbreeDevice& device) : mesh_(&mesh) {
+    const Box3d box = mesh::boundsOf(mesh.mesh);
     frame_ = Frame(box);
     box_ = {frame_.point(box.lower), frame_.point(box.upper)};
     constexpr double doubles = 0x1p-44;  // in a frame of about unit size
@@ -177,4 +177,4 @@ bool FramedMesh::encloses(Vec3d point) const {
     return 2 * inside > ways;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -10,7 +10,7 @@
 #include "woodcock/surface/embree_tree.h"
 #include "woodcock/surface/geometry_solve.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// A box moved to the origin and scaled to about unit size, by a power of two, which is exact.
 struct Frame {
@@ -26,8 +26,8 @@ struct MeshPoint {
     double t = 0;
     std::uint32_t triangle = 0;
     std::array<double, 3> weights{};
-    double slope = 1;       ///< direction . unit normal, of the side that faces the ray
-    double slack = 0;       ///< the largest error of t from rounding of its corners
+    double slope = 1;         ///< direction . unit normal, of the side that faces the ray
+    double slack = 0;         ///< the largest error of t from rounding of its corners
     bool coincident = false;  ///< another triangle was met, and rounding cannot tell them apart
 };
 
@@ -37,9 +37,9 @@ struct MeshPoint {
 class FramedMesh {
 public:
     /// The mesh has triangles, and outlives this; so does the device.
-    FramedMesh(const SurfaceMesh& mesh, const EmbreeDevice& device);
+    FramedMesh(const mesh::SurfaceMesh& mesh, const EmbreeDevice& device);
 
-    const SurfaceMesh& mesh() const { return *mesh_; }
+    const mesh::SurfaceMesh& mesh() const { return *mesh_; }
     const Frame& frame() const { return frame_; }
     const Box3d& box() const { return box_; }  ///< in its frame
     Triangle triangle(std::uint32_t index) const;
@@ -62,11 +62,11 @@ public:
     bool encloses(Vec3d point) const;
 
 private:
-    const SurfaceMesh* mesh_;
+    const mesh::SurfaceMesh* mesh_;
     Frame frame_;
     Box3d box_;
     double largestRounding_ = 0;
     EmbreeTree tree_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

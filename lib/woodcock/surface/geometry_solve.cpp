@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/surface/geometry_solve.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 namespace {
 
@@ -116,4 +116,4 @@ std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double,
     return weights;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

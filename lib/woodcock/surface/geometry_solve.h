@@ -6,7 +6,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// A ray in a shape's own frame. Its parameter t is that of the ray in the world.
 struct LocalRay {
@@ -46,7 +46,7 @@ struct Triangle {
 struct TrianglePoint {
     double t = 0;
     std::array<double, 3> weights{};  ///< barycentric, none negative
-    double edge = 0;       ///< distance of the ray from the nearest edge; negative: outside
+    double edge = 0;  ///< distance of the ray from the nearest edge; negative: outside
     double tolerance =
         0;  ///< the error along the triangle that follows from the error beside the ray
 };
@@ -66,4 +66,4 @@ double edgeDistance(const Triangle& triangle, Vec3d point);
 std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
                                     double margin);
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -7,7 +7,7 @@
 
 #include "woodcock/surface/texture.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// Lambert: the same radiance in all directions of the side that is lit.
 struct DiffuseMaterial {
@@ -42,4 +42,4 @@ struct MixMaterial {
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial,
                               InterfaceMaterial, EmissiveMaterial, MixMaterial>;
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

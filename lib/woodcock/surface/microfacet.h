@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// Facets of the GGX distribution (Walter et al. 2007, eq. 33), equally rough in all directions,
 /// with Smith's masking. Vectors are of unit length in a frame whose z is the surface's normal;
@@ -52,4 +52,4 @@ private:
     double alpha_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

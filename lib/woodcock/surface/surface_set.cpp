@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/surface/surface_set.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 std::vector<bool> SurfaceSet::holdsMedium() const {
     std::vector<bool> holds;
@@ -9,4 +9,4 @@ std::vector<bool> SurfaceSet::holdsMedium() const {
     return holds;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -9,7 +9,7 @@
 #include "woodcock/surface/geometry.h"
 #include "woodcock/surface/material.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// What a surface is, whatever the transforms of its instances.
 struct SurfaceObject {
@@ -42,4 +42,4 @@ struct SurfaceSet {
     std::vector<bool> holdsMedium() const;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

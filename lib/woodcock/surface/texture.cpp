@@ -6,7 +6,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 namespace {
 
@@ -69,4 +69,4 @@ Rgb TextureImage::mean() const {
     return Rgb::map([&](int c) { return static_cast<float>(sum[c] / count); });
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -8,7 +8,7 @@
 
 #include "woodcock/base/spectrum.h"
 
-namespace woodcock {
+namespace woodcock::surface {
 
 /// Scene-linear colours over the unit square, repeated; row by row from the top left, v upwards.
 class TextureImage {
@@ -40,4 +40,4 @@ struct Texture {
     Rgb maximum() const { return image ? colour * image->maximum() : colour; }
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::surface

@@ -9,7 +9,7 @@
 #include "woodcock/scene/quality.h"
 #include "woodcock/trade/candidates.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 void add(std::vector<Candidate>& list, const std::string& name, const std::string& choice) {
@@ -38,11 +38,11 @@ void addMarching(std::vector<Candidate>& list, Extent extent) {
 }
 
 void addFieldChoices(std::vector<Candidate>& list, const SceneFacts& facts, Extent extent) {
-    for (std::size_t i = 0; extent == Extent::All && i < storageNames.size(); ++i) {
-        const auto storage = static_cast<Storage>(i);
-        if (storage != Storage::Auto && storage != Storage::Float)
-            add(list, "storage " + storageNames[i],
-                fmt::format("render.storage={}", storageNames[i]));
+    for (std::size_t i = 0; extent == Extent::All && i < grid::storageNames.size(); ++i) {
+        const auto storage = static_cast<grid::Storage>(i);
+        if (storage != grid::Storage::Auto && storage != grid::Storage::Float)
+            add(list, "storage " + grid::storageNames[i],
+                fmt::format("render.storage={}", grid::storageNames[i]));
     }
     if (extent == Extent::All) add(list, "nearest lookup", "render.lookup=nearest");
     if (facts.cameraInside) return;  // no level of detail would be coarser around the camera
@@ -74,29 +74,30 @@ void addClamps(std::vector<Candidate>& list, const SceneFacts& facts, Extent ext
 
 }  // namespace
 
-SceneFacts sceneFacts(const SceneDescription& description, const Scene& scene) {
+SceneFacts sceneFacts(const scene::SceneDescription& description, const render::Scene& scene) {
     SceneFacts facts;
-    std::vector<const Medium*> media{&scene.medium};
-    for (const Medium& medium : scene.interiorMedia) media.push_back(&medium);
-    for (const Medium* medium : media)
-        for (const MediumPart& part : medium->parts) {
+    std::vector<const medium::Medium*> media{&scene.medium};
+    for (const medium::Medium& medium : scene.interiorMedia) media.push_back(&medium);
+    for (const medium::Medium* medium : media)
+        for (const medium::MediumPart& part : medium->parts) {
             facts.grids |= part.field() != nullptr;
             facts.scattering |= part.scatters();
             if (part.scatters()) facts.largestG = std::max(facts.largestG, std::abs(part.g()));
         }
     facts.mostScatterings =
         description.render.maxScatterings.value_or(std::numeric_limits<int>::max());
-    for (const MaterialDescription& material : description.materials)
-        facts.dielectrics |= std::holds_alternative<DielectricDescription>(material.material);
+    for (const scene::MaterialDescription& material : description.materials)
+        facts.dielectrics |=
+            std::holds_alternative<scene::DielectricDescription>(material.material);
     if (!scene.medium.parts.empty() && description.camera.pose)
         facts.cameraInside = scene.medium.worldBounds().contains(
-            worldFromCamera(*description.camera.pose).point({0, 0, 0}));
+            scene::worldFromCamera(*description.camera.pose).point({0, 0, 0}));
     return facts;
 }
 
 std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent) {
     std::vector<Candidate> list{{"as the scene says", "", {}}};
-    for (const std::string& quality : qualityNames) list.push_back({quality, quality, {}});
+    for (const std::string& quality : scene::qualityNames) list.push_back({quality, quality, {}});
     add(list, "adaptive", "render.adaptive=true");
     if (facts.grids) addMarching(list, extent);
     if (facts.scattering) addScatteringChoices(list, facts, extent);
@@ -106,4 +107,4 @@ std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent)
     return list;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -9,16 +9,16 @@
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/quality.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 /// Keys that a candidate may set beside volume[N].storage: those that concern how a picture is
 /// rendered, not what it shows.
 std::vector<std::string> allowedKeys() {
     std::vector<std::string> keys;
-    for (const std::string& key : choiceKeys())
+    for (const std::string& key : scene::choiceKeys())
         if (key != "quality") keys.push_back("render." + key);
-    for (const std::string& key : methodKeys()) keys.push_back("render." + key);
+    for (const std::string& key : scene::methodKeys()) keys.push_back("render." + key);
     return keys;
 }
 
@@ -27,7 +27,7 @@ bool isVolumeStorage(const std::string& key) {
 }
 
 void checkKey(const TomlValue& value, const std::string& text) {
-    const std::string key = overriddenKey(text);
+    const std::string key = scene::overriddenKey(text);
     if (text.find('=') == std::string::npos)
         throw value.error("is '{}'; expected KEY=VALUE, such as \"render.clamp=10\"", text);
     if (key == "render.quality")
@@ -46,21 +46,21 @@ Candidate readCandidate(const TomlTable& table) {
     Candidate candidate;
     candidate.name = table.need("name", "name = \"fast\"").text();
     if (const auto quality = table.find("quality"))
-        candidate.quality = qualityNames[quality->choice("quality", qualityNames)];
+        candidate.quality = scene::qualityNames[quality->choice("quality", scene::qualityNames)];
     std::set<std::string> keys;
     if (const auto set = table.find("set"))
         for (const TomlValue& value : set->elements("a list, such as [\"render.clamp=10\"]")) {
             const std::string text = value.text();
             checkKey(value, text);
-            if (!keys.insert(overriddenKey(text)).second)
-                throw value.error("sets '{}' again", overriddenKey(text));
+            if (!keys.insert(scene::overriddenKey(text)).second)
+                throw value.error("sets '{}' again", scene::overriddenKey(text));
             candidate.choices.push_back(text);
         }
     return candidate;
 }
 
 /// What a candidate renders, without its source.
-SceneDescription content(SceneDescription scene) {
+scene::SceneDescription content(scene::SceneDescription scene) {
     scene.places.clear();
     return scene;
 }
@@ -80,10 +80,11 @@ std::string Candidate::papers() const {
         {"render.similarity_after", "Zhao et al. 2014"},
         {"render.octaves", "Wrenninge et al. 2013"}};
     std::vector<std::string> keys, papers;
-    for (const std::string& choice : choices) keys.push_back(overriddenKey(choice));
-    for (std::size_t q = 0; q < qualityNames.size(); ++q)
-        if (qualityNames[q] == quality)
-            for (const RenderChoice& choice : qualityChoices(static_cast<Quality>(q)))
+    for (const std::string& choice : choices) keys.push_back(scene::overriddenKey(choice));
+    for (std::size_t q = 0; q < scene::qualityNames.size(); ++q)
+        if (scene::qualityNames[q] == quality)
+            for (const scene::RenderChoice& choice :
+                 scene::qualityChoices(static_cast<scene::Quality>(q)))
                 keys.push_back("render." + choice.key);
     for (const auto& [key, paper] : known)
         if (std::find(keys.begin(), keys.end(), key) != keys.end()) papers.push_back(paper);
@@ -113,8 +114,9 @@ std::vector<Candidate> readCandidates(const std::filesystem::path& file) {
     return candidates;
 }
 
-SceneDescription withChoices(const SceneDescription& complete, const SceneDescription& parsed) {
-    SceneDescription scene = complete;
+scene::SceneDescription withChoices(const scene::SceneDescription& complete,
+                                    const scene::SceneDescription& parsed) {
+    scene::SceneDescription scene = complete;
     scene.render = parsed.render;
     scene.render.spp = complete.render.spp;
     scene.render.seed = complete.render.seed;
@@ -126,11 +128,11 @@ SceneDescription withChoices(const SceneDescription& complete, const SceneDescri
 }
 
 std::vector<ResolvedCandidate> resolveCandidates(const std::vector<Candidate>& candidates,
-                                                 const SceneDescription& complete,
+                                                 const scene::SceneDescription& complete,
                                                  const ParseScene& parse, bool strict) {
     std::vector<ResolvedCandidate> resolved;
     for (const Candidate& candidate : candidates) {
-        SceneDescription parsed;
+        scene::SceneDescription parsed;
         try {
             parsed = parse(candidate.overrides());
         } catch (const Error& e) {
@@ -151,4 +153,4 @@ std::vector<ResolvedCandidate> resolveCandidates(const std::vector<Candidate>& c
     return resolved;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

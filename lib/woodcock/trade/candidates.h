@@ -9,7 +9,7 @@
 #include "woodcock/render/scene.h"
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A way to render a scene: changes to what its file says.
 struct Candidate {
@@ -34,7 +34,7 @@ struct SceneFacts {
     double meanRadiance = 0;    ///< of the picture, roughly
 };
 /// The facts, but for the mean radiance, of a complete description and its scene.
-SceneFacts sceneFacts(const SceneDescription& description, const Scene& scene);
+SceneFacts sceneFacts(const scene::SceneDescription& description, const render::Scene& scene);
 
 /// Every choice in a few strengths; or the most promising choices in one strength, for short
 /// budgets.
@@ -48,21 +48,23 @@ std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent)
 std::vector<Candidate> readCandidates(const std::filesystem::path& file);
 
 /// The scene with more overrides.
-using ParseScene = std::function<SceneDescription(const std::vector<std::string>& overrides)>;
+using ParseScene =
+    std::function<scene::SceneDescription(const std::vector<std::string>& overrides)>;
 
 /// A candidate and the scene that it renders.
 struct ResolvedCandidate {
     Candidate candidate;
-    SceneDescription scene;
+    scene::SceneDescription scene;
 };
 /// Applies each candidate to `complete` (see completeScene), which `parse` gives without overrides.
 /// `strict`, for a user's candidates: throws Error{Input} where a candidate contradicts itself or
 /// the scene, or two are equal. Otherwise such candidates are left out.
 std::vector<ResolvedCandidate> resolveCandidates(const std::vector<Candidate>& candidates,
-                                                 const SceneDescription& complete,
+                                                 const scene::SceneDescription& complete,
                                                  const ParseScene& parse, bool strict);
 
 /// `complete` with the choices of `parsed`.
-SceneDescription withChoices(const SceneDescription& complete, const SceneDescription& parsed);
+scene::SceneDescription withChoices(const scene::SceneDescription& complete,
+                                    const scene::SceneDescription& parsed);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace woodcock {
+namespace woodcock::trade {
 
 Measured fitSlope(const std::vector<CurvePoint>& points) {
     struct Logs {
@@ -37,4 +37,4 @@ Measured fitSlope(const std::vector<CurvePoint>& points) {
     return {slope, std::max(byScatter, std::sqrt(own) / xx)};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

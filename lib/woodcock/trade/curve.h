@@ -6,7 +6,7 @@
 
 #include "woodcock/trade/timing.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A measured cost at one place.
 struct CurvePoint {
@@ -39,4 +39,4 @@ struct CurveTable {
     std::vector<std::vector<double>> rows;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -7,7 +7,7 @@
 
 #include "woodcock/base/statistics.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 constexpr double epsilonShare = 0.01;
@@ -121,4 +121,4 @@ Measured meanOf(std::span<const double> numbers) {
                                                 : std::numeric_limits<double>::infinity()};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

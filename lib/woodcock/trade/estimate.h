@@ -7,7 +7,7 @@
 
 #include "woodcock/trade/timing.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 // Estimates of noise and bias from pictures of several seeds. Errors are relative squares: mean
 // over pixels and channels of (difference)^2 / (reference^2 + eps^2), where eps is a hundredth of
@@ -58,4 +58,4 @@ Measured channelMean(const SeedMean& mean, int channel);
 /// Mean and standard error of independent numbers; one alone has an infinite error.
 Measured meanOf(std::span<const double> numbers);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

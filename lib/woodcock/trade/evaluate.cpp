@@ -11,7 +11,7 @@
 #include "woodcock/base/parse.h"
 #include "woodcock/compare/flip.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 /// Each is read where it tells something: at least this many samples of the scene as it is.
@@ -120,7 +120,7 @@ private:
         std::vector<double> flips;
         for (const Pixels& picture : pictures) {
             if (watch_.seconds() > flipSeconds_) return point;
-            flips.push_back(flip(picture));
+            flips.push_back(mesh::flip(picture));
         }
         point.flip = meanOf(flips);
         return point;
@@ -128,7 +128,7 @@ private:
 
     double flip(const Pixels& picture) const {
         const std::vector<float> map =
-            flipLdr(referenceFloats_, picture, m_.measured.width, m_.measured.height);
+            compare::flipLdr(referenceFloats_, picture, m_.measured.width, m_.measured.height);
         double sum = 0;
         for (const float v : map) sum += double{v};
         return sum / static_cast<double>(map.size());
@@ -257,4 +257,4 @@ TradeResult evaluateTrade(const TradeMeasurements& measurements, double flipSeco
     return result;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

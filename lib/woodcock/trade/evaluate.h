@@ -5,7 +5,7 @@
 
 #include "woodcock/trade/trade.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// The rendered pictures.
 struct TradeMeasurements {
@@ -28,4 +28,4 @@ struct TradeMeasurements {
 /// where the reference is noisier than the candidates.
 TradeResult evaluateTrade(const TradeMeasurements& measurements, double flipSeconds);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -7,17 +7,17 @@
 
 #include "woodcock/base/random.h"
 
-namespace woodcock {
-Field fieldOfBricks(std::size_t bricks) {
+namespace woodcock::trade {
+grid::Field fieldOfBricks(std::size_t bricks) {
     const int n = std::max(1, static_cast<int>(std::lround(std::cbrt(double(bricks)))));
-    FieldSource source;
+    grid::FieldSource source;
     for (int i = 0; i < n * n * n; ++i)
         source.leafOrigins.push_back({8 * (i / (n * n)), 8 * (i / n % n), 8 * (i % n)});
     source.copyLeaf = [](std::size_t leaf, std::span<float> values) {
         for (std::size_t i = 0; i < values.size(); ++i)
             values[i] = static_cast<float>(mixBits(leaf * values.size() + i) >> 40) * 0x1p-24f;
     };
-    return buildField(source, Storage::Float);
+    return grid::buildField(source, grid::Storage::Float);
 }
 
 namespace {
@@ -25,7 +25,7 @@ namespace {
 /// A loop for each kind. A choice inside one loop would be a conditional move, which waits for both
 /// values; then all lookups would be dependent.
 template <bool dependent>
-double look(const Field& field, std::uint64_t count, std::uint64_t seed) {
+double look(const grid::Field& field, std::uint64_t count, std::uint64_t seed) {
     const Box3d& box = field.support();
     const Vec3d size = box.size() * (1 - 1e-6);
     double sum = 0;
@@ -46,8 +46,9 @@ double look(const Field& field, std::uint64_t count, std::uint64_t seed) {
 
 }  // namespace
 
-double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std::uint64_t seed) {
+double lookAtRandom(const grid::Field& field, std::uint64_t count, bool dependent,
+                    std::uint64_t seed) {
     return dependent ? look<true>(field, count, seed) : look<false>(field, count, seed);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -5,15 +5,16 @@
 
 #include "woodcock/grid/field.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A cube of about so many bricks, all of which vary: a field without empty space.
-Field fieldOfBricks(std::size_t bricks);
+grid::Field fieldOfBricks(std::size_t bricks);
 
 /// Reads a field at `count` random points of its support, by one tap of stochastic interpolation as
 /// the trackers do, and returns the sum of the values. `dependent`: each point depends on the value
 /// before it, so a lookup has to end before the next begins; else many may run at once. These are
 /// the machine's limits for a path tracer.
-double lookAtRandom(const Field& field, std::uint64_t count, bool dependent, std::uint64_t seed);
+double lookAtRandom(const grid::Field& field, std::uint64_t count, bool dependent,
+                    std::uint64_t seed);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -10,13 +10,13 @@
 #include "woodcock/scene/load.h"
 #include "woodcock/trade/timing.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 /// The settings that decide what is loaded and built. With levels of detail the size of the picture
 /// matters.
-SceneDescription loadKey(SceneDescription scene) {
-    const RenderDescription render = scene.render;
+scene::SceneDescription loadKey(scene::SceneDescription scene) {
+    const scene::RenderDescription render = scene.render;
     scene.places.clear();
     scene.output = {};
     scene.render = {};
@@ -30,22 +30,22 @@ SceneDescription loadKey(SceneDescription scene) {
     return scene;
 }
 
-std::size_t bytesOf(const Scene& scene) {
-    std::set<const Field*> fields;  // parts may share one
+std::size_t bytesOf(const render::Scene& scene) {
+    std::set<const grid::Field*> fields;  // parts may share one
     std::size_t bytes = 0;
-    const auto add = [&](const Medium& medium) {
-        for (const MediumPart& part : medium.parts) {
+    const auto add = [&](const medium::Medium& medium) {
+        for (const medium::MediumPart& part : medium.parts) {
             bytes += part.majorants().bytes();
-            for (const Field* field : {part.field(), part.albedo()})
+            for (const grid::Field* field : {part.field(), part.albedo()})
                 if (field && fields.insert(field).second) bytes += field->bytes();
         }
     };
     add(scene.medium);
-    for (const Medium& medium : scene.interiorMedia) add(medium);
+    for (const medium::Medium& medium : scene.interiorMedia) add(medium);
     return bytes;
 }
 
-Pixels pixelsOf(const Film& film) {
+Pixels pixelsOf(const image::Film& film) {
     Pixels pixels;
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
@@ -57,18 +57,18 @@ Pixels pixelsOf(const Film& film) {
 
 }  // namespace
 
-bool SceneStore::has(const SceneDescription& scene) const {
-    const SceneDescription key = loadKey(scene);
+bool SceneStore::has(const scene::SceneDescription& scene) const {
+    const scene::SceneDescription key = loadKey(scene);
     return std::any_of(entries_.begin(), entries_.end(),
                        [&](const Entry& entry) { return entry.key == key; });
 }
 
-const BuiltScene& SceneStore::get(const SceneDescription& scene) {
-    const SceneDescription key = loadKey(scene);
+const BuiltScene& SceneStore::get(const scene::SceneDescription& scene) {
+    const scene::SceneDescription key = loadKey(scene);
     for (const Entry& entry : entries_)
         if (entry.key == key) return entry.built;
     const Stopwatch watch;
-    Scene built = buildScene(scene, loadScene(scene));
+    render::Scene built = scene::buildScene(scene, scene::loadScene(scene));
     const double seconds = watch.seconds();
     const std::size_t bytes = bytesOf(built);
     entries_.push_back({key, {std::move(built), seconds, bytes}});
@@ -78,12 +78,12 @@ const BuiltScene& SceneStore::get(const SceneDescription& scene) {
 std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint64_t seed,
                                                const std::vector<int>& samples, int threads,
                                                const GoOn& goOn) {
-    RenderSettings settings = renderSettings(subject.render);
+    render::RenderSettings settings = scene::renderSettings(subject.render);
     settings.seed = seed;
     settings.threads = threads;
     settings.timeLimit = settings.noise = 0;
     std::vector<Stage> stages;
-    std::optional<Film> film;
+    std::optional<image::Film> film;
     double seconds = 0, cpuSeconds = 0;
     int done = 0;
     for (const int count : samples) {
@@ -94,11 +94,11 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
         settings.endSample = count;
         const double cpuStart = processorSeconds();
         const Stopwatch watch;
-        RenderResult result =
-            render(*subject.scene, settings, [&](const RenderProgress&) { return goOn(); });
+        render::RenderResult result = render::render(
+            *subject.scene, settings, [&](const render::RenderProgress&) { return goOn(); });
         seconds += watch.seconds();
         cpuSeconds += processorSeconds() - cpuStart;
-        if (result.reason == StopReason::Interrupted) return std::nullopt;
+        if (result.reason == render::StopReason::Interrupted) return std::nullopt;
         if (film)
             film->merge(result.film);
         else
@@ -117,4 +117,4 @@ std::vector<int> stageCounts(int samples) {
     return counts;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

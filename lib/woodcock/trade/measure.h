@@ -13,7 +13,7 @@
 #include "woodcock/trade/estimate.h"
 #include "woodcock/trade/plan.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// Seconds since it was made.
 class Stopwatch {
@@ -28,7 +28,7 @@ private:
 
 /// A scene that is ready to be rendered.
 struct BuiltScene {
-    Scene scene;
+    render::Scene scene;
     double loadSeconds = 0;  ///< loading and building
     std::size_t bytes = 0;   ///< held by fields and majorants
 };
@@ -36,12 +36,12 @@ struct BuiltScene {
 /// Loads each scene once: candidates that differ only in rendering share it.
 class SceneStore {
 public:
-    const BuiltScene& get(const SceneDescription& scene);
-    bool has(const SceneDescription& scene) const;
+    const BuiltScene& get(const scene::SceneDescription& scene);
+    bool has(const scene::SceneDescription& scene) const;
 
 private:
     struct Entry {
-        SceneDescription key;
+        scene::SceneDescription key;
         BuiltScene built;
     };
     std::list<Entry> entries_;
@@ -50,10 +50,10 @@ private:
 /// A candidate to render, at the size at which it is measured. Levels of detail are those of the
 /// scene's own size, at which it was loaded.
 struct Subject {
-    const Scene* scene = nullptr;
-    RenderDescription render;
+    const render::Scene* scene = nullptr;
+    scene::RenderDescription render;
     Subject() = default;
-    Subject(const BuiltScene& built, const SceneDescription& description, PictureSize size)
+    Subject(const BuiltScene& built, const scene::SceneDescription& description, PictureSize size)
         : scene(&built.scene), render(description.render) {
         render.width = size.width, render.height = size.height;
     }
@@ -78,4 +78,4 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
 /// A sixteenth and a quarter of the samples, where these are samples, and all.
 std::vector<int> stageCounts(int samples);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

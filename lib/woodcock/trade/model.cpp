@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 /// The candidate of least `value` (absent: it does not take part), and those whose `difference`
@@ -97,4 +97,4 @@ std::vector<FrontPoint> paretoFront(const std::vector<TradeModel>& models, doubl
     return front;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -6,7 +6,7 @@
 
 #include "woodcock/trade/estimate.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 // How the error of a picture falls with time: error(t) = bias^2 + variance x seconds per sample /
 // t. Errors are relative squares (relMSE), see estimate.h. Time is that of rendering, as
@@ -64,4 +64,4 @@ struct FrontPoint {
 std::vector<FrontPoint> paretoFront(const std::vector<TradeModel>& models, double longest,
                                     int steps);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

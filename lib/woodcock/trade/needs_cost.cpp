@@ -9,30 +9,30 @@
 #include "woodcock/base/parse.h"
 #include "woodcock/base/statistics.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
-constexpr std::array<bool Needs::*, needNames.size()> members{
-    &Needs::chromatic,     &Needs::scattering,  &Needs::emission,
-    &Needs::lightSampling, &Needs::localLights, &Needs::surfaces};
+constexpr std::array<bool render::Needs::*, needNames.size()> members{
+    &render::Needs::chromatic,     &render::Needs::scattering,  &render::Needs::emission,
+    &render::Needs::lightSampling, &render::Needs::localLights, &render::Needs::surfaces};
 
 constexpr int fewestPairs = 3, usualPairs = 12;
 /// Seconds of one run: long beside the clock's ticks, short beside other work of the machine.
 constexpr double shortestRun = 0.01, longestRun = 0.3;
 constexpr int largestSide = 64;
 
-bool Needs::*memberOf(Need need) { return members[static_cast<std::size_t>(need)]; }
+bool render::Needs::*memberOf(Need need) { return members[static_cast<std::size_t>(need)]; }
 
 struct Run {
     double seconds = 0;   ///< for each sample
     double mean = 0;      ///< of the picture
     double variance = 0;  ///< of a sample, mean over its pixels
-    RenderResult result;
+    render::RenderResult result;
 };
 
-Run run(const Scene& scene, const RenderSettings& settings) {
+Run run(const render::Scene& scene, const render::RenderSettings& settings) {
     const double start = processorSeconds();
-    Run r{0, 0, 0, render(scene, settings)};
+    Run r{0, 0, 0, render::render(scene, settings)};
     r.seconds = (processorSeconds() - start) / settings.endSample;
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
@@ -45,14 +45,14 @@ Run run(const Scene& scene, const RenderSettings& settings) {
     return r;
 }
 
-double wallSecondsOf(const Scene& scene, const RenderSettings& settings) {
+double wallSecondsOf(const render::Scene& scene, const render::RenderSettings& settings) {
     const double start = wallSeconds();
     run(scene, settings);
     return wallSeconds() - start;
 }
 
 /// The same view, small, one sample of each pixel.
-RenderSettings smallView(RenderSettings s) {
+render::RenderSettings smallView(render::RenderSettings s) {
     const double shrink = std::min(1.0, double{largestSide} / std::max(s.width, s.height));
     s.width = std::max(1, static_cast<int>(std::lround(s.width * shrink)));
     s.height = std::max(1, static_cast<int>(std::lround(s.height * shrink)));
@@ -65,7 +65,7 @@ RenderSettings smallView(RenderSettings s) {
 }
 
 /// As many samples as one run of about `seconds` of wall clock takes.
-void lengthen(const Scene& scene, RenderSettings& s, double seconds) {
+void lengthen(const render::Scene& scene, render::RenderSettings& s, double seconds) {
     while (s.endSample < (1 << 20)) {
         const double taken = wallSecondsOf(scene, s);
         if (taken >= seconds / 2) break;
@@ -73,9 +73,9 @@ void lengthen(const Scene& scene, RenderSettings& s, double seconds) {
     }
 }
 
-NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double seconds,
-                 double precision) {
-    const Scene forced = forceNeed(scene, need);
+NeedCost measure(const render::Scene& scene, Need need, render::RenderSettings settings,
+                 double seconds, double precision) {
+    const render::Scene forced = forceNeed(scene, need);
     const double end = wallSeconds() + seconds;
     NeedCost cost{.need = need, .sameBits = true};
     std::vector<double> with, without, ratios, variances;
@@ -109,7 +109,7 @@ NeedCost measure(const Scene& scene, Need need, RenderSettings settings, double 
 
 }  // namespace
 
-bool sameBits(const Film& a, const Film& b) {
+bool sameBits(const image::Film& a, const image::Film& b) {
     for (int y = 0; y < a.height(); ++y)
         for (int x = 0; x < a.width(); ++x)
             if (a.radiance(x, y) != b.radiance(x, y) || a.alpha(x, y) != b.alpha(x, y))
@@ -117,24 +117,25 @@ bool sameBits(const Film& a, const Film& b) {
     return true;
 }
 
-bool has(const Needs& needs, Need need) { return needs.*memberOf(need); }
+bool has(const render::Needs& needs, Need need) { return needs.*memberOf(need); }
 
 Measured NeedCost::cost() const {
     return {ratio.value * variance.value,
             std::hypot(ratio.se * variance.value, variance.se * ratio.value)};
 }
 
-Scene forceNeed(Scene scene, Need need) {
+render::Scene forceNeed(render::Scene scene, Need need) {
     scene.forcedNeeds.*memberOf(need) = true;
     if (need == Need::Surfaces && !scene.surfaces)
-        scene.surfaces = std::make_shared<SurfaceSet>(SurfaceSet{Geometry({}, {}), {}, {}, {}});
+        scene.surfaces = std::make_shared<surface::SurfaceSet>(
+            surface::SurfaceSet{surface::Geometry({}, {}), {}, {}, {}});
     return scene;
 }
 
-std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
+std::vector<NeedCost> needsCost(const render::Scene& scene, render::RenderSettings settings,
                                 const NeedsCostOptions& options) {
     const double start = wallSeconds();
-    const Needs needs = findNeeds(scene);
+    const render::Needs needs = render::findNeeds(scene);
     const auto missing = static_cast<int>(
         std::count_if(members.begin(), members.end(), [&](auto m) { return !(needs.*m); }));
     const double runs = std::max(1, missing) * 2.0 * usualPairs;
@@ -162,4 +163,4 @@ std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
     return costs;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

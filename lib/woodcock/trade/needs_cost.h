@@ -9,7 +9,7 @@
 #include "woodcock/render/session.h"
 #include "woodcock/trade/timing.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A need of the path loop: a member of Needs for which it has code of its own.
 enum class Need {
@@ -24,15 +24,15 @@ inline const std::array<std::string, 6> needNames{
     "three colour channels", "scattering",           "emission",
     "light sampling",        "equiangular sampling", "surfaces"};
 
-bool has(const Needs& needs, Need need);
+bool has(const render::Needs& needs, Need need);
 
 /// The scene, rendered as if it had a need that it does not have: the same picture up to noise, by
 /// more general code. Grey media have three equal channels, and a scene without surfaces has an
 /// empty set of them.
-Scene forceNeed(Scene scene, Need need);
+render::Scene forceNeed(render::Scene scene, Need need);
 
 /// Whether radiance and alpha of two films of equal size agree to the last bit.
-bool sameBits(const Film& a, const Film& b);
+bool sameBits(const image::Film& a, const image::Film& b);
 
 /// The cost of a feature for a scene that does not need it.
 struct NeedCost {
@@ -63,7 +63,7 @@ struct NeedsCostOptions {
 /// Measures every need. A small picture is rendered by one thread, in pairs of runs with and
 /// without the need, alternately and with the same random numbers. Throws Error{Usage} where the
 /// budget is too small for three pairs of each need.
-std::vector<NeedCost> needsCost(const Scene& scene, RenderSettings settings,
+std::vector<NeedCost> needsCost(const render::Scene& scene, render::RenderSettings settings,
                                 const NeedsCostOptions& options);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 /// One picture among which the budget is shared.
@@ -76,4 +76,4 @@ double leastSamplesPerPixel(std::size_t candidates) {
 
 double goodSamplesPerPixel(std::size_t candidates) { return 4 * leastSamplesPerPixel(candidates); }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::trade {
 
 // Shares a budget of seconds among pictures, each of which is rendered with several seeds.
 
@@ -44,4 +44,4 @@ double leastSamplesPerPixel(std::size_t candidates);
 /// Samples per pixel of a plan that can distinguish candidates.
 double goodSamplesPerPixel(std::size_t candidates);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

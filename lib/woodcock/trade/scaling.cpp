@@ -11,7 +11,7 @@
 #include "woodcock/trade/scaling_cloud.h"
 #include "woodcock/trade/scaling_runs.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 constexpr int sides[]{64, 128, 256, 512, 1024};
@@ -106,7 +106,7 @@ private:
         constexpr std::uint64_t count = 1 << 18;
         const int rounds = options_.budget > 60 ? 9 : 3;
         std::vector<std::array<std::vector<double>, 2>> rates(clouds_.size());
-        std::vector<Field> fields;
+        std::vector<grid::Field> fields;
         for (const ScalingCloud& c : clouds_)
             fields.push_back(fieldOfBricks(c.field->brickCount()));
         for (int round = 0; round < rounds; ++round)
@@ -260,7 +260,7 @@ private:
         for (std::size_t i = 0; i < lines.size(); ++i)
             for (const TimedRender& r : lines[i].renders) {
                 if (!(r.microseconds.value > 0)) continue;
-                const RenderCounters& c = r.counters;
+                const render::RenderCounters& c = r.counters;
                 const auto ratio = [](std::uint64_t a, std::uint64_t b) {
                     return b > 0 ? static_cast<double>(a) / static_cast<double>(b) : 0;
                 };
@@ -310,4 +310,4 @@ ScalingReport measureScaling(const ScalingOptions& options) {
     return Scaling(options).run();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -8,7 +8,7 @@
 
 #include "woodcock/trade/curve.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 struct ScalingReport {
     std::vector<Curve> curves;
@@ -32,4 +32,4 @@ inline constexpr double leastScalingBudget = 10;
 /// budget is below the least.
 ScalingReport measureScaling(const ScalingOptions& options);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

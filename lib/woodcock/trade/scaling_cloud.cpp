@@ -11,35 +11,37 @@
 #include "woodcock/grid/vdb/read_voxels.h"
 #include "woodcock/medium/optical_depth.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 constexpr const char* gridName = "density";
 constexpr const char* presetName = "cumulus";
 
-Bake bake(int side) {
-    const Recipe recipe = makeRecipe({std::string(presets().at(presetName)), presetName, ""}, {});
+bake::Bake bake(int side) {
+    const bake::Recipe recipe =
+        bake::makeRecipe({std::string(bake::presets().at(presetName)), presetName, ""}, {});
     const Vec3d size = recipe.bounds.size();
-    return *bakeRecipe(recipe, cubicVoxels(std::max({size.x, size.y, size.z}) / (side - 1)));
+    return *bake::bakeRecipe(recipe,
+                             bake::cubicVoxels(std::max({size.x, size.y, size.z}) / (side - 1)));
 }
 
-MediumPart part(const ScalingCloud& cloud, double extinction, const ScalingView& view,
-                Vec3d moved) {
-    MediumPart::Description d;
+medium::MediumPart part(const ScalingCloud& cloud, double extinction, const ScalingView& view,
+                        Vec3d moved) {
+    medium::MediumPart::Description d;
     d.field = cloud.field;
     d.worldFromIndex = Affine3d::translate(moved) * cloud.worldFromIndex;
     d.scattering = Rgb(static_cast<float>(extinction * view.albedo));
     d.absorption = Rgb(static_cast<float>(extinction * (1 - view.albedo)));
     d.g = view.g;
     d.majorantSmallestLog2 = view.majorantSmallestLog2;
-    return MediumPart(d);
+    return medium::MediumPart(d);
 }
 
 /// Through the middle of the cloud.
-Camera camera(const Box3d& box) {
+camera::Camera camera(const Box3d& box) {
     const double size = length(box.size());
-    return Camera::perspective(box.centre() + normalize(Vec3d{0.2, 0.15, 1}) * (2 * size),
-                               box.centre(), {0, 1, 0}, 12);
+    return camera::Camera::perspective(box.centre() + normalize(Vec3d{0.2, 0.15, 1}) * (2 * size),
+                                       box.centre(), {0, 1, 0}, 12);
 }
 
 /// Places of a square lattice, far from each other.
@@ -49,20 +51,21 @@ Vec3d farAway(int i, double size) {
 
 }  // namespace
 
-double meanOpticalDepth(const Scene& scene) {
+double meanOpticalDepth(const render::Scene& scene) {
     constexpr int rays = 24;
     const double far = 1e3 * length(scene.medium.parts.front().worldBounds().size());
     double sum = 0;
     for (int y = 0; y < rays; ++y)
         for (int x = 0; x < rays; ++x) {
-            const CameraRay ray = scene.camera.ray(x + 0.5, y + 0.5, rays, rays);
-            sum += exactOpticalDepth(scene.medium, ray.origin, ray.direction, 0, far).maximum();
+            const camera::CameraRay ray = scene.camera.ray(x + 0.5, y + 0.5, rays, rays);
+            sum += medium::exactOpticalDepth(scene.medium, ray.origin, ray.direction, 0, far)
+                       .maximum();
         }
     return sum / (rays * rays);
 }
 
-Scene scalingScene(const ScalingCloud& cloud, const ScalingView& view) {
-    Scene scene;
+render::Scene scalingScene(const ScalingCloud& cloud, const ScalingView& view) {
+    render::Scene scene;
     const double together = view.apart ? 1 : view.volumes;
     const double extinction = view.opticalDepth / cloud.unitDepth / together;
     const double size = length(cloud.worldFromIndex.box(cloud.field->support()).size());
@@ -70,8 +73,8 @@ Scene scalingScene(const ScalingCloud& cloud, const ScalingView& view) {
         scene.medium.parts.push_back(
             part(cloud, extinction, view, view.apart ? farAway(i, size) : Vec3d{}));
     scene.camera = camera(scene.medium.parts.front().worldBounds());
-    scene.lights =
-        LightSet({Sun({-0.5, -1, -0.3}, Rgb(4), 0.53, false), Environment(Rgb(0.3f), true)});
+    scene.lights = light::LightSet(
+        {light::Sun({-0.5, -1, -0.3}, Rgb(4), 0.53, false), light::Environment(Rgb(0.3f), true)});
     return scene;
 }
 
@@ -81,22 +84,22 @@ ScalingCloud bakeScalingCloud(int side, const std::filesystem::path& directory, 
     const std::filesystem::path file = directory / fmt::format("cloud_{}.vdb", side);
     {
         const double start = wallSeconds();
-        const Bake baked = bake(side);
+        const bake::Bake baked = bake(side);
         cloud.boxVoxels = baked.boxVoxels;
-        writeBake(file, baked, {}, 0);
+        bake::writeBake(file, baked, {}, 0);
         cloud.bakeSeconds = wallSeconds() - start;
     }
     std::vector<double> ours, peers;
     for (int i = 0; i < loads; ++i) {
         double start = wallSeconds();
-        const VdbPeer peer = readByOpenVdb(file, gridName);
+        const grid::VdbPeer peer = grid::readByOpenVdb(file, gridName);
         peers.push_back(wallSeconds() - start);
         cloud.activeVoxels = peer.activeVoxels, cloud.peerBytes = peer.bytes;
         start = wallSeconds();
-        LoadedGrid loaded = loadGrid(file, gridName, {});
+        grid::LoadedGrid loaded = grid::loadGrid(file, gridName, {});
         ours.push_back(wallSeconds() - start);
         cloud.worldFromIndex = loaded.worldFromIndex;
-        cloud.field = std::make_shared<const Field>(std::move(loaded.field));
+        cloud.field = std::make_shared<const grid::Field>(std::move(loaded.field));
     }
     std::filesystem::remove(file);
     cloud.load = medianOf(ours), cloud.peer = medianOf(peers);
@@ -108,4 +111,4 @@ ScalingCloud bakeScalingCloud(int side, const std::filesystem::path& directory, 
     return cloud;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

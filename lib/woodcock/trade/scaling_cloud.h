@@ -7,14 +7,14 @@
 #include "woodcock/render/scene.h"
 #include "woodcock/trade/timing.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A cumulus, baked at some resolution, and the cost of loading it.
 struct ScalingCloud {
     int side = 0;  ///< voxels along its longest side
     double boxVoxels = 0;
     std::uint64_t activeVoxels = 0;
-    std::shared_ptr<const Field> field;
+    std::shared_ptr<const grid::Field> field;
     Affine3d worldFromIndex;
     /// Mean along the camera's rays of its views, where sigma_t is 1 times the density.
     double unitDepth = 0;
@@ -39,9 +39,9 @@ struct ScalingView {
     bool apart = false;
 };
 
-Scene scalingScene(const ScalingCloud& cloud, const ScalingView& view);
+render::Scene scalingScene(const ScalingCloud& cloud, const ScalingView& view);
 
 /// Mean optical depth along the camera's rays through the first part, by exact integration.
-double meanOpticalDepth(const Scene& scene);
+double meanOpticalDepth(const render::Scene& scene);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

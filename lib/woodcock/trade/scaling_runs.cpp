@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 constexpr int rounds = 9, fewestRounds = 3;
@@ -14,17 +14,17 @@ constexpr int mostSamples = 1 << 16;
 
 struct Job {
     TimedRender* render;
-    RenderSettings settings;
+    render::RenderSettings settings;
     std::vector<double> microseconds = {};
 
     double run() {
         const double start = render->wallClock ? wallSeconds() : processorSeconds();
-        const RenderResult result = woodcock::render(render->scene, settings);
+        const render::RenderResult result = woodcock::render::render(render->scene, settings);
         const double taken = (render->wallClock ? wallSeconds() : processorSeconds()) - start;
-        const RenderCounters& c = result.counters;
+        const render::RenderCounters& c = result.counters;
         microseconds.push_back(1e6 * taken / static_cast<double>(c.paths));
         render->seconds += taken;
-        RenderCounters& sum = render->counters;
+        render::RenderCounters& sum = render->counters;
         sum.paths += c.paths, sum.scatterings += c.scatterings, sum.shadowRays += c.shadowRays;
         sum.distanceSegments += c.distanceSegments, sum.shadowSegments += c.shadowSegments;
         sum.distanceCollisions += c.distanceCollisions;
@@ -88,4 +88,4 @@ void timeRenders(std::vector<TimedRender>& renders, double seconds,
     for (Job& job : jobs) job.render->microseconds = medianOf(job.microseconds);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -7,11 +7,11 @@
 #include "woodcock/render/session.h"
 #include "woodcock/trade/timing.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A render whose samples are timed.
 struct TimedRender {
-    Scene scene;
+    render::Scene scene;
     std::string name;  ///< for notes
     double x = 0;      ///< its position on the curve
     int threads = 1;
@@ -19,7 +19,7 @@ struct TimedRender {
 
     // Set by timeRenders(); microseconds stay 0 where there was not enough time:
     Measured microseconds = {};  ///< of one sample of one pixel
-    RenderCounters counters = {};
+    render::RenderCounters counters = {};
     double seconds = 0;  ///< that all counted runs took, by its clock
 
     double perSample(std::uint64_t count) const {
@@ -35,4 +35,4 @@ struct TimedRender {
 void timeRenders(std::vector<TimedRender>& renders, double seconds,
                  std::vector<std::string>& notes);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

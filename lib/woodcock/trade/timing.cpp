@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 double secondsOf(clockid_t clock) {
@@ -39,4 +39,4 @@ Measured medianOf(std::vector<double> values) {
     return {middle, 1.2533 * 1.4826 * median(values) / std::sqrt(n - 1)};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::trade {
 
 /// A number and its standard error.
 struct Measured {
@@ -21,4 +21,4 @@ double wallSeconds();
 /// runs has no effect. Zero for no values; for one value the error is infinite (unknown).
 Measured medianOf(std::vector<double> values);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -12,7 +12,7 @@
 #include "woodcock/scene/quality.h"
 #include "woodcock/trade/evaluate.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 namespace {
 
 constexpr double mostPixels = 40000;  // more samples are worth more than more pixels
@@ -51,7 +51,7 @@ double pilotVariance(const Pixels& a, const Pixels& b) {
 
 class TradeRun {
 public:
-    TradeRun(const SceneDescription& complete, const ParseScene& parse,
+    TradeRun(const scene::SceneDescription& complete, const ParseScene& parse,
              const TradeSettings& settings)
         : complete_(complete),
           parse_(parse),
@@ -203,8 +203,9 @@ private:
         return made;
     }
 
-    bool isBiased(const SceneDescription& scene) const {
-        std::vector<std::string> own = biasedChoices(scene), all = biasedChoices(reference_);
+    bool isBiased(const scene::SceneDescription& scene) const {
+        std::vector<std::string> own = scene::biasedChoices(scene),
+                                 all = scene::biasedChoices(reference_);
         std::erase_if(own, [&](const std::string& key) {
             return std::find(all.begin(), all.end(), key) != all.end();
         });
@@ -289,12 +290,12 @@ private:
         }
     }
 
-    const SceneDescription& complete_;
+    const scene::SceneDescription& complete_;
     const ParseScene& parse_;
     const TradeSettings& settings_;
     const PictureSize full_;
     const Stopwatch watch_;
-    SceneDescription reference_;
+    scene::SceneDescription reference_;
     SceneStore store_;
     double referenceLoad_ = 0, meanRadiance_ = 0, secondsPerPixel_ = 0;
     std::vector<ResolvedCandidate> resolved_;
@@ -309,8 +310,8 @@ private:
 
 }  // namespace
 
-std::optional<TradeResult> runTrade(const SceneDescription& complete, const ParseScene& parse,
-                                    const std::vector<Candidate>& given,
+std::optional<TradeResult> runTrade(const scene::SceneDescription& complete,
+                                    const ParseScene& parse, const std::vector<Candidate>& given,
                                     const TradeSettings& settings) {
     try {
         return TradeRun(complete, parse, settings).run(given);
@@ -319,4 +320,4 @@ std::optional<TradeResult> runTrade(const SceneDescription& complete, const Pars
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

@@ -12,7 +12,7 @@
 #include "woodcock/trade/measure.h"
 #include "woodcock/trade/model.h"
 
-namespace woodcock {
+namespace woodcock::trade {
 
 // Measures the cost and the error of candidates on one scene, against the scene's own unbiased
 // reference. Pictures are rendered smaller than the scene's where the budget demands it. All
@@ -93,8 +93,8 @@ struct TradeResult {
 /// `given` are a user's candidates; without any, the built-in ones. `parse` gives `complete` before
 /// it was completed. Absent where onProgress returned false. Throws Error{Usage} where the budget
 /// is too small, for anything or for the reference.
-std::optional<TradeResult> runTrade(const SceneDescription& complete, const ParseScene& parse,
-                                    const std::vector<Candidate>& given,
+std::optional<TradeResult> runTrade(const scene::SceneDescription& complete,
+                                    const ParseScene& parse, const std::vector<Candidate>& given,
                                     const TradeSettings& settings);
 
-}  // namespace woodcock
+}  // namespace woodcock::trade

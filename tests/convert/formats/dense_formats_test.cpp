@@ -11,6 +11,10 @@
 #include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
+
+using namespace convert;
+using namespace proof;
+
 namespace {
 
 namespace fs = std::filesystem;

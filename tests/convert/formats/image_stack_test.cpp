@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/temp_dir.h"
-#include "woodcock/convert/formats/dense_formats.h"
 
 namespace woodcock::test {
+
+using namespace convert;
+using namespace proof;
+
 namespace {
 
 class ImageStack : public testing::Test {

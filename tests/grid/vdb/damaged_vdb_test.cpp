@@ -13,10 +13,14 @@
 #include "tests/support/damage_vdb.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 constexpr std::size_t variants = 2400, batchSize = 40;

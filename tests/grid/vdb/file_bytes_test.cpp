@@ -10,6 +10,10 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 class FileBytesTest : public ::testing::Test {

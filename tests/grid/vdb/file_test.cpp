@@ -5,12 +5,16 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 const std::vector<VdbVoxel> one{{{0, 0, 0}, {1, 1, 1}}};

@@ -11,6 +11,10 @@
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -3,13 +3,17 @@
 
 #include "tests/support/damage_vdb.h"
 #include "tests/support/expect_error.h"
+#include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
+#include "woodcock/grid/vdb/read_grids.h"
 #include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/grid/vdb/openvdb_grids.h"
-#include "woodcock/grid/vdb/read_grids.h"
 
 namespace woodcock::test {
+
+using namespace grid;
+using namespace proof;
+
 namespace {
 
 std::vector<std::string> readableNames(const VdbFile& file) {

@@ -5,13 +5,16 @@
 
 #include <random>
 
+#include "woodcock/base/error.h"
+#include "woodcock/base/vec.h"
 #include "woodcock/proof/oracles/chandrasekhar.h"
 #include "woodcock/proof/oracles/closed_forms.h"
 #include "woodcock/proof/oracles/quadrature.h"
-#include "woodcock/base/error.h"
-#include "woodcock/base/vec.h"
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 const std::vector<double> angles{1, 0.8, 0.5, 0.1, 0.01};

@@ -5,10 +5,13 @@
 
 #include <cmath>
 
-#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 const std::vector<double> albedos{0.01, 0.5, 0.9, 0.9999, 1 - 1e-12, 1};

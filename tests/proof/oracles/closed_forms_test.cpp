@@ -7,10 +7,13 @@
 #include <cmath>
 #include <limits>
 
-#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

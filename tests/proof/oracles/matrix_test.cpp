@@ -6,6 +6,9 @@
 #include <random>
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 Matrix filled(std::size_t size, unsigned seed) {

@@ -5,10 +5,13 @@
 
 #include <cmath>
 
-#include "woodcock/proof/oracles/adding_doubling.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/proof/oracles/adding_doubling.h"
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 const std::vector<double> cosines{1, 0.8, 0.5, 0.1, 0.01};

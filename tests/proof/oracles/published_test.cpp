@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "woodcock/base/vec.h"
 #include "woodcock/proof/oracles/adding_doubling.h"
 #include "woodcock/proof/oracles/chandrasekhar.h"
-#include "woodcock/base/vec.h"
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 constexpr double sixDecimals = 0.5001e-6;  // the halves that were rounded to even included

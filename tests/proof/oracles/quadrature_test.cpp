@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 TEST(GaussLegendre, IsExactForPolynomials) {

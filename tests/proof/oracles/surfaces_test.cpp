@@ -8,6 +8,9 @@
 #include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
+
+using namespace oracle;
+
 namespace {
 
 /// Irradiance from the parallelogram, by the definition: cos cos' / distance^2 over its area.

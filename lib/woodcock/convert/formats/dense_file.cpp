@@ -14,7 +14,7 @@
 #include "woodcock/base/whole_file.h"
 #include "woodcock/grid/half.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -29,7 +29,7 @@ std::optional<Sample> toSample(double v) {
     } else if constexpr (std::is_same_v<Sample, HalfBits>) {
         const auto f = static_cast<float>(v);
         if (!(std::abs(f) < 65520.0f)) return {};  // from there on a half is infinite
-        return HalfBits{encodeHalf(f)};
+        return HalfBits{grid::encodeHalf(f)};
     } else {
         const double whole = std::nearbyint(v);
         // The ends as doubles: the upper one may be rounded up, and is then out of range.
@@ -43,7 +43,7 @@ std::optional<Sample> toSample(double v) {
 template <class Sample>
 double toDouble(Sample sample) {
     if constexpr (std::is_same_v<Sample, HalfBits>)
-        return static_cast<double>(decodeHalf(sample.bits));
+        return static_cast<double>(grid::decodeHalf(sample.bits));
     else
         return static_cast<double>(sample);
 }
@@ -187,4 +187,4 @@ double writeDenseFile(const std::filesystem::path& file, const DenseVolume& volu
     return most;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -7,7 +7,7 @@
 
 #include "woodcock/convert/dense_volume.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// Which axis varies fastest in a file. Channels are innermost in both.
 enum class VoxelOrder { XFastest, ZFastest };
@@ -34,4 +34,4 @@ void appendLittleEndian(std::string& bytes, T value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -8,7 +8,7 @@
 
 #include "woodcock/convert/dense_volume.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 // Readers. Each throws Error{Input} that names the file, what was found and what was expected. A
 // file's length is checked against its header before memory is taken.
@@ -86,4 +86,4 @@ double writeMitsubaVolume(const std::filesystem::path& file, const DenseVolume& 
 double writeNrrd(const std::filesystem::path& file, const DenseVolume& volume,
                  const DenseWriteOptions& options);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

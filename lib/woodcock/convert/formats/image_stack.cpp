@@ -2,12 +2,12 @@
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/image/read_slices.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
-DenseVolume upright(Slices read) {
-    auto slices = std::make_shared<Slices>(std::move(read));
+DenseVolume upright(image::Slices read) {
+    auto slices = std::make_shared<image::Slices>(std::move(read));
     DenseVolume volume;
     volume.dims = {slices->width, slices->height, static_cast<std::int64_t>(slices->count)};
     volume.channels = slices->channels;
@@ -22,19 +22,19 @@ DenseVolume upright(Slices read) {
 
 }  // namespace
 
-bool isImagePattern(const std::filesystem::path& file) { return hasSliceNumber(file); }
+bool isImagePattern(const std::filesystem::path& file) { return image::hasSliceNumber(file); }
 
 DenseVolume readImageStack(const std::filesystem::path& pattern, const WorkProgress& progress) {
-    return upright(readSlices(pattern, progress));
+    return upright(image::readSlices(pattern, progress));
 }
 
 DenseVolume readImageFiles(const std::vector<std::filesystem::path>& files,
                            const WorkProgress& progress) {
-    return upright(readSliceFiles(files, progress));
+    return upright(image::readSliceFiles(files, progress));
 }
 
 DenseVolume readImagePages(const std::filesystem::path& file, const WorkProgress& progress) {
-    return upright(readPages(file, progress));
+    return upright(image::readPages(file, progress));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

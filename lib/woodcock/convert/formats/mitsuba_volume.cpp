@@ -6,14 +6,14 @@
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/source_bytes.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
 constexpr std::uint64_t headerBytes = 48;
 
 template <class T>
-T littleEndian(FileBytes& file) {
+T littleEndian(grid::FileBytes& file) {
     const T value = file.value<T>();
     return std::endian::native == std::endian::little ? value : swapBytes(value);
 }
@@ -59,7 +59,7 @@ void placeInBox(DenseVolume& volume, Vec3d lower, Vec3d upper, const std::filesy
 }  // namespace
 
 DenseVolume readMitsubaVolume(const std::filesystem::path& file) {
-    auto bytes = std::make_shared<FileBytes>(file, "a Mitsuba volume");
+    auto bytes = std::make_shared<grid::FileBytes>(file, "a Mitsuba volume");
     const std::span<const char> magic = bytes->bytes(3);
     if (std::string_view(magic.data(), 3) != "VOL")
         throw inputError("{} is not a Mitsuba volume: it begins with '{}' instead of 'VOL'",
@@ -113,4 +113,4 @@ double writeMitsubaVolume(const std::filesystem::path& file, const DenseVolume& 
                           options.progress);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

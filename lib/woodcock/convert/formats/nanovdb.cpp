@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/base/error.h"
 #include "woodcock/convert/formats/nanovdb.h"
+#include "woodcock/base/error.h"
 
 #ifdef WOODCOCK_WITH_NANOVDB
 #include <nanovdb/util/IO.h>
@@ -16,7 +16,7 @@
 #include "woodcock/grid/nanovdb/buffer.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -49,7 +49,7 @@ nanovdb::io::Codec codecOf(NanoVdbCompression compression) {
     return nanovdb::io::Codec::NONE;
 }
 
-using Handle = nanovdb::GridHandle<NanoBuffer>;
+using Handle = nanovdb::GridHandle<grid::NanoBuffer>;
 
 template <class TreeT,
           class BuildT = typename nanovdb::OpenToNanoType<typename TreeT::BuildType>::Type>
@@ -59,8 +59,8 @@ Handle toNano(const openvdb::GridBase& base) {
     // Minimum and maximum do not depend on the order of threads; averages would.
     const auto stats = grid.tree().activeVoxelCount() > 0 ? nanovdb::StatsMode::MinMax
                                                           : nanovdb::StatsMode::Disable;
-    return nanovdb::openToNanoVDB<NanoBuffer, TreeT, BuildT>(grid, stats,
-                                                             nanovdb::ChecksumMode::Full);
+    return nanovdb::openToNanoVDB<grid::NanoBuffer, TreeT, BuildT>(grid, stats,
+                                                                   nanovdb::ChecksumMode::Full);
 }
 
 void measureLoss(const openvdb::FloatGrid& grid, const Handle& handle, NanoVdbLoss& most) {
@@ -88,7 +88,7 @@ Handle toNano(const openvdb::GridBase& grid, bool quantise, NanoVdbLoss& loss) {
 
 }  // namespace
 
-NanoVdbLoss writeNanoVdb(const fs::path& file, const VdbGrids& grids,
+NanoVdbLoss writeNanoVdb(const fs::path& file, const grid::VdbGrids& grids,
                          const NanoVdbWriteOptions& options) {
     if (grids.grids.empty())
         throw usageError("cannot write '{}': there are no grids", file.string());
@@ -113,19 +113,19 @@ NanoVdbLoss writeNanoVdb(const fs::path& file, const VdbGrids& grids,
     return loss;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert
 
 #else
 
-namespace woodcock {
+namespace woodcock::convert {
 
-NanoVdbLoss writeNanoVdb(const std::filesystem::path& file, const VdbGrids&,
+NanoVdbLoss writeNanoVdb(const std::filesystem::path& file, const grid::VdbGrids&,
                          const NanoVdbWriteOptions&) {
     throw failure(
         "cannot write '{}': this build has no NanoVDB; install libnanovdb-dev and configure again",
         file.string());
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert
 
 #endif

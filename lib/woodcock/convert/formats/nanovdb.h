@@ -3,9 +3,11 @@
 
 #include <filesystem>
 
-namespace woodcock {
-
+namespace woodcock::grid {
 struct VdbGrids;
+}
+
+namespace woodcock::convert {
 
 /// How the bytes of a NanoVDB file are packed. Every program reads `None`; some lack `Blosc`.
 enum class NanoVdbCompression { None, Zip, Blosc };
@@ -26,7 +28,7 @@ struct NanoVdbLoss {
 /// them. Returns the loss by quantising. Errors: Usage for a grid of another type, or with a
 /// transform that is not affine; Failure with the system's reason, and where this build has no
 /// NanoVDB.
-NanoVdbLoss writeNanoVdb(const std::filesystem::path& file, const VdbGrids& grids,
+NanoVdbLoss writeNanoVdb(const std::filesystem::path& file, const grid::VdbGrids& grids,
                          const NanoVdbWriteOptions& options = {});
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -10,7 +10,7 @@
 #include "woodcock/convert/formats/source_bytes.h"
 #include "woodcock/convert/formats/zip_archive.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -193,7 +193,7 @@ std::string shapeText(const std::vector<std::int64_t>& shape) {
 }
 
 /// One array of an archive. Absent, with a note, where it is not a volume.
-std::optional<DenseVolume> readArray(FileBytes& file, const ZipEntry& entry, bool wanted,
+std::optional<DenseVolume> readArray(grid::FileBytes& file, const ZipEntry& entry, bool wanted,
                                      std::vector<std::string>& notes) {
     const UnpackedEntry unpacked = unpackZipEntry(file, entry);
     const std::filesystem::path place =
@@ -222,7 +222,7 @@ std::optional<DenseVolume> readArray(FileBytes& file, const ZipEntry& entry, boo
 
 std::vector<DenseVolume> readNpz(const std::filesystem::path& path,
                                  const std::optional<std::string>& array) {
-    FileBytes file(path, "an archive of NumPy arrays");
+    grid::FileBytes file(path, "an archive of NumPy arrays");
     std::vector<ZipEntry> entries;
     std::vector<std::string> names;
     for (ZipEntry& entry : listZip(file)) {
@@ -263,7 +263,7 @@ std::vector<DenseVolume> readNpz(const std::filesystem::path& path,
 }
 
 DenseVolume readNpy(const std::filesystem::path& file) {
-    auto bytes = std::make_shared<FileBytes>(file, "a NumPy array");
+    auto bytes = std::make_shared<grid::FileBytes>(file, "a NumPy array");
     const NpyHeader header(readHeaderText(*bytes), file);
     DenseVolume volume = describeArray(header, file);
     const std::uint64_t begin = bytes->position();
@@ -291,4 +291,4 @@ double writeNpy(const std::filesystem::path& file, const DenseVolume& volume,
                           options.progress);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

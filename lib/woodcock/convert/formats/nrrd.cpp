@@ -11,7 +11,7 @@
 #include "woodcock/convert/formats/number_text.h"
 #include "woodcock/convert/formats/source_bytes.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace fs = std::filesystem;
 
@@ -95,7 +95,7 @@ NrrdData describeData(const NrrdHeader& header) {
     return data;
 }
 
-void skipLines(FileBytes& file, std::int64_t lines) {
+void skipLines(grid::FileBytes& file, std::int64_t lines) {
     while (lines > 0) {
         if (file.left() == 0)
             throw inputError("{}: the NRRD field 'lineskip' skips the whole file",
@@ -108,7 +108,7 @@ void skipLines(FileBytes& file, std::int64_t lines) {
 constexpr std::uint64_t largestInflation = 1032;
 
 /// All that is left of the file, in memory.
-std::span<const char> restOf(FileBytes& file) {
+std::span<const char> restOf(grid::FileBytes& file) {
     const std::uint64_t begin = file.position();
     file.enter(begin, file.size(), "its values");
     file.loadAll();
@@ -116,7 +116,7 @@ std::span<const char> restOf(FileBytes& file) {
 }
 
 /// Inflates as many bytes as `to` has, after the skipped ones. True where there are more.
-bool inflateInto(FileBytes& file, std::uint64_t skipped, std::span<char> to) {
+bool inflateInto(grid::FileBytes& file, std::uint64_t skipped, std::span<char> to) {
     const std::uint64_t needed = skipped + to.size();
     if (needed / largestInflation > file.left())
         throw inputError("{}: {} bytes of values are needed, and {} bytes of gzip cannot hold them",
@@ -158,7 +158,7 @@ bool inflateInto(FileBytes& file, std::uint64_t skipped, std::span<char> to) {
 }
 
 /// Numbers as text become floats or doubles. True where there are more.
-bool parseInto(FileBytes& file, SampleType type, std::span<char> to) {
+bool parseInto(grid::FileBytes& file, SampleType type, std::span<char> to) {
     const std::uint64_t count = to.size() / sampleBytes(type);
     if (count / 2 > file.left())
         throw inputError("{}: {} numbers are needed, and {} characters cannot hold them",
@@ -180,7 +180,7 @@ bool parseInto(FileBytes& file, SampleType type, std::span<char> to) {
 }
 
 /// The position of the raw values; checks that `needed` bytes are there.
-std::uint64_t rawBegin(FileBytes& file, const NrrdData& data, std::uint64_t needed) {
+std::uint64_t rawBegin(grid::FileBytes& file, const NrrdData& data, std::uint64_t needed) {
     const std::uint64_t left = file.left();
     const auto skip = static_cast<std::uint64_t>(std::max<std::int64_t>(data.skipBytes, 0));
     if (needed > left || skip > left - needed)
@@ -192,7 +192,7 @@ std::uint64_t rawBegin(FileBytes& file, const NrrdData& data, std::uint64_t need
 
 /// Fills `to` from a file, whose position is at its values, or at lines to be skipped. True where
 /// it has more.
-bool readPart(FileBytes& file, const NrrdData& data, SampleType type, std::span<char> to) {
+bool readPart(grid::FileBytes& file, const NrrdData& data, SampleType type, std::span<char> to) {
     skipLines(file, data.skipLines);
     if (data.encoding == "raw") {
         const std::uint64_t begin = rawBegin(file, data, to.size());
@@ -211,7 +211,7 @@ bool readPart(FileBytes& file, const NrrdData& data, SampleType type, std::span<
 }
 
 /// Attached raw values, of which no copy is made.
-bool loadAttached(DenseVolume& volume, std::shared_ptr<FileBytes> file, const NrrdData& data,
+bool loadAttached(DenseVolume& volume, std::shared_ptr<grid::FileBytes> file, const NrrdData& data,
                   std::uint64_t needed) {
     skipLines(*file, data.skipLines);
     const std::uint64_t begin = rawBegin(*file, data, needed);
@@ -233,7 +233,7 @@ bool loadDetached(DenseVolume& volume, const NrrdHeader& header, const NrrdData&
     bool more = false;
     for (std::size_t i = 0; i < files.size(); ++i) {
         try {
-            FileBytes file(files[i], "the data of a NRRD file");
+            grid::FileBytes file(files[i], "the data of a NRRD file");
             more = readPart(file, data, volume.type, to.subspan(i * part, part)) || more;
         } catch (const Error& e) {
             throw Error(e.kind(), fmt::format("{}: its data: {}", header.file.string(), e.what()));
@@ -259,7 +259,8 @@ void setByteOrder(DenseVolume& volume, const NrrdHeader& header) {
     volume.swapped = (endian == "big") != (std::endian::native == std::endian::big);
 }
 
-void loadValues(DenseVolume& volume, const NrrdHeader& header, std::shared_ptr<FileBytes> file) {
+void loadValues(DenseVolume& volume, const NrrdHeader& header,
+                std::shared_ptr<grid::FileBytes> file) {
     const NrrdData data = describeData(header);
     if (data.encoding == "ascii")
         volume.type = fitsFloat(volume.type) ? SampleType::F32 : SampleType::F64;
@@ -291,7 +292,7 @@ void loadValues(DenseVolume& volume, const NrrdHeader& header, std::shared_ptr<F
 }  // namespace
 
 DenseVolume readNrrd(const fs::path& path) {
-    auto file = std::make_shared<FileBytes>(path, "a NRRD file");
+    auto file = std::make_shared<grid::FileBytes>(path, "a NRRD file");
     const NrrdHeader header = readNrrdHeader(*file);
     const NrrdAxes axes = nrrdAxes(header);
     DenseVolume volume;
@@ -362,4 +363,4 @@ double writeNrrd(const std::filesystem::path& file, const DenseVolume& volume,
                           options.progress);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

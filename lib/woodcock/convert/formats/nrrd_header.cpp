@@ -9,7 +9,7 @@
 #include "woodcock/base/printable.h"
 #include "woodcock/convert/formats/number_text.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::string trimmed(std::string_view text) {
 }
 
 /// The next line, of a sane length; nothing at the end of the file.
-std::optional<std::string> readLine(FileBytes& file) {
+std::optional<std::string> readLine(grid::FileBytes& file) {
     if (file.left() == 0) return {};
     std::string line;
     while (file.left() > 0) {
@@ -35,7 +35,7 @@ std::optional<std::string> readLine(FileBytes& file) {
     return line;
 }
 
-void readMagic(FileBytes& file) {
+void readMagic(grid::FileBytes& file) {
     const std::span<const char> magic = file.bytes(std::min<std::uint64_t>(file.left(), 8));
     const std::string_view text(magic.data(), magic.size());
     if (text.size() < 8 || !text.starts_with("NRRD000") || text[7] < '1' || text[7] > '6')
@@ -194,7 +194,7 @@ std::int64_t nrrdWhole(const NrrdHeader& header, const std::string& field,
     return n;
 }
 
-NrrdHeader readNrrdHeader(FileBytes& file) {
+NrrdHeader readNrrdHeader(grid::FileBytes& file) {
     NrrdHeader header{file.path(), {}, {}};
     readMagic(file);
     while (true) {
@@ -343,4 +343,4 @@ void placeNrrd(DenseVolume& volume, const NrrdHeader& header, const NrrdAxes& ax
                 fmt::format("{}: the NRRD field '{}' is ignored", header.file.string(), ignored));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

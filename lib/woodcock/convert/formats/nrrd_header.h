@@ -12,7 +12,7 @@
 #include "woodcock/convert/dense_volume.h"
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// The header of a NRRD file: before its values, or in a file of its own.
 struct NrrdHeader {
@@ -28,7 +28,7 @@ struct NrrdHeader {
 
 /// Reads up to the empty line before the data, or to the end where the data are in other files.
 /// Errors: Input.
-NrrdHeader readNrrdHeader(FileBytes& file);
+NrrdHeader readNrrdHeader(grid::FileBytes& file);
 
 /// The words of a text, separated by spaces; a vector in parentheses is one word.
 std::vector<std::string> nrrdWords(const std::string& text);
@@ -62,4 +62,4 @@ SampleType nrrdType(const NrrdHeader& header);
 /// (3D-right-handed, scanner-xyz) stay, and 3D-left-handed gets its z reversed.
 void placeNrrd(DenseVolume& volume, const NrrdHeader& header, const NrrdAxes& axes);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

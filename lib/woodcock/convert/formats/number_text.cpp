@@ -6,7 +6,7 @@
 
 #include "woodcock/base/printable.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -46,4 +46,4 @@ void NumberText::skipSpace() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(separators), rest_.size()));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

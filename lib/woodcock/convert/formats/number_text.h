@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// The whole text as a number; a plus sign is allowed. Absent where it is not a number.
 std::optional<double> parseDouble(std::string_view text);
@@ -25,4 +25,4 @@ private:
     std::string_view rest_;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -4,13 +4,13 @@
 #include <cstring>
 #include <set>
 
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/base/printable.h"
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/number_text.h"
 #include "woodcock/convert/formats/source_bytes.h"
-#include "woodcock/base/nearest_name.h"
-#include "woodcock/base/printable.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -242,7 +242,7 @@ bool maySample(const PbrtParameter& parameter) {
 
 std::vector<DenseVolume> readPbrtGrids(const std::filesystem::path& path,
                                        const std::optional<std::string>& wanted) {
-    FileBytes file(path, "a pbrt scene");
+    grid::FileBytes file(path, "a pbrt scene");
     requireMemory(2 * static_cast<double>(file.size()), path.string());
     file.loadAll();
     const std::span<const char> text = file.loaded(0, file.size());
@@ -285,4 +285,4 @@ std::vector<DenseVolume> readPbrtGrids(const std::filesystem::path& path,
     return volumes;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -7,7 +7,7 @@
 #include "woodcock/convert/formats/number_text.h"
 #include "woodcock/grid/input_file.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -77,7 +77,7 @@ bool haveDecimalCommas(const std::vector<TableCell>& cells) {
 }  // namespace
 
 std::string readTableText(const std::filesystem::path& file) {
-    std::string text = readInput(file);
+    std::string text = grid::readInput(file);
     if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
     const bool marked = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
     if (marked || text.find('\0') < 64)
@@ -127,4 +127,4 @@ std::string_view commentMark(std::string_view line) {
     return {};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

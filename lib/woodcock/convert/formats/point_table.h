@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// The text of a table, without a byte order mark, each line ended by '\n'. Errors: Input for
 /// UTF-16 and for files that are not text; and those of readInput().
@@ -34,4 +34,4 @@ std::optional<double> cellNumber(std::string_view text, bool decimalComma);
 /// The mark of a comment at the beginning of a line: #, // or %; empty where it is none.
 std::string_view commentMark(std::string_view line);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -15,7 +15,7 @@
 #include "woodcock/grid/input_file.h"
 #include "woodcock/mesh/ply_file.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -148,12 +148,13 @@ void requireColumns(const fs::path& file, const Columns& columns) {
 }
 
 PointCloud readPlyPoints(const fs::path& file) {
-    const std::vector<PlyElement> elements = readPly(file);
-    const auto vertices = std::find_if(elements.begin(), elements.end(),
-                                       [](const PlyElement& e) { return e.name == "vertex"; });
+    const std::vector<mesh::PlyElement> elements = mesh::readPly(file);
+    const auto vertices =
+        std::find_if(elements.begin(), elements.end(),
+                     [](const mesh::PlyElement& e) { return e.name == "vertex"; });
     if (vertices == elements.end()) throw inputError("{} has no vertices", file.string());
     Columns columns;
-    for (const PlyElement::Property& property : vertices->properties)
+    for (const mesh::PlyElement::Property& property : vertices->properties)
         columns.add(property.name, property.isList ? Column::Other : columnNamed(property.name));
     requireColumns(file, columns);
     PointCloud cloud;
@@ -322,4 +323,4 @@ PointCloud readPoints(const fs::path& file, const std::optional<std::string>& co
     return cloud;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

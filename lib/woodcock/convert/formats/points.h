@@ -8,7 +8,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 struct PointCloud {
     std::vector<Vec3d> points;
@@ -27,4 +27,4 @@ struct PointCloud {
 PointCloud readPoints(const std::filesystem::path& file,
                       const std::optional<std::string>& columns = {});
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

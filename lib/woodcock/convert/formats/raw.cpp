@@ -3,7 +3,7 @@
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/convert/formats/source_bytes.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 DenseVolume readRaw(const std::filesystem::path& file, const RawLayout& layout) {
     DenseVolume volume;
@@ -11,7 +11,7 @@ DenseVolume readRaw(const std::filesystem::path& file, const RawLayout& layout) 
     volume.channels = layout.channels;
     volume.type = layout.type;
     volume.swapped = layout.bigEndian != (std::endian::native == std::endian::big);
-    auto bytes = std::make_shared<FileBytes>(file, "a file of numbers");
+    auto bytes = std::make_shared<grid::FileBytes>(file, "a file of numbers");
     if (layout.headerBytes > bytes->size())
         throw inputError("{}: --header gives {} bytes, and the whole file has {}", file.string(),
                          layout.headerBytes, bytes->size());
@@ -26,4 +26,4 @@ double writeRaw(const std::filesystem::path& file, const DenseVolume& volume,
                           options.progress);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

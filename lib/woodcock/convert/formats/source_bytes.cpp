@@ -3,7 +3,7 @@
 
 #include "woodcock/base/memory.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -55,7 +55,7 @@ void requireMemory(double bytes, const std::string& what) {
                          formatGiB(limit));
 }
 
-void loadSamples(DenseVolume& volume, std::shared_ptr<FileBytes> file, std::uint64_t begin) {
+void loadSamples(DenseVolume& volume, std::shared_ptr<grid::FileBytes> file, std::uint64_t begin) {
     const std::uint64_t needed = requireDims(volume, file->path());
     const std::uint64_t found = file->size() - std::min(begin, file->size());
     if (needed != found) {
@@ -74,4 +74,4 @@ void loadSamples(DenseVolume& volume, std::shared_ptr<FileBytes> file, std::uint
     volume.owner = std::move(file);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -9,10 +9,10 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/printable.h"
-#include "woodcock/convert/sample_type.h"
 #include "woodcock/convert/formats/source_bytes.h"
+#include "woodcock/convert/sample_type.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr std::uint32_t in64 = 0xffffffff;  // the number is that of 64 bits
 constexpr std::uint64_t mostEntries = 100000;
 
 template <class T>
-T little(FileBytes& file) {
+T little(grid::FileBytes& file) {
     const T value = file.value<T>();
     return std::endian::native == std::endian::little ? value : swapBytes(value);
 }
@@ -34,7 +34,7 @@ struct Directory {
     std::uint64_t begin = 0, entries = 0;
 };
 
-Directory readDirectory64(FileBytes& file, std::uint64_t endPlace) {
+Directory readDirectory64(grid::FileBytes& file, std::uint64_t endPlace) {
     if (endPlace < locator64Bytes) throw file.damaged("no directory of the archive");
     file.seek(endPlace - locator64Bytes);
     if (little<std::uint32_t>(file) != locator64Sign)
@@ -53,7 +53,7 @@ Directory readDirectory64(FileBytes& file, std::uint64_t endPlace) {
     return directory;
 }
 
-Directory findDirectory(FileBytes& file) {
+Directory findDirectory(grid::FileBytes& file) {
     file.enter(0, file.size(), "its directory");
     const std::uint64_t reach = std::min(file.size(), endBytes + longestComment);
     file.seek(file.size() - reach);
@@ -77,7 +77,7 @@ Directory findDirectory(FileBytes& file) {
 }
 
 /// The 64-bit numbers of an entry, in their fixed order, for those that do not fit 32.
-void readExtra(FileBytes& file, std::uint64_t length, ZipEntry& entry) {
+void readExtra(grid::FileBytes& file, std::uint64_t length, ZipEntry& entry) {
     constexpr std::uint16_t numbers64 = 1;
     const std::uint64_t end = file.position() + length;
     while (file.position() + 4 <= end) {
@@ -92,7 +92,7 @@ void readExtra(FileBytes& file, std::uint64_t length, ZipEntry& entry) {
     file.seek(end);
 }
 
-ZipEntry readEntry(FileBytes& file) {
+ZipEntry readEntry(grid::FileBytes& file) {
     if (file.left() < entryBytes || little<std::uint32_t>(file) != entrySign)
         throw file.damaged("an entry of the archive's directory");
     ZipEntry entry;
@@ -124,7 +124,7 @@ ZipEntry readEntry(FileBytes& file) {
 /// Deflate makes of one byte 1032 at most.
 constexpr std::uint64_t largestInflation = 1032;
 
-void requireSize(const FileBytes& file, const ZipEntry& entry) {
+void requireSize(const grid::FileBytes& file, const ZipEntry& entry) {
     const bool fits =
         entry.deflated ? entry.size / largestInflation <= entry.stored : entry.size == entry.stored;
     if (!fits || entry.stored > file.size())
@@ -133,7 +133,7 @@ void requireSize(const FileBytes& file, const ZipEntry& entry) {
 }
 
 /// Brings the entry's bytes into memory.
-std::span<const char> loadStored(FileBytes& file, const ZipEntry& entry) {
+std::span<const char> loadStored(grid::FileBytes& file, const ZipEntry& entry) {
     const std::string place = fmt::format("'{}'", entry.name);
     file.enter(std::min(entry.header, file.size()), file.size(), place);
     if (file.left() < localBytes || little<std::uint32_t>(file) != localSign)
@@ -170,7 +170,7 @@ bool inflateInto(std::span<const char> packed, std::span<char> to) {
 
 }  // namespace
 
-std::vector<ZipEntry> listZip(FileBytes& file) {
+std::vector<ZipEntry> listZip(grid::FileBytes& file) {
     const Directory directory = findDirectory(file);
     if (directory.begin > file.size() || directory.entries > mostEntries)
         throw file.damaged(fmt::format("a directory of {} entries at byte {}", directory.entries,
@@ -184,7 +184,7 @@ std::vector<ZipEntry> listZip(FileBytes& file) {
     return entries;
 }
 
-UnpackedEntry unpackZipEntry(FileBytes& file, const ZipEntry& entry) {
+UnpackedEntry unpackZipEntry(grid::FileBytes& file, const ZipEntry& entry) {
     requireMemory(static_cast<double>(entry.size) + static_cast<double>(entry.stored),
                   fmt::format("{}: '{}'", file.path().string(), entry.name));
     const std::span<const char> stored = loadStored(file, entry);
@@ -199,4 +199,4 @@ UnpackedEntry unpackZipEntry(FileBytes& file, const ZipEntry& entry) {
     return {bytes, {bytes.get(), static_cast<std::size_t>(entry.size)}};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -9,7 +9,7 @@
 
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::convert {
 
 /// A file within a zip archive.
 struct ZipEntry {
@@ -24,7 +24,7 @@ struct ZipEntry {
 /// All files of an archive, by its central directory, of 32 or 64 bits. Positions are checked, and
 /// no entry claims more bytes than deflate can make of its stored ones. Errors: Input where the
 /// file is not an archive, is damaged, encrypted, or packed in another way.
-std::vector<ZipEntry> listZip(FileBytes& file);
+std::vector<ZipEntry> listZip(grid::FileBytes& file);
 
 struct UnpackedEntry {
     std::shared_ptr<const char[]> owner;
@@ -33,6 +33,6 @@ struct UnpackedEntry {
 
 /// The bytes of an entry. Errors: Input where they are damaged, by their checksum too, and where
 /// they are more than the memory of the machine.
-UnpackedEntry unpackZipEntry(FileBytes& file, const ZipEntry& entry);
+UnpackedEntry unpackZipEntry(grid::FileBytes& file, const ZipEntry& entry);
 
-}  // namespace woodcock
+}  // namespace woodcock::convert

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// Memory for a NanoVDB grid, aligned as its nodes must be. It is filled with zeros, where
 /// NanoVDB's own buffer would write old memory into a file's gaps. NanoVDB's templates take it as a
@@ -33,4 +33,4 @@ private:
     std::uint64_t size_ = 0;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

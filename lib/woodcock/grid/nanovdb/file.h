@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "woodcock/base/affine.h"
-#include "woodcock/grid/vdb/file_bytes.h"
 #include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 struct VdbGrids;
 
@@ -45,4 +45,4 @@ NanoVdbHeads readNanoVdbHeads(FileBytes& file);
 /// is wrong; Failure where it does not fit into memory or this build has no NanoVDB.
 VdbGrids readNanoVdbGrid(const std::filesystem::path& file, std::size_t index);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

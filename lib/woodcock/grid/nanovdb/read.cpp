@@ -7,7 +7,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 bool isNanoVdb(FileBytes& file) {
     constexpr std::string_view name = "NanoVDB";
@@ -20,7 +20,7 @@ bool isNanoVdb(FileBytes& file) {
     return beginning.starts_with(name) || turned;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid
 
 #ifdef WOODCOCK_WITH_NANOVDB
 #include <nanovdb/NanoVDB.h>
@@ -39,7 +39,7 @@ bool isNanoVdb(FileBytes& file) {
 #include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace fs = std::filesystem;
 
@@ -436,11 +436,11 @@ VdbGrids readNanoVdbGrid(const fs::path& path, std::size_t index) {
     return {{grid}};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid
 
 #else
 
-namespace woodcock {
+namespace woodcock::grid {
 
 bool hasNanoVdb() { return false; }
 
@@ -456,6 +456,6 @@ NanoVdbHeads readNanoVdbHeads(FileBytes& file) { throw noNanoVdb(file.path()); }
 
 VdbGrids readNanoVdbGrid(const std::filesystem::path& file, std::size_t) { throw noNanoVdb(file); }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid
 
 #endif

@@ -11,7 +11,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -212,6 +212,6 @@ NanoBuffer unpackNanoHead(FileBytes& file, const NanoListing& grid, std::uint64_
     return buffer;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid
 
 #endif

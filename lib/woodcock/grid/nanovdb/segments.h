@@ -8,7 +8,7 @@
 #include "woodcock/grid/nanovdb/buffer.h"
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 enum class NanoCodec : std::uint16_t { None, Zip, Blosc };
 
@@ -31,4 +31,4 @@ NanoBuffer unpackNanoGrid(FileBytes& file, const NanoListing& grid);
 /// The first `bytes` of them, or fewer where there are no more. Errors: Input.
 NanoBuffer unpackNanoHead(FileBytes& file, const NanoListing& grid, std::uint64_t bytes);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -9,7 +9,7 @@
 #include "woodcock/grid/vdb/openvdb_transform.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -98,4 +98,4 @@ VdbGridHead readGridHead(FileBytes& file) {
     return head;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -10,7 +10,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The head of a grid: everything before its tree.
 struct VdbGridHead {
@@ -26,4 +26,4 @@ struct VdbGridHead {
 /// Reads the head at the current position and stops where the tree begins. Errors: Input.
 VdbGridHead readGridHead(FileBytes& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -11,7 +11,7 @@
 #include "woodcock/grid/vdb/check_grid_head.h"
 #include "woodcock/grid/vdb/check_tree.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -126,4 +126,4 @@ VdbHeader readVdbHeader(FileBytes& file) {
     return header;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -7,7 +7,7 @@
 
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The table of contents of a .vdb file.
 struct VdbHeader {
@@ -28,4 +28,4 @@ struct VdbHeader {
 /// stream with a grid that cannot be skipped.
 VdbHeader readVdbHeader(FileBytes& file);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

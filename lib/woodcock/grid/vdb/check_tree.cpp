@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -205,4 +205,4 @@ VdbLayout findLayout(FileBytes& file, const VdbValueType& type, std::uint32_t co
     return LayoutReader(file, type, compression, savedAsHalf).read();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -8,7 +8,7 @@
 
 #include "woodcock/grid/vdb/file_bytes.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// Value type and number of channels of a tree type: {"float", 1} for "Tree_float_5_4_3"; channels
 /// are 0 for a tree that cannot become a field.
@@ -35,4 +35,4 @@ struct VdbLayout {
 VdbLayout findLayout(FileBytes& file, const VdbValueType& type, std::uint32_t compression,
                      bool savedAsHalf);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

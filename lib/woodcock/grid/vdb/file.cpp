@@ -12,7 +12,7 @@
 #include "woodcock/grid/vdb/check_tree.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -185,4 +185,4 @@ const char* gridClassName(GridClass gridClass) {
     return "unknown";
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

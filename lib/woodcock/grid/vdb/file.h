@@ -11,7 +11,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 enum class GridClass { Unknown, FogVolume, LevelSet, Staggered };
 
@@ -36,7 +36,7 @@ struct GridListing {
 
 struct VdbFile {
     std::filesystem::path path;
-    std::string version;             ///< "OpenVDB 10.0, file format 224", "NanoVDB 32.4"
+    std::string version;  ///< "OpenVDB 10.0, file format 224", "NanoVDB 32.4"
     std::string warning =
         {};  ///< that the format is newer than the newest known one; usually empty
     std::vector<GridListing> grids;  ///< in the order of the file
@@ -56,4 +56,4 @@ std::size_t indexOf(const VdbFile& file, const std::string& uniqueName);
 
 const char* gridClassName(GridClass gridClass);  ///< "fog volume", as OpenVDB calls it
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

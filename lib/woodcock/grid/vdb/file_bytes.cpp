@@ -11,7 +11,7 @@
 
 #include "woodcock/base/frame_names.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -128,4 +128,4 @@ MemoryBuffer::pos_type MemoryBuffer::seekpos(pos_type position, std::ios_base::o
     return seekoff(off_type(position), std::ios_base::beg, mode);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

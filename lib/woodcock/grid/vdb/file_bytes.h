@@ -14,7 +14,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// Reads a file piece by piece, from any position, and never beyond its end. The bytes are copied:
 /// if the file shrinks meanwhile, that is an error, where a mapped file would end the program.
@@ -98,4 +98,4 @@ protected:
     pos_type seekpos(pos_type position, std::ios_base::openmode mode) override;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

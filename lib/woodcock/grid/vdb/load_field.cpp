@@ -11,7 +11,7 @@
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/grid/grid_roles.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -149,4 +149,4 @@ LoadedGrid loadGrid(const std::filesystem::path& path, std::string_view gridName
     return loaded;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -11,7 +11,7 @@
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/read_voxels.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// What a grid is loaded as. A scalar grid can be loaded as a colour: it is grey, and its field has
 /// one channel.
@@ -53,4 +53,4 @@ LoadedGrid loadGrid(const std::filesystem::path& path, std::string_view gridName
 /// "3 NaN voxels (first at [1, 2, 3]), 1 negative voxel (first at [4, 0, 0])"; empty for none.
 std::string describeFaults(const GridStatistics& statistics, bool nonNegative);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

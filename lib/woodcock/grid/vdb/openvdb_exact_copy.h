@@ -5,7 +5,7 @@
 
 #include "woodcock/grid/vdb/openvdb_transform.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// A copy with every digit of the voxels' size. OpenVDB's own copy of a transform, and so of a
 /// grid, finds that size as a difference of two points: far from the origin a size of 0.1 becomes
@@ -17,4 +17,4 @@ inline openvdb::math::Transform::Ptr exactCopy(const openvdb::math::Transform& t
     return openVdbTransform(affineOf(map));
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -3,7 +3,7 @@
 
 #include <openvdb/Grid.h>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// OpenVDB's grids in memory. Headers only declare it (`struct VdbGrids;`), as OpenVDB's own
 /// headers take seconds to compile.
@@ -11,4 +11,4 @@ struct VdbGrids {
     openvdb::GridPtrVec grids;
 };
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

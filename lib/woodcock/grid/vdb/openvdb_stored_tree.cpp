@@ -8,7 +8,7 @@
 #include "woodcock/grid/vdb/check_grid_head.h"
 #include "woodcock/grid/vdb/check_header.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -84,4 +84,4 @@ TreeStream::TreeStream(const StoredTree& tree)
     openvdb::io::setDataCompression(*this, tree.compression);
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

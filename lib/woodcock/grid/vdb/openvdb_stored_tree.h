@@ -5,12 +5,12 @@
 #include <span>
 #include <string>
 
-#include "woodcock/grid/vdb/file_bytes.h"
-#include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/check_tree.h"
+#include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/vdb/file_bytes.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The bytes of a tree in memory, and what is needed to read them. They have been checked: OpenVDB
 /// can read them within bounds.
@@ -52,4 +52,4 @@ void readLeafOf(const StoredTree& stored, TreeStream& stream, std::size_t i, Lea
         throw std::runtime_error("the origin of a leaf differs from its place in the tree");
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -6,7 +6,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The map as an OpenVDB transform, in its simplest form: a scale and a translation where these
 /// suffice, which every reader understands. Errors: Input for voxels too small for OpenVDB's maps,
@@ -65,4 +65,4 @@ inline Affine3d affineOf(const openvdb::math::MapBase& map) {
     return m;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

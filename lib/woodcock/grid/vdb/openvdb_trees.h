@@ -7,13 +7,13 @@
 /// a source file that instantiates the trees of all value types for itself takes a minute and a
 /// half to compile, and twenty seconds with this.
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// The trees of OpenVDB 13's grids of half values, which older versions can hold as well, although
 /// they know no such grids.
 using HalfTree = openvdb::tree::Tree4<openvdb::math::half, 5, 4, 3>::Type;
 
-}  // namespace woodcock
+}  // namespace woodcock::grid
 
 namespace openvdb {
 OPENVDB_USE_VERSION_NAMESPACE
@@ -40,8 +40,8 @@ extern template class Grid<Vec3DTree>;
 extern template class Grid<Vec3ITree>;
 
 // OpenVDB 13's.
-extern template class tree::Tree<woodcock::HalfTree::RootNodeType>;
-extern template class Grid<woodcock::HalfTree>;
+extern template class tree::Tree<woodcock::grid::HalfTree::RootNodeType>;
+extern template class Grid<woodcock::grid::HalfTree>;
 
 }  // namespace OPENVDB_VERSION_NAME
 }  // namespace openvdb

@@ -7,10 +7,10 @@ namespace OPENVDB_VERSION_NAME {
 
 template class tree::Tree<FloatTree::RootNodeType>;
 template class tree::Tree<DoubleTree::RootNodeType>;
-template class tree::Tree<woodcock::HalfTree::RootNodeType>;
+template class tree::Tree<woodcock::grid::HalfTree::RootNodeType>;
 template class Grid<FloatTree>;
 template class Grid<DoubleTree>;
-template class Grid<woodcock::HalfTree>;
+template class Grid<woodcock::grid::HalfTree>;
 
 }  // namespace OPENVDB_VERSION_NAME
 }  // namespace openvdb

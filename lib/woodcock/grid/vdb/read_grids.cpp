@@ -14,7 +14,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_stored_tree.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -90,4 +90,4 @@ VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqu
     return read;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

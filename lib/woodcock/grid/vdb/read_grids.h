@@ -6,7 +6,7 @@
 
 #include "woodcock/grid/vdb/file.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 struct VdbGrids;
 
@@ -19,4 +19,4 @@ bool isReadable(const GridListing& grid);
 /// loadGrid(). The values may be any numbers, also NaN. Errors: Input, naming file and grid.
 VdbGrids readVdbGrids(const VdbFile& file, const std::vector<std::string>& uniqueNames);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -19,7 +19,7 @@
 #include "woodcock/grid/vdb/openvdb_stored_tree.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -283,4 +283,4 @@ VdbPeer readByOpenVdb(const std::filesystem::path& file, const std::string& grid
     }
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -11,7 +11,7 @@
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/voxel_scan.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 /// Statistics of a grid's voxels.
 struct GridStatistics {
@@ -48,4 +48,4 @@ struct VdbPeer {
 /// files that this program has written. Throws Error{Input}.
 VdbPeer readByOpenVdb(const std::filesystem::path& file, const std::string& grid);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

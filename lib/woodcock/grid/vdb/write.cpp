@@ -14,7 +14,7 @@
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock {
+namespace woodcock::grid {
 
 namespace {
 
@@ -103,4 +103,4 @@ void writeVdb(const std::filesystem::path& file, const VdbGrids& grids,
     making.commit();
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::grid {
 
 struct VdbGrids;
 
@@ -24,4 +24,4 @@ struct VdbWriteOptions {
 void writeVdb(const std::filesystem::path& file, const VdbGrids& grids,
               const VdbWriteOptions& options);
 
-}  // namespace woodcock
+}  // namespace woodcock::grid

@@ -30,7 +30,7 @@ Case Cells::asCase(std::string name) const {
     return {
         .name = std::move(name) + ", chi-square",
         .expected = 0,
-        .measured = test::chiSquareDeviate(counts_, expected),
+        .measured = chiSquareDeviate(counts_, expected),
         .standardError = 1,
         .largestError = 1,
         .note = fmt::format("as a normal deviate; {} samples in {} cells", count_, counts_.size())};

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "woodcock/proof/proof.h"
 #include "woodcock/base/statistics.h"
+#include "woodcock/proof/proof.h"
 
 namespace woodcock::proof {
 

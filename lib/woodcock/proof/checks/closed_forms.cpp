@@ -6,18 +6,17 @@
 
 #include <cmath>
 
-#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/slab_kinds.h"
 #include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::proof {
 
 namespace {
 
-using test::Estimate, test::RgbEstimate, test::evenAlpha, test::evenRadiance,
-    test::evenTransmittance;
+using Estimate, RgbEstimate, evenAlpha, evenRadiance, evenTransmittance;
 
 constexpr const char* evenLight = "[[light]]\ntype = \"environment\"\nradiance = [1, 2, 4]\n";
 constexpr double lightColour[]{1, 2, 4};
@@ -42,13 +41,14 @@ void addTransmittance(Lab& lab, const std::string& name, const std::string& volu
     const Precision precision{lab.pick(1e-2, 2e-3), lab.pick(3e-4, 1e-5)};
     // The layers are random hits or misses, while radiance is weighted.
     const Precision rough{lab.pick(1e-2, 3e-3), lab.pick(4e-3, 1e-3)};
-    const Scene scene =
-        sceneIn(lab, volume + evenLight + test::pencilCamera(rays.eye, rays.direction));
+    const render::Scene scene =
+        sceneIn(lab, volume + evenLight + pencilCamera(rays.eye, rays.direction));
     double t[3], alpha = 1;
     for (int c = 0; c < 3; ++c) t[c] = std::exp(-depth[c]), alpha -= t[c] / 3;
     const auto tells = [&](double value, const Precision& p) { return value > 4 * p.floor; };
-    const Film film = evenFilm(
-        lab, name, scene, {.maxScatterings = 0, .depthLayers = true}, [&](const Film& pilot) {
+    const image::Film film = evenFilm(
+        lab, name, scene, {.maxScatterings = 0, .depthLayers = true},
+        [&](const image::Film& pilot) {
             const RgbEstimate light = evenRadiance(pilot), layer = evenTransmittance(pilot);
             double worst = evenAlpha(pilot).error / rough.of(alpha);
             for (std::size_t c = 0; c < 3; ++c) {
@@ -165,13 +165,13 @@ void ramp(Lab& lab) {
 /// (4 / s^2 + b^2 / s^4) / 8 of the depth at offset b, in voxels. The tail is cut at 5.5 s.
 void gaussianBall(Lab& lab) {
     const int s = lab.pick(8, 20), reach = s * 11 / 2;
-    test::GridSpec grid;
+    GridSpec grid;
     grid.box = {{-reach, -reach, -reach}, {reach, reach, reach}};
     grid.value = [s](Vec3i p) {
         const Vec3d d = p.as<double>();
         return std::exp(-dot(d, d) / (2.0 * s * s));
     };
-    test::writeVdb(lab.file("gauss.vdb"), {grid});
+    writeVdb(lab.file("gauss.vdb"), {grid});
     const double scale = 1.5 / s;  // depth 3.76 through the centre
     const std::string volume =
         fmt::format("[[volume]]\nfile = \"gauss.vdb\"\nscale = {}\nalbedo = 0\n", scale);
@@ -216,7 +216,7 @@ double blurred(F&& f) {
 void sphereDisc(Lab& lab) {
     const int radius = lab.pick(64, 160);
     constexpr int margin = 2, fine = 4;
-    test::GridSpec grid;
+    GridSpec grid;
     const int reach = radius + 1;
     grid.box = {{-reach, -reach, -reach}, {reach, reach, reach}};
     const double r2 = radius * radius;
@@ -233,7 +233,7 @@ void sphereDisc(Lab& lab) {
         }
         return inside / double{fine * fine * fine};
     };
-    test::writeVdb(lab.file("ball.vdb"), {grid});
+    writeVdb(lab.file("ball.vdb"), {grid});
     const double half = radius + margin;
     for (const double depth : {0.5, 1.0, 2.0, 5.0}) {
         const double sigma = depth / radius;
@@ -254,13 +254,13 @@ void sphereDisc(Lab& lab) {
             }
         const std::string name =
             fmt::format("disc of an absorbing ball of optical radius {}", depth);
-        const Scene scene =
+        const render::Scene scene =
             sceneIn(lab, fmt::format("[[volume]]\nfile = \"ball.vdb\"\nscale = {}\nalbedo = 0\n"
                                      "[[light]]\ntype = \"environment\"\nradiance = 1\n"
                                      "[camera]\ntype = \"orthographic\"\nheight = {}\n"
                                      "eye = [{}, {}, {}]\nlook_at = [0, 0, 0]\n",
                                      sigma, 2 * half, 0.3 * radius, 0.2 * radius, 3 * radius));
-        const RgbEstimate square = test::meanOverSeeds(
+        const RgbEstimate square = meanOverSeeds(
             scene, {16, 16, lab.pick(depth < 5 ? 16 : 128, depth < 2 ? 256 : 1024), lab.seed(name)},
             lab.pick(32, 64));
         const double discs = 4 * half * half / (pi * r2);

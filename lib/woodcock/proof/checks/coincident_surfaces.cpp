@@ -5,18 +5,16 @@
 
 #include <cmath>
 
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/oracles/adding_doubling.h"
 #include "woodcock/proof/oracles/plates.h"
 #include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/proof/oracles/surfaces.h"
-#include "woodcock/proof/checks/measure.h"
-#include "woodcock/proof/checks/subjects.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::RgbEstimate;
 
 const std::string evenLight = "[[light]]\ntype = \"environment\"\nradiance = 1\n";
 const std::string glass = "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.5\n";
@@ -120,7 +118,7 @@ void opaque(Lab& lab) {
             const Vec3d eye = s.place + Vec3d{0.1, 0.2, 5} * s.scale;
             even(lab, fmt::format("{}, {}", what, s.name()),
                  diffuse("light", 0.8) + diffuse("dark", 0.3) + scene + evenLight +
-                     test::pencilCamera(eye, {0, 0, -1}),
+                     pencilCamera(eye, {0, 0, -1}),
                  expected, "the albedo");
         };
         seen("a diffuse ball twice", surface("light", ball, there) + surface("light", ball, there),
@@ -273,7 +271,7 @@ void emittersOnWalls(Lab& lab) {
     const Vec3d point{0.4, 0, 1};
     const double irradiance = oracle::polygonIrradiance(
         {{-1, 1, -1}, {1, 1, -1}, {1, 2, -1}, {-1, 2, -1}}, point, {0, 1, 0});
-    const std::string camera = test::pencilCamera(point + Vec3d{0, 1, 2}, {0, -1, -2});
+    const std::string camera = pencilCamera(point + Vec3d{0, 1, 2}, {0, -1, -2});
     struct Row {
         const char* what;
         std::string surfaces;
@@ -306,7 +304,7 @@ void emittersOnWalls(Lab& lab) {
              "second = \"grey\"\nweight = 0.75\n" +
              surface("wall", "box = { min = [-1, -2, -0.5], max = [1, 4, 0.5] }",
                      "transform = { rotate = [10, 20, 30] }") +
-             test::pencilCamera({0.1, 0.1, 0.1}, {1, 0.4, -0.2}),
+             pencilCamera({0.1, 0.1, 0.1}, {1, 0.4, -0.2}),
          oracle::cavityRadiance(0.25, 0.75 * 0.8), "as in any other place");
     // Every wall of the room twice, once by other numbers: the radiance is uniform all the same.
     const std::string room =
@@ -317,7 +315,7 @@ void emittersOnWalls(Lab& lab) {
         surface("wall", "box = { min = [-1, -2, -0.5], max = [1, 4, 0.5] }") +
         surface("wall", "box = { min = [-0.5, -2, -1], max = [0.5, 4, 1] }",
                 "transform = { rotate = [0, 90, 0] }");
-    even(lab, "a shining room twice", room + test::pencilCamera({0.3, 0.1, 0.2}, {1, 0.4, -0.2}),
+    even(lab, "a shining room twice", room + pencilCamera({0.3, 0.1, 0.2}, {1, 0.4, -0.2}),
          oracle::cavityRadiance(0.25, 0.75 * 0.8), "of one room");
 }
 

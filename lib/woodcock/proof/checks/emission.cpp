@@ -5,17 +5,15 @@
 
 #include <cmath>
 
-#include "woodcock/proof/oracles/chandrasekhar.h"
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/slab_kinds.h"
 #include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/checks/volume.h"
+#include "woodcock/proof/oracles/chandrasekhar.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::RgbEstimate;
 
 constexpr const char* dark = "[[light]]\ntype = \"environment\"\nradiance = 0\n";
 
@@ -81,7 +79,7 @@ void insideSurfaces(Lab& lab) {
             sceneIn(lab, std::string(materials) +
                              "[[surface]]\nsphere = {}\nmaterial = \"interface\"\n"
                              "medium = { sigma_a = [0, 0.7, 5], emission = [1, 2, 4] }\n" +
-                             dark + test::pencilCamera({aside, 0, 9}, {0, 0, -1})),
+                             dark + pencilCamera({aside, 0, 9}, {0, 0, -1})),
             precision);
         addColours(lab, name, glow(2 * std::sqrt(1 - aside * aside)), e, precision);
     }
@@ -106,7 +104,7 @@ void insideSurfaces(Lab& lab) {
                          "[[surface]]\nsphere = {}\nmaterial = \"glass\"\nmedium = { sigma_a = "
                          "[0.2, 1, 5], sigma_s = [3, 1, 0.5], emission = [0.45, 2.25, 11.25] }\n"
                          "[[light]]\ntype = \"environment\"\n" +
-                         test::pencilCamera({0.4, 0.3, 9}, {0, 0, -1})),
+                         pencilCamera({0.4, 0.3, 9}, {0, 0, -1})),
         precision);
     addColours(lab, "thermal equilibrium in glass", {1, 1, 1}, e, precision);
 }
@@ -117,7 +115,7 @@ void insideAndAlone(Lab& lab) {
     const std::string lights =
         std::string(dark) +
         "[[light]]\ntype = \"sphere\"\nposition = [0.2, 0.1, 0]\nradius = 0.1\nradiance = 3\n" +
-        test::pencilCamera({3, 1, 2}, {-3, -1.2, -2.1});
+        pencilCamera({3, 1, 2}, {-3, -1.2, -2.1});
     const RgbEstimate inside = evenPicture(
         lab, "a glowing fog inside",
         sceneIn(lab, std::string(materials) +
@@ -204,18 +202,18 @@ void equilibriumOfVolumes(Lab& lab) {
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
     const Rgb black(0.5f, 1, 2), absorbed(0.2f, 0.5f, 1), scattered(1, 0.5f, 0.1f);
     for (const Volume& v : volumes(lab, Endless::Not)) {
-        EmissionPart::Description glow;
+        medium::EmissionPart::Description glow;
         glow.field = v.field;
         glow.worldFromIndex = v.worldFromIndex;
         glow.scale = absorbed * black * static_cast<float>(v.sigma);
         const std::string name = fmt::format("thermal equilibrium, {}", v.name);
         const Vec3d eye = v.matter[0];
-        const RgbEstimate e =
-            evenPicture(lab, name,
-                        {{{v.part(absorbed, scattered, 0.5)}, {EmissionPart(std::move(glow))}},
-                         LightSet({Environment(black, true)}),
-                         Camera::perspective(eye, eye + Vec3d{1, 0.2, -0.5}, {0, 1, 0}, 100)},
-                        precision);
+        const RgbEstimate e = evenPicture(
+            lab, name,
+            {{{v.part(absorbed, scattered, 0.5)}, {medium::EmissionPart(std::move(glow))}},
+             light::LightSet({light::Environment(black, true)}),
+             camera::Camera::perspective(eye, eye + Vec3d{1, 0.2, -0.5}, {0, 1, 0}, 100)},
+            precision);
         addColours(lab, name, {0.5, 1, 2}, e, precision, 1e-6);
     }
 }

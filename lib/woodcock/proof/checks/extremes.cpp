@@ -11,23 +11,21 @@
 
 namespace woodcock::proof {
 
-using namespace test;
-
 Precision extremePrecision(const Lab& lab) {
     return lab.full() ? Precision{3e-3, 1e-5} : Precision{1e-2, 1e-4};
 }
 
 std::string digits(double value) { return fmt::format("{:.17g}", value); }
 
-RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const Precision& precision,
-                  const Watch& how) {
+RgbEstimate watch(Lab& lab, const std::string& name, const render::Scene& scene,
+                  const Precision& precision, const Watch& how) {
     // With few pixels the pilot's variance is a rough guess.
     const double margin = how.side < 32 ? 4 : 2;
     constexpr double mostSamples = 1 << 20;
     constexpr int mostRounds = 4;
     Picture picture{how.side, how.side, std::max(4, 512 / (how.side * how.side)), 0,
                     how.maxScatterings};
-    std::optional<RenderResult> result;
+    std::optional<render::RenderResult> result;
     // A film that is too noisy tells how many samples are needed, and is discarded, as the pilot
     // is.
     for (int round = 0; round <= mostRounds; ++round) {
@@ -44,7 +42,7 @@ RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const P
             static_cast<int>(std::clamp(margin * picture.samples * ratio * ratio,
                                         round > 0 ? 1.0 * picture.samples : 4.0, mostSamples));
     }
-    const RenderCounters& n = result->counters;
+    const render::RenderCounters& n = result->counters;
     const auto steps = static_cast<double>(n.distanceSegments + n.distanceCollisions +
                                            n.shadowSegments + n.shadowCollisions);
     lab.add({.name = "steps per flight, " + name,
@@ -57,7 +55,8 @@ RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene, const P
 
 double KnownGrid::opticalDepth(Vec3d origin, Vec3d direction) const {
     return sigma * length(worldFromIndex.vector(direction)) *
-           lineIntegral(voxel, box, origin, direction, 0, std::numeric_limits<double>::infinity());
+           oracle::lineIntegral(voxel, box, origin, direction, 0,
+                                std::numeric_limits<double>::infinity());
 }
 
 void addTransmittance(Lab& lab, const std::string& name, const std::string& volume,
@@ -65,18 +64,19 @@ void addTransmittance(Lab& lab, const std::string& name, const std::string& volu
     const double depth = grid.opticalDepth(origin, direction);
     const Vec3d eye = grid.worldFromIndex.point(origin);
     const Vec3d along = normalize(grid.worldFromIndex.vector(direction));
-    const Scene scene = sceneIn(lab, volume + evenLight + pencilCamera(eye, along));
+    const render::Scene scene = sceneIn(lab, volume + evenLight + pencilCamera(eye, along));
     const Precision precision = extremePrecision(lab);
     Case c = caseOf("transmittance, " + name, std::exp(-depth),
                     watch(lab, name, scene, precision)[0], precision);
     c.allowance += 1e-6 * depth * c.expected;
     lab.add(c);
     const double infinity = std::numeric_limits<double>::infinity();
-    lab.add({.name = "optical depth, " + name,
-             .expected = depth,
-             .measured = double{exactOpticalDepth(scene.medium, eye, along, 0, infinity)[0]},
-             .allowance = 2e-6 * depth,
-             .note = "the exact integrator"});
+    lab.add(
+        {.name = "optical depth, " + name,
+         .expected = depth,
+         .measured = double{medium::exactOpticalDepth(scene.medium, eye, along, 0, infinity)[0]},
+         .allowance = 2e-6 * depth,
+         .note = "the exact integrator"});
 }
 
 std::vector<Check> extremes() {

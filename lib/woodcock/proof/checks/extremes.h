@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "woodcock/proof/oracles/line_integral.h"
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/oracles/line_integral.h"
 
 namespace woodcock::proof {
 
@@ -29,8 +29,8 @@ struct Watch {
 };
 
 /// Like evenPicture(), and adds a case that detects hangs: the steps per flight.
-test::RgbEstimate watch(Lab& lab, const std::string& name, const Scene& scene,
-                        const Precision& precision, const Watch& how = {});
+RgbEstimate watch(Lab& lab, const std::string& name, const render::Scene& scene,
+                  const Precision& precision, const Watch& how = {});
 
 /// `sigma_a` or so of a float in a scene's text, to all digits.
 std::string digits(double value);
@@ -39,7 +39,7 @@ inline constexpr const char* evenLight = "[[light]]\ntype = \"environment\"\nrad
 
 /// A grid that is known as a function, and a scene that absorbs by it.
 struct KnownGrid {
-    test::VoxelFunction voxel;  ///< zero outside the box
+    oracle::VoxelFunction voxel;  ///< zero outside the box
     Box3i box;
     Affine3d worldFromIndex;
     double sigma = 1;

@@ -11,15 +11,11 @@ namespace woodcock::proof {
 
 namespace {
 
-using test::GridSpec;
-using test::RgbEstimate;
-using test::writeVdb;
-
 /// Three channels, each in its own way from `low` to `high` from voxel to voxel.
 GridSpec threeChannels(const char* name, Vec3d largest, double unit = 1) {
     GridSpec spec;
     spec.name = name;
-    spec.type = test::VdbType::Vec3s;
+    spec.type = VdbType::Vec3s;
     spec.box = {{0, 0, 0}, {15, 15, 15}};
     spec.colour = [=](Vec3i v) {
         const double u = (1 + (v.x * 5 + v.y * 3 + v.z * 7) % 11) / 11.0;
@@ -35,7 +31,7 @@ void channels(Lab& lab) {
     writeVdb(lab.file("rgb.vdb"), {threeChannels("rgb", {1e12, 1, 1e-6}, 1.0 / 16)});
     const Precision precision = extremePrecision(lab);
     const Vec3d from{-0.5, 0.42, 0.52}, along{1, 0.1, -0.05};
-    const std::string camera = test::pencilCamera(from, along);
+    const std::string camera = pencilCamera(from, along);
     const GridSpec spec = threeChannels("rgb", {1, 1, 1}, 1.0 / 16);
     const KnownGrid grid{
         [=](Vec3i v) { return ((v.x | v.y | v.z) & ~15) == 0 ? spec.colour(v).x : 0.0; }, spec.box,
@@ -110,7 +106,7 @@ void deepClouds(Lab& lab) {
                     watch(lab, name,
                           sceneIn(lab, fmt::format("[[volume]]\nfile = '{}'\nscale = {}\ng = {}\n",
                                                    f.file, digits(sigma), g) +
-                                           evenLight + test::pencilCamera(f.from, f.along)),
+                                           evenLight + pencilCamera(f.from, f.along)),
                           wanted, {.side = 8})[0],
                     wanted));
             }
@@ -120,7 +116,7 @@ void deepClouds(Lab& lab) {
 void unequalParts(Lab& lab) {
     writeVdb(lab.file("rgb.vdb"), {threeChannels("rgb", {1, 1, 1}, 1.0 / 16)});
     const Precision precision = extremePrecision(lab);
-    const std::string camera = test::pencilCamera({-0.5, 0.42, 0.52}, {1, 0.1, -0.05});
+    const std::string camera = pencilCamera({-0.5, 0.42, 0.52}, {1, 0.1, -0.05});
     const std::string thin = "[[volume]]\nfile = \"rgb.vdb\"\nsigma_s = { grid = \"rgb\", scale = ";
     const std::string name = "furnace, parts of 1e12, 1, 1e-12 and a box of 1e6";
     lab.add(caseOf(
@@ -139,8 +135,8 @@ void unequalParts(Lab& lab) {
         "sigma_s = 0\n";
     const RgbEstimate e =
         watch(lab, "overlapping boxes of 1e12, 1 and 1e-12",
-              sceneIn(lab, black + evenLight + test::pencilCamera({-3, 0.5, 0.5}, {1, 0, 0})),
-              precision, {.channels = {0, 1, 2}});
+              sceneIn(lab, black + evenLight + pencilCamera({-3, 0.5, 0.5}, {1, 0, 0})), precision,
+              {.channels = {0, 1, 2}});
     for (const auto& [c, depth] : {std::pair{0, 1e12}, {1, 2.5}, {2, 1.5}})
         lab.add(
             caseOf(fmt::format("transmittance, overlapping boxes of 1e12, 1, 1e-12, channel {}", c),

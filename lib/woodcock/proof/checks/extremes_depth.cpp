@@ -4,19 +4,15 @@
 
 #include <cmath>
 
+#include "woodcock/medium/optical_depth.h"
+#include "woodcock/proof/checks/extremes.h"
 #include "woodcock/proof/oracles/adding_doubling.h"
 #include "woodcock/proof/oracles/chandrasekhar.h"
-#include "woodcock/proof/checks/extremes.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/medium/optical_depth.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::GridSpec;
-using test::RgbEstimate;
-using test::writeVdb;
 
 constexpr double depths[]{0, 1e-10, 1, 88, 104, 1e4, 1e8};
 constexpr double smallestFloat = 1.5e-45;
@@ -27,7 +23,7 @@ void transmittance(Lab& lab) {
              {GridSpec{.tiles = {{{0, 0, 0}, 4096, {1}}},
                        .worldFromIndex = Affine3d::scale({1.0 / 4096, 1.0 / 4096, 1.0 / 4096})}});
     const Precision usual = extremePrecision(lab);
-    const auto camera = test::pencilCamera({0.4, 3, 0.3}, {0, -1, 0});
+    const auto camera = pencilCamera({0.4, 3, 0.3}, {0, -1, 0});
     for (const double depth : depths)
         for (const bool tile : {false, true}) {
             const Precision precision{usual.relative, depth == 88 ? 0 : usual.floor};
@@ -37,7 +33,7 @@ void transmittance(Lab& lab) {
                 (tile ? std::string("[[volume]]\nfile = \"tile.vdb\"\n")
                       : "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 0, 1] }\n") +
                 fmt::format("sigma_a = {}\nsigma_s = 0\n", digits(depth));
-            const Scene scene = sceneIn(lab, volume + evenLight + camera);
+            const render::Scene scene = sceneIn(lab, volume + evenLight + camera);
             Case c = caseOf("transmittance " + name, std::exp(-depth),
                             watch(lab, name, scene, precision)[0], precision);
             // A float's exponent of 88 is known to 88 x 2^-24.
@@ -46,8 +42,8 @@ void transmittance(Lab& lab) {
             c.xName = "optical depth", c.x = depth;
             lab.add(c);
             const double infinity = std::numeric_limits<double>::infinity();
-            const double exact =
-                double{exactOpticalDepth(scene.medium, {0.4, 3, 0.3}, {0, -1, 0}, 0, infinity)[0]};
+            const double exact = double{
+                medium::exactOpticalDepth(scene.medium, {0.4, 3, 0.3}, {0, -1, 0}, 0, infinity)[0]};
             lab.add({.name = "opacity, from the exact depth, " + name,
                      .expected = -std::expm1(-depth),
                      .measured = -std::expm1(-exact),
@@ -135,7 +131,7 @@ void units(Lab& lab) {
         const RgbEstimate e =
             watch(lab, name,
                   sceneIn(lab, slab(1 / p.unit, 0.9, 0.5) + volume + twoColouredSky +
-                                   test::pencilCamera(centre - along * (50 * p.unit), along)),
+                                   pencilCamera(centre - along * (50 * p.unit), along)),
                   precision, {.channels = {0, 2}});
         for (const bool above : {true, false}) {
             Case c = caseOf((above ? "reflectance, " : "transmittance, ") + name,

@@ -4,16 +4,13 @@
 
 #include <cmath>
 
+#include "woodcock/base/random.h"
 #include "woodcock/proof/checks/extremes.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/base/random.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::GridSpec;
-using test::writeVdb;
 
 /// In the leaf at the origin.
 bool inLeaf(Vec3i v) { return ((v.x | v.y | v.z) & ~7) == 0; }
@@ -70,15 +67,15 @@ void wide(Lab& lab) {
     }
     const Vec3d eye = spec.worldFromIndex.point(Vec3d{0, 0, 0} - along * 0.5);
     const Precision precision = extremePrecision(lab);
-    Case c = caseOf(
-        "transmittance, through ten voxels, a million apart", std::exp(-depth),
-        watch(lab, "through ten voxels, a million apart",
-              sceneIn(lab, volumeOf("wide.vdb", 0.2) + evenLight + test::pencilCamera(eye, along)),
-              precision, {.mostSteps = 500})[0],
-        precision);
+    Case c =
+        caseOf("transmittance, through ten voxels, a million apart", std::exp(-depth),
+               watch(lab, "through ten voxels, a million apart",
+                     sceneIn(lab, volumeOf("wide.vdb", 0.2) + evenLight + pencilCamera(eye, along)),
+                     precision, {.mostSteps = 500})[0],
+               precision);
     lab.add(c);
     addFurnace(lab, "ten voxels, a million apart", furnaceOf("wide.vdb", 1e6),
-               test::pencilCamera(eye, along));
+               pencilCamera(eye, along));
 }
 
 /// The hat of one voxel: through its middle, past it, along a face and at an angle.
@@ -112,8 +109,8 @@ void singleVoxel(Lab& lab) {
                                  volume, grid, l.from, l.along);
     }
     addFurnace(lab, "a single voxel of sigma 3e12", furnaceOf("voxel.vdb", 1e12),
-               test::pencilCamera(spec.worldFromIndex.point({-10, -9, 1000}),
-                                  spec.worldFromIndex.vector({1, 0, 0})));
+               pencilCamera(spec.worldFromIndex.point({-10, -9, 1000}),
+                            spec.worldFromIndex.vector({1, 0, 0})));
 }
 
 /// Tiles only, of every size.
@@ -139,7 +136,7 @@ void onlyTiles(Lab& lab) {
                      {1, 0, 0});
     addTransmittance(lab, "only tiles, at an angle", volume, grid, {-5, 1, 1}, {1, 0.01, 0.02});
     addFurnace(lab, "only tiles", furnaceOf("tiles.vdb", 10),
-               test::pencilCamera({-5, 1, 1}, {1, 0.01, 0.02}));
+               pencilCamera({-5, 1, 1}, {1, 0.01, 0.02}));
 }
 
 /// A background without end, and a sphere light behind it.
@@ -156,17 +153,17 @@ void background(Lab& lab) {
             const auto above = [](Vec3i v) {
                 return v == Vec3i{0, 0, 0} ? 1.75 : v == Vec3i{3, 0, 0} ? -0.25 : 0.0;
             };
-            const double extra = test::lineIntegral(above, {{0, 0, 0}, {3, 0, 0}}, {-5, offset, 0},
-                                                    {1, 0, 0}, 0, 100);
+            const double extra = oracle::lineIntegral(above, {{0, 0, 0}, {3, 0, 0}},
+                                                      {-5, offset, 0}, {1, 0, 0}, 0, 100);
             const double depth = 0.1 * sigma * (extra + 0.25 * (end + 5));
             const std::string name =
                 fmt::format("a background of {:g} up to a light, offset {}", 0.025 * sigma, offset);
-            const Scene scene = sceneIn(
+            const render::Scene scene = sceneIn(
                 lab, volumeOf("haze.vdb", 0.1 * sigma, "background = \"endless\"\n") +
                          fmt::format("[[light]]\ntype = \"sphere\"\nradius = 1\nradiance = 1\n"
                                      "position = [{}, {}, 0]\n",
                                      digits(end + 1), offset) +
-                         test::pencilCamera({-5, offset, 0}, {1, 0, 0}));
+                         pencilCamera({-5, offset, 0}, {1, 0, 0}));
             lab.add(caseOf("transmittance, " + name, std::exp(-depth),
                            watch(lab, name, scene, precision)[0], precision));
         }
@@ -174,7 +171,7 @@ void background(Lab& lab) {
     lab.add(caseOf("light from behind a background without end", 0,
                    watch(lab, "light from behind a background without end",
                          sceneIn(lab, volumeOf("haze.vdb", 1e-9, "background = \"endless\"\n") +
-                                          evenLight + test::pencilCamera({-5, 0, 0}, {1, 0, 0})),
+                                          evenLight + pencilCamera({-5, 0, 0}, {1, 0, 0})),
                          precision)[0],
                    precision));
 }
@@ -198,7 +195,7 @@ void backgroundWithin(Lab& lab) {
         addTransmittance(lab, fmt::format("a background of {:g} around the active voxels", haze),
                          volumeOf(file.c_str(), 0.3), grid, {-5, 0.4, -0.3}, {1, 0, 0});
         addFurnace(lab, fmt::format("a background of {:g}", haze), furnaceOf(file.c_str(), 30),
-                   test::pencilCamera({-5, 0.4, -0.3}, {1, 0, 0}));
+                   pencilCamera({-5, 0.4, -0.3}, {1, 0, 0}));
     }
 }
 
@@ -255,7 +252,7 @@ void decades(Lab& lab) {
         if (sigma < 1 || lab.full())
             addFurnace(lab, fmt::format("12 decades in a leaf, sigma to {:g}", 1e6 * sigma),
                        furnaceOf("decades.vdb", sigma),
-                       test::pencilCamera({-3, 2.3, 4.6}, {1, 0.1, -0.1}));
+                       pencilCamera({-3, 2.3, 4.6}, {1, 0.1, -0.1}));
 }
 
 }  // namespace

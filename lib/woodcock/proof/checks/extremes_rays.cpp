@@ -4,21 +4,17 @@
 
 #include <cmath>
 
-#include "woodcock/proof/oracles/adding_doubling.h"
-#include "woodcock/proof/oracles/closed_forms.h"
-#include "woodcock/proof/checks/extremes.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/proof/checks/extremes.h"
+#include "woodcock/proof/oracles/adding_doubling.h"
+#include "woodcock/proof/oracles/closed_forms.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::GridSpec;
-using test::RgbEstimate;
-using test::writeVdb;
 
 double noise(Vec3i v) {
     for (int i = 0; i < 3; ++i)
@@ -57,7 +53,7 @@ void rays(Lab& lab) {
     spec.box = {{0, 0, 0}, {7, 7, 7}};
     spec.value = noise;
     writeVdb(lab.file("noise.vdb"), {spec});
-    const Medium medium =
+    const medium::Medium medium =
         sceneIn(lab, "[[volume]]\nfile = \"noise.vdb\"\nsigma_a = 0.1\nsigma_s = 0.2\n" +
                          std::string(evenLight) + cameraAbove(1))
             .medium;
@@ -66,29 +62,29 @@ void rays(Lab& lab) {
     const int count = lab.pick(80000, 600000);
     for (const Line& l : lines) {
         const Vec3d along = normalize(l.along);
-        const double depth = 0.3f * test::lineIntegral(noise, spec.box, l.from, along, 0, l.end);
+        const double depth = 0.3f * oracle::lineIntegral(noise, spec.box, l.from, along, 0, l.end);
         lab.add({.name = fmt::format("optical depth {}", l.name),
                  .expected = depth,
-                 .measured = double{exactOpticalDepth(medium, l.from, along, 0, l.end)[0]},
+                 .measured = double{medium::exactOpticalDepth(medium, l.from, along, 0, l.end)[0]},
                  .allowance = 2e-6 * depth + 1e-40});
-        std::vector<TransmittanceQuery<1>> across;
-        std::vector<DistanceQuery<1>> scattered;
+        std::vector<medium::TransmittanceQuery<1>> across;
+        std::vector<medium::DistanceQuery<1>> scattered;
         for (int i = 0; i < count; ++i) {
             RandomStream random(hashOf(lab.seed(l.name), i));
             across.push_back({l.from, along, l.end, random, 0, Spectrum<1>(1)});
             const double u = random.uniformOpenLow();
             scattered.push_back({l.from, along, l.end, u, random, 0, true, Spectrum<1>(1)});
         }
-        TrackingCounters counters;
-        trackTransmittance<1>(medium, across, counters);
-        trackDistance<1>(medium, scattered, counters);
+        medium::TrackingCounters counters;
+        medium::trackTransmittance<1>(medium, across, counters);
+        medium::trackDistance<1>(medium, scattered, counters);
         Moments transmitted, passed;
         for (const auto& q : across) transmitted.add(q.contribution[0]);
         for (const auto& q : scattered) passed.add(q.part < 0 ? 1 : 0);
         lab.add(caseOf(fmt::format("transmittance {}", l.name), std::exp(-depth),
-                       test::Estimate(transmitted), precision));
+                       Estimate(transmitted), precision));
         lab.add(caseOf(fmt::format("part that does not collide {}", l.name), std::exp(-depth),
-                       test::Estimate(passed), precision));
+                       Estimate(passed), precision));
         const double steps =
             static_cast<double>(counters.segments + counters.collisions) / (2 * count);
         lab.add({.name = fmt::format("steps per flight {}", l.name),
@@ -115,7 +111,7 @@ void boundary(Lab& lab) {
             lab, name,
             sceneIn(lab, "[[volume]]\nfile = \"slab.vdb\"\nscale = 2\nalbedo = 0.9\ng = 0.3\n" +
                              std::string(twoColouredSky) +
-                             test::pencilCamera({0, height, 0}, {std::sqrt(0.51), -0.7, 0})),
+                             pencilCamera({0, height, 0}, {std::sqrt(0.51), -0.7, 0})),
             precision, {.channels = {0, 2}});
         Case r = caseOf("reflectance, " + name, face.reflectance[0], e[0], precision);
         Case t = caseOf("transmittance, " + name, face.transmittance[0], e[2], precision);
@@ -130,11 +126,10 @@ void boundary(Lab& lab) {
           {"away from a box", {0, 0.5, 0.5}, {-1, 0, 0}, 0.0},
           {"from a corner of a box", {0, 0, 0}, {1, 1, 1}, std::sqrt(3.0)},
           {"past an edge of a box", {0, 1, 0}, {1, 1, 0}, 0.0}})
-        lab.add(
-            caseOf(fmt::format("camera in the face, {}", name), std::exp(-depth),
-                   watch(lab, name, sceneIn(lab, box + evenLight + test::pencilCamera(eye, along)),
-                         precision)[0],
-                   precision));
+        lab.add(caseOf(fmt::format("camera in the face, {}", name), std::exp(-depth),
+                       watch(lab, name, sceneIn(lab, box + evenLight + pencilCamera(eye, along)),
+                             precision)[0],
+                       precision));
 }
 
 /// A point light inside the medium, next to the line of sight or to the camera itself.
@@ -149,12 +144,12 @@ void nearLight(Lab& lab) {
         for (const double eye : {-5.0, 0.0, 1e-8}) {
             const std::string name =
                 fmt::format("light {:g} beside the line of sight, camera at {:g}", offset, eye);
-            const Scene scene =
+            const render::Scene scene =
                 sceneIn(lab, volume +
                                  fmt::format("[[light]]\ntype = \"point\"\nintensity = 1\n"
                                              "position = [0, 0, {}]\n",
                                              digits(offset)) +
-                                 test::pencilCamera({eye, 0, 0}, {1, 0, 0}));
+                                 pencilCamera({eye, 0, 0}, {1, 0, 0}));
             const double truth = oracle::airlight({sigmaA, sigmaS, g, 1, offset}, eye, eye, half);
             Precision wanted = precision;
             wanted.floor = 0;

@@ -9,8 +9,6 @@ namespace woodcock::proof {
 
 namespace {
 
-using test::GridSpec;
-
 double noise(Vec3i v, int salt = 0) {
     return RandomStream(hashOf(0x68, v.x, v.y, v.z, salt)).uniform();
 }

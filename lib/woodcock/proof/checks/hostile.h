@@ -10,7 +10,7 @@ namespace woodcock::proof {
 /// A grid that is valid, and as difficult as possible.
 struct HostileGrid {
     const char* name;
-    test::GridSpec grid;
+    GridSpec grid;
 };
 std::vector<HostileGrid> hostileGrids();
 

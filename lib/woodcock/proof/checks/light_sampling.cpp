@@ -6,18 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/base/random.h"
+#include "woodcock/light/light.h"
 #include "woodcock/proof/checks/cells.h"
 #include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/support/sky.h"
 #include "woodcock/proof/support/statistics.h"
-#include "woodcock/base/random.h"
-#include "woodcock/light/light.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::around, test::below, test::turn;
 
 const Vec3d axis = normalize(Vec3d{0.3, 0.8, -0.4});
 
@@ -25,7 +23,7 @@ const Vec3d axis = normalize(Vec3d{0.3, 0.8, -0.4});
 
 /// A light that is even over the cone of 1 - cos = `cone` around the axis.
 void addCone(Lab& lab, const std::string& name, double cone, double irradiance,
-             const std::function<LightSample(double, double)>& sample,
+             const std::function<light::LightSample(double, double)>& sample,
              const std::function<double(Vec3d)>& pdf) {
     const int n = lab.pick(50000, 1000000);
     RandomStream random(lab.seed(name));
@@ -34,7 +32,7 @@ void addCone(Lab& lab, const std::string& name, double cone, double irradiance,
     double worst = 0;
     for (int i = 0; i < n; ++i) {
         const double u = random.uniform();
-        const LightSample s = sample(u, random.uniform());
+        const light::LightSample s = sample(u, random.uniform());
         cells.add(below(s.direction, axis) / cone, turn(axis, s.direction));
         arriving.add(s.weight[0] * dot(s.direction, axis) / irradiance);
         // The rim itself is in or out by rounding.
@@ -58,18 +56,18 @@ void addCone(Lab& lab, const std::string& name, double cone, double irradiance,
 
 void sun(Lab& lab) {
     for (const double degrees : {1e-4, 0.53, 10.0, 90.0}) {
-        const Sun light(-axis * 7.0, Rgb(3.0f), degrees, true);
+        const light::Sun light(-axis * 7.0, Rgb(3.0f), degrees, true);
         const double half = degrees * pi / 360, cone = 2 * std::pow(std::sin(half / 2), 2);
         const std::string name = fmt::format("sun {} degrees wide", degrees);
         addCone(
             lab, name, cone, 3, [&](double u, double v) { return light.sample(u, v); },
             [&](Vec3d d) { return light.pdf(d); });
-        const double disc = 2 * pi * test::integrate(0, cone, 64, [&](double b) {
+        const double disc = 2 * pi * integrate(0, cone, 64, [&](double b) {
                                 return (1 - b) * light.radiance(around(axis, b, 1))[0];
                             });
         lab.add(exactCase("irradiance by its radiance, " + name, 3, disc, 3e-6));
     }
-    const LightSample s = Sun(-axis, Rgb(3.0f), 0, false).sample(0.3, 0.7);
+    const light::LightSample s = light::Sun(-axis, Rgb(3.0f), 0, false).sample(0.3, 0.7);
     lab.add(
         exactCase("irradiance of parallel rays", 3, s.weight[0] * dot(s.direction, axis), 1e-6));
 }
@@ -78,7 +76,7 @@ void localLights(Lab& lab) {
     for (const double distance : {1.0001, 1.01, 1.5, 10.0, 1e4, 1e7}) {
         const double radius = 2.5, sine = 1 / distance;
         const Vec3d from{5, -3, 2};
-        const SphereLight light{from + axis * (radius * distance), radius, Rgb(2.0f)};
+        const light::SphereLight light{from + axis * (radius * distance), radius, Rgb(2.0f)};
         addCone(
             lab, fmt::format("sphere {:.7g} radii away", distance),
             sine * sine / (1 + std::sqrt(1 - sine * sine)), 2 * pi * sine * sine,
@@ -86,7 +84,7 @@ void localLights(Lab& lab) {
             [&](Vec3d d) { return light.pdf(from, d); });
     }
     for (const double distance : {1e-3, 1.0, 1e5}) {
-        const LightSample s = PointLight{axis * distance, Rgb(5.0f)}.sample({});
+        const light::LightSample s = light::PointLight{axis * distance, Rgb(5.0f)}.sample({});
         lab.add(
             exactCase(fmt::format("irradiance of a point {} away over its closed form", distance),
                       1, s.weight[0] * dot(s.direction, axis) * distance * distance / 5, 1e-6));
@@ -138,7 +136,8 @@ void environments(Lab& lab) {
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x)
                 pixels.insert(pixels.end(), 3, static_cast<float>(image.value(x, y)));
-        const Environment light({image.width, image.height, pixels}, Rgb(2.0f), turned, true);
+        const light::Environment light({image.width, image.height, pixels}, Rgb(2.0f), turned,
+                                       true);
         const std::string name = fmt::format("environment, {}", image.name);
 
         std::vector<double> shares;
@@ -163,7 +162,7 @@ void environments(Lab& lab) {
         Moments arriving;
         double worst = 0;
         for (int i = 0; i < n; ++i) {
-            const LightSample s = light.sample(random.uniform(), random.uniform());
+            const light::LightSample s = light.sample(random.uniform(), random.uniform());
             const Vec3d d = back.vector(s.direction);
             const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / pi;
             const double u = 0.5 + std::atan2(d.x, -d.z) / (2 * pi);

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/base/random.h"
 #include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/base/random.h"
 
 namespace woodcock::proof {
-
-using namespace test;
 
 double Precision::of(double value) const { return std::max(floor, relative * std::abs(value)); }
 
@@ -22,17 +20,19 @@ Precision dearPrecision(const Lab& lab) {
     return lab.full() ? Precision{2e-3, 2e-5} : usualPrecision(lab);
 }
 
-Scene sceneIn(const Lab& lab, const std::string& text) { return sceneFrom(text, lab.directory()); }
+render::Scene sceneIn(const Lab& lab, const std::string& text) {
+    return sceneFrom(text, lab.directory());
+}
 
-Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, Picture picture,
-              const std::function<double(const Film&)>& excess) {
+image::Film evenFilm(const Lab& lab, const std::string& name, const render::Scene& scene,
+                     Picture picture, const std::function<double(const image::Film&)>& excess) {
     constexpr int side = 32, mostRounds = 4;
     constexpr double most = 1 << 20, margin = 1.3;  // a measured variance is a guess, too
     picture.width = picture.height = side;
     picture.samples = lab.pick(4, 16);
     for (int round = 0;; ++round) {
         picture.seed = hashOf(lab.seed(name), round);
-        Film film = renderScene(scene, picture).film;
+        image::Film film = renderScene(scene, picture).film;
         const double ratio = excess(film);
         // Below 1, as a relative error is one of the measured mean, which may be above the truth.
         if (round > 0 && (ratio <= 0.95 || round == mostRounds)) return film;
@@ -41,12 +41,12 @@ Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, Pictu
     }
 }
 
-RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
+RgbEstimate evenPicture(const Lab& lab, const std::string& name, const render::Scene& scene,
                         const Precision& precision, std::vector<int> channels,
                         std::optional<int> maxScatterings) {
     Picture picture;
     picture.maxScatterings = maxScatterings;
-    return evenRadiance(evenFilm(lab, name, scene, picture, [&](const Film& film) {
+    return evenRadiance(evenFilm(lab, name, scene, picture, [&](const image::Film& film) {
         const RgbEstimate pilot = evenRadiance(film);
         double ratio = 0;
         for (const int c : channels) {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "woodcock/base/vec.h"
 #include "woodcock/proof/proof.h"
 #include "woodcock/proof/support/render_scene.h"
-#include "woodcock/base/vec.h"
 
 namespace woodcock::proof {
 
@@ -23,22 +23,22 @@ Precision usualPrecision(const Lab& lab);
 Precision dearPrecision(const Lab& lab);
 
 /// The scene of a text, with files in the lab's directory.
-Scene sceneIn(const Lab& lab, const std::string& text);
+render::Scene sceneIn(const Lab& lab, const std::string& text);
 
 /// A picture of a scene whose pixels all have one expectation (see pencilCamera), with as many
 /// samples as needed. `excess` returns how many times larger than wanted a film's error is. A film
 /// that is too noisy tells the number of samples and is discarded, so that no result decides its
 /// own number of samples.
-Film evenFilm(const Lab& lab, const std::string& name, const Scene& scene, test::Picture picture,
-              const std::function<double(const Film&)>& excess);
+image::Film evenFilm(const Lab& lab, const std::string& name, const render::Scene& scene,
+                     Picture picture, const std::function<double(const image::Film&)>& excess);
 
 /// The radiance of such a picture, per channel, to the wanted precision of the channels in use.
-test::RgbEstimate evenPicture(const Lab& lab, const std::string& name, const Scene& scene,
-                              const Precision& precision, std::vector<int> channels = {0, 1, 2},
-                              std::optional<int> maxScatterings = {});
+RgbEstimate evenPicture(const Lab& lab, const std::string& name, const render::Scene& scene,
+                        const Precision& precision, std::vector<int> channels = {0, 1, 2},
+                        std::optional<int> maxScatterings = {});
 
 /// Fills measured and standardError.
-Case caseOf(std::string name, double expected, test::Estimate measured, const Precision& precision);
+Case caseOf(std::string name, double expected, Estimate measured, const Precision& precision);
 
 /// Writes sky.exr: red above the horizon (+y), blue below, green where `green`. The horizon is
 /// smeared over a row of 1/2048 of half a circle, which holds 1e-6 of a face's flux.

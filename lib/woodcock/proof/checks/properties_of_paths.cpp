@@ -3,14 +3,14 @@
 // or that are known for an infinite medium.
 #include <fmt/format.h>
 
-#include "woodcock/proof/oracles/closed_forms.h"
-#include "woodcock/proof/checks/measure.h"
-#include "woodcock/proof/checks/properties.h"
-#include "woodcock/proof/checks/volume.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/medium/phase.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/properties.h"
+#include "woodcock/proof/checks/volume.h"
+#include "woodcock/proof/oracles/closed_forms.h"
+#include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::proof {
 
@@ -19,9 +19,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The mean of `sample(stream)`, with as many samples as its precision takes.
-test::Estimate meanOf(const Lab& lab, const std::string& name, double expected,
-                      const Precision& precision,
-                      const std::function<double(RandomStream&)>& sample) {
+Estimate meanOf(const Lab& lab, const std::string& name, double expected,
+                const Precision& precision, const std::function<double(RandomStream&)>& sample) {
     const auto moments = [&](std::uint64_t stage, int count) {
         Moments m;
         for (int i = 0; i < count; ++i) {
@@ -33,16 +32,16 @@ test::Estimate meanOf(const Lab& lab, const std::string& name, double expected,
     constexpr int pilot = 2000, most = 1 << 24;
     const double ratio = 1.4 * moments(0, pilot).standardError() / precision.of(expected);
     const double count = std::clamp(pilot * ratio * ratio, double{pilot}, double{most});
-    return test::Estimate(moments(1, static_cast<int>(count)));
+    return Estimate(moments(1, static_cast<int>(count)));
 }
 
 /// Goes to the next scattering before tMax: false when there is none.
-bool fly(const Medium& medium, Vec3d& origin, Vec3d direction, double tMax, double& t,
+bool fly(const medium::Medium& medium, Vec3d& origin, Vec3d direction, double tMax, double& t,
          Spectrum<1>& throughput, RandomStream& random, float roulette = 0) {
     const double u = random.uniformOpenLow();
-    DistanceQuery<1> q{origin, direction, tMax, u, random, roulette, false, throughput};
-    TrackingCounters counters;
-    trackDistance<1>(medium, {&q, 1}, counters);
+    medium::DistanceQuery<1> q{origin, direction, tMax, u, random, roulette, false, throughput};
+    medium::TrackingCounters counters;
+    medium::trackDistance<1>(medium, {&q, 1}, counters);
     random = q.random, throughput = q.throughput, t = q.t;
     if (q.part < 0) return false;
     origin += direction * q.t;
@@ -51,7 +50,7 @@ bool fly(const Medium& medium, Vec3d& origin, Vec3d direction, double tMax, doub
 
 Vec3d turn(Vec3d direction, double g, RandomStream& random) {
     const double u0 = random.uniform(), u1 = random.uniform();
-    return sampleHenyeyGreenstein(direction, g, u0, u1).direction;
+    return medium::sampleHenyeyGreenstein(direction, g, u0, u1).direction;
 }
 
 // ---- path length ----------------------------------------------------------------------------
@@ -117,7 +116,7 @@ void pathLength(Lab& lab) {
     for (const Volume& v : volumes(lab, Endless::Too)) {
         const Parallelepiped body(v.voxels.worldFromIndex, v.field->support());
         for (const double g : {0.0, -0.5, 0.9}) {
-            const Medium medium{{v.part(Rgb(0.0f), Rgb(1.0f), g)}};
+            const medium::Medium medium{{v.part(Rgb(0.0f), Rgb(1.0f), g)}};
             const std::string name = fmt::format("mean path length, g {}, {}", g, v.name);
             const auto path = [&](RandomStream& random) {
                 auto [origin, direction] = body.enter(random);
@@ -143,24 +142,24 @@ void pathLength(Lab& lab) {
 
 struct InfiniteMedium {
     std::string name;
-    Medium medium;  // sigma_t is 1
+    medium::Medium medium;  // sigma_t is 1
 };
 
 /// Made in three ways; two of them are finite, but 1e6 mean free paths wide.
 std::vector<InfiniteMedium> infiniteMedia(const Lab& lab) {
-    const auto medium = [](MediumPart::Description d) {
+    const auto medium = [](medium::MediumPart::Description d) {
         d.absorption = Rgb(0.0f), d.scattering = Rgb(1.0f);
-        return Medium{{MediumPart(std::move(d))}};
+        return medium::Medium{{medium::MediumPart(std::move(d))}};
     };
-    const auto field = [&](const char* file, test::GridSpec grid) {
-        test::writeVdb(lab.file(file), {std::move(grid)});
-        return std::make_shared<const Field>(loadGrid(lab.file(file), "density").field);
+    const auto field = [&](const char* file, GridSpec grid) {
+        writeVdb(lab.file(file), {std::move(grid)});
+        return std::make_shared<const grid::Field>(grid::loadGrid(lab.file(file), "density").field);
     };
-    test::GridSpec fog, tile;
+    GridSpec fog, tile;
     fog.background = {1};
     fog.voxels = {{{0, 0, 0}, {1}}};
     tile.tiles = {{{0, 0, 0}, 4096, {1}}};
-    MediumPart::Description box, endless, wide;
+    medium::MediumPart::Description box, endless, wide;
     box.box = {{-5e5, -5e5, -5e5}, {5e5, 5e5, 5e5}};
     endless.field = field("fog.vdb", fog);
     wide.field = field("tile.vdb", tile);
@@ -210,9 +209,9 @@ void collisions(Lab& lab) {
     const Precision precision{lab.pick(1e-2, 2e-3), 0};
     for (const InfiniteMedium& m : media)
         for (const float albedo : {0.2f, 0.9f, 0.99f}) {
-            MediumPart::Description d = m.medium.parts[0].description();
+            medium::MediumPart::Description d = m.medium.parts[0].description();
             d.absorption = d.scattering * (1 - albedo), d.scattering *= albedo;
-            const Medium medium{{MediumPart(d)}};
+            const medium::Medium medium{{medium::MediumPart(d)}};
             const std::string name = fmt::format("collisions, albedo {}, {}", albedo, m.name);
             const auto count = [&](RandomStream& random) {
                 Vec3d position, direction = anyDirection(random);

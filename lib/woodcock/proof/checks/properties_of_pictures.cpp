@@ -10,57 +10,56 @@ namespace woodcock::proof {
 
 namespace {
 
-using test::Estimate;
-using test::RgbEstimate;
-
 /// A camera that sees the whole volume.
-Camera framing(const Volume& v) {
+camera::Camera framing(const Volume& v) {
     const Vec3d direction = normalize(Vec3d{1, 0.7, 1.3});
-    return Camera::perspective(v.centre() + direction * (3 * v.radius()), v.centre(), {0, 1, 0},
-                               40);
+    return camera::Camera::perspective(v.centre() + direction * (3 * v.radius()), v.centre(),
+                                       {0, 1, 0}, 40);
 }
 
 // ---- white furnace --------------------------------------------------------------------------
 
-Environment imageOfOnes() {
-    return {EnvironmentMap(8, 4, std::vector<float>(8 * 4 * 3, 1)), Rgb(1.0f), {}, true};
+light::Environment imageOfOnes() {
+    return {light::EnvironmentMap(8, 4, std::vector<float>(8 * 4 * 3, 1)), Rgb(1.0f), {}, true};
 }
 
 /// A volume that scatters without loss is invisible in uniform light.
 void furnace(Lab& lab) {
     const Precision precision{lab.pick(1e-2, 1e-3), 0};
-    const Environment constant(Rgb(1.0f), true), image = imageOfOnes();
+    const light::Environment constant(Rgb(1.0f), true), image = imageOfOnes();
     for (const Volume& v : volumes(lab, Endless::Not)) {
         const Vec3d inside = v.matter[0];
-        const Camera around =
-            Camera::perspective(inside, inside + Vec3d{1, 0.2, -0.5}, {0, 1, 0}, 100);
-        const MediumPart white = v.part(Rgb(0.0f), Rgb(1.0f), 0.5);
+        const camera::Camera around =
+            camera::Camera::perspective(inside, inside + Vec3d{1, 0.2, -0.5}, {0, 1, 0}, 100);
+        const medium::MediumPart white = v.part(Rgb(0.0f), Rgb(1.0f), 0.5);
         double furthest = 0;
-        for (const Camera& camera : {around, framing(v)}) {
-            const Film film = test::renderScene({{{white}}, LightSet({constant}), camera},
-                                                {16, 16, lab.pick(2, 32), lab.seed(v.name)})
-                                  .film;
+        for (const camera::Camera& camera : {around, framing(v)}) {
+            const image::Film film = renderScene({{{white}}, light::LightSet({constant}), camera},
+                                                 {16, 16, lab.pick(2, 32), lab.seed(v.name)})
+                                         .film;
             for (int y = 0; y < 16; ++y)
                 for (int x = 0; x < 16; ++x)
                     furthest = std::max(furthest, std::abs(double{film.radiance(x, y)[1]} - 1));
         }
         lab.add({.name = "white furnace, the pixel furthest off, " + v.name, .measured = furthest});
 
-        const auto addEven = [&](const std::string& what, const Scene& scene) {
+        const auto addEven = [&](const std::string& what, const render::Scene& scene) {
             const std::string name = fmt::format("white furnace, {}, {}", what, v.name);
             const RgbEstimate e = evenPicture(lab, name, scene, precision);
             for (int c = 0; c < 3; ++c)
                 lab.add(caseOf(fmt::format("{}, channel {}", name, c), 1,
                                e[static_cast<std::size_t>(c)], precision));
         };
-        addEven("light as an image", {{{white}}, LightSet({image}), around});
-        MediumPart::Description turned = v.part(Rgb(0.0f), {0.1f, 0.5f, 0.9f}, -0.3).description();
+        addEven("light as an image", {{{white}}, light::LightSet({image}), around});
+        medium::MediumPart::Description turned =
+            v.part(Rgb(0.0f), {0.1f, 0.5f, 0.9f}, -0.3).description();
         turned.worldFromIndex = Affine3d::translate(inside) * Affine3d::rotate(0, 70) *
                                 Affine3d::rotate(2, 20) * Affine3d::scale({0.8, -1.1, 0.6}) *
                                 Affine3d::translate(-inside) * turned.worldFromIndex;
-        addEven("coloured pair", {{{v.part(Rgb(0.0f), {1, 0.6f, 0.3f}, 0.8), MediumPart(turned)}},
-                                  LightSet({constant}),
-                                  around});
+        addEven("coloured pair",
+                {{{v.part(Rgb(0.0f), {1, 0.6f, 0.3f}, 0.8), medium::MediumPart(turned)}},
+                 light::LightSet({constant}),
+                 around});
     }
 }
 
@@ -76,25 +75,26 @@ struct Setting {
     Setting moved(const Affine3d& m) const {
         return {m.point(through), m.vector(view), m.vector(up), m.vector(sun), distance};
     }
-    Scene scene(std::vector<MediumPart> parts) const {
+    render::Scene scene(std::vector<medium::MediumPart> parts) const {
         const Vec3d eye = through - view * distance;
         return {{std::move(parts)},
-                LightSet({Sun(sun, Rgb(4.0f), 0, false), Environment(Rgb(0.5f), true)}),
-                Camera::orthographic(eye, through, up, distance * 1e-12)};
+                light::LightSet(
+                    {light::Sun(sun, Rgb(4.0f), 0, false), light::Environment(Rgb(0.5f), true)}),
+                camera::Camera::orthographic(eye, through, up, distance * 1e-12)};
     }
 };
 
-Scene withMajorants(const Scene& scene, double scale, int smallestLog2) {
-    return test::withParts(scene, [&](MediumPart::Description& d) {
+render::Scene withMajorants(const render::Scene& scene, double scale, int smallestLog2) {
+    return withParts(scene, [&](medium::MediumPart::Description& d) {
         d.majorantScale = scale, d.majorantSmallestLog2 = smallestLog2;
     });
 }
 
-MediumPart placed(const MediumPart& part, const Affine3d& m, float density) {
-    MediumPart::Description d = part.description();
+medium::MediumPart placed(const medium::MediumPart& part, const Affine3d& m, float density) {
+    medium::MediumPart::Description d = part.description();
     d.worldFromIndex = m * d.worldFromIndex;
     d.absorption *= density, d.scattering *= density;
-    return MediumPart(d);
+    return medium::MediumPart(d);
 }
 
 void equalScenes(Lab& lab) {
@@ -102,14 +102,14 @@ void equalScenes(Lab& lab) {
     for (const Volume& v : volumes(lab, Endless::Not)) {
         const Setting setting{
             v.matter[1], normalize(Vec3d{-1, -0.5, 0.3}), {0, 1, 0}, {1, -2, 0.5}, 3 * v.radius()};
-        const MediumPart grey = v.part(Rgb(0.1f), Rgb(0.9f), 0.4),
-                         coloured = v.part({0.01f, 0.1f, 0.3f}, {1, 0.8f, 0.5f}, 0.4);
+        const medium::MediumPart grey = v.part(Rgb(0.1f), Rgb(0.9f), 0.4),
+                                 coloured = v.part({0.01f, 0.1f, 0.3f}, {1, 0.8f, 0.5f}, 0.4);
         /// A scene of a grey medium or of a coloured one, with its first and last channel.
         struct Told {
-            Scene scene;
+            render::Scene scene;
             std::vector<int> channels;
         };
-        const auto tell = [](const Setting& at, std::vector<MediumPart> parts) {
+        const auto tell = [](const Setting& at, std::vector<medium::MediumPart> parts) {
             const bool chromatic = parts[0].chromatic();
             return Told{at.scene(std::move(parts)), chromatic ? std::vector{0, 2} : std::vector{0}};
         };
@@ -139,7 +139,7 @@ void equalScenes(Lab& lab) {
         addMajorants("majorants x 8", plainGrey, 8, 1);
         addMajorants("coarse majorants", plainGrey, 1, 6);
         addMajorants("coarse majorants x 2, coloured", plainColoured, 2, 4);
-        const MediumPart half = placed(coloured, {}, 0.5f);
+        const medium::MediumPart half = placed(coloured, {}, 0.5f);
         add("two halves", tell(setting, {half, half}));
 
         const double far = 1e5 * v.radius();
@@ -163,15 +163,16 @@ void equalScenes(Lab& lab) {
 /// The light that leaves along `out`, of parallel light that comes along `in`: radiance over the
 /// whole visible area, in units of the pictured square.
 RgbEstimate turnedAside(const Lab& lab, const std::string& name, const Volume& v,
-                        const MediumPart& part, Vec3d in, Vec3d out, double relative) {
+                        const medium::MediumPart& part, Vec3d in, Vec3d out, double relative) {
     const double size = 2.001 * v.radius();
     const Vec3d up = std::abs(out.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
-    const Scene scene{{{part}},
-                      LightSet({Sun(in, Rgb(1.0f), 0, false)}),
-                      Camera::orthographic(v.centre() + out * size, v.centre(), up, size)};
+    const render::Scene scene{
+        {{part}},
+        light::LightSet({light::Sun(in, Rgb(1.0f), 0, false)}),
+        camera::Camera::orthographic(v.centre() + out * size, v.centre(), up, size)};
     constexpr int seeds = 128;
-    test::Picture picture{12, 12, 1, hashOf(lab.seed(name), 0)};
-    const RgbEstimate first = test::meanOverSeeds(scene, picture, seeds);
+    Picture picture{12, 12, 1, hashOf(lab.seed(name), 0)};
+    const RgbEstimate first = meanOverSeeds(scene, picture, seeds);
     double samples = 1;
     for (const Estimate& e : first) {
         const double ratio = 1.3 * e.error / (relative * e.mean);
@@ -179,7 +180,7 @@ RgbEstimate turnedAside(const Lab& lab, const std::string& name, const Volume& v
     }
     picture.samples = static_cast<int>(std::min(samples, 1e4));
     picture.seed = hashOf(lab.seed(name), 1);
-    return test::meanOverSeeds(scene, picture, seeds);
+    return meanOverSeeds(scene, picture, seeds);
 }
 
 /// Reciprocity: sun and view change places.
@@ -187,7 +188,7 @@ void reciprocity(Lab& lab) {
     const Precision precision{lab.pick(3e-2, 5e-3), 0};
     for (const Volume& v : volumes(lab, Endless::Not)) {
         if (v.name == "far apart") continue;  // it covers hardly a pixel
-        const MediumPart part = v.part({0.01f, 0.1f, 0.3f}, {1, 0.8f, 0.5f}, 0.6);
+        const medium::MediumPart part = v.part({0.01f, 0.1f, 0.3f}, {1, 0.8f, 0.5f}, 0.6);
         RandomStream random(lab.seed("reciprocity, " + v.name));
         for (int i = 0; i < lab.pick(1, 3); ++i) {
             const std::string name = fmt::format("reciprocity {}, {}", i + 1, v.name);

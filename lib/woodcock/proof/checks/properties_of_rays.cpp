@@ -4,11 +4,11 @@
 
 #include <set>
 
+#include "woodcock/medium/optical_depth.h"
+#include "woodcock/medium/tracking.h"
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/properties.h"
 #include "woodcock/proof/checks/volume.h"
-#include "woodcock/medium/optical_depth.h"
-#include "woodcock/medium/tracking.h"
 
 namespace woodcock::proof {
 
@@ -98,45 +98,46 @@ std::vector<Rays> raysOf(const Lab& lab, const Volume& v, int count) {
 // ---- transmittance --------------------------------------------------------------------------
 
 /// One estimate of a ray's transmittance.
-using Estimator = std::function<double(const Medium&, const Ray&, std::uint64_t seed)>;
+using Estimator = std::function<double(const medium::Medium&, const Ray&, std::uint64_t seed)>;
 
 template <int N>
-double track(const Medium& medium, const Ray& ray, std::uint64_t seed, float roulette) {
-    TransmittanceQuery<N> q{ray.origin,         ray.direction, ray.tMax,
-                            RandomStream(seed), roulette,      Spectrum<N>(1.0f)};
-    TrackingCounters counters;
-    trackTransmittance<N>(medium, {&q, 1}, counters);
+double track(const medium::Medium& medium, const Ray& ray, std::uint64_t seed, float roulette) {
+    medium::TransmittanceQuery<N> q{ray.origin,         ray.direction, ray.tMax,
+                                    RandomStream(seed), roulette,      Spectrum<N>(1.0f)};
+    medium::TrackingCounters counters;
+    medium::trackTransmittance<N>(medium, {&q, 1}, counters);
     return q.contribution[0];
 }
 
-double ratioTracking(const Medium& medium, const Ray& ray, std::uint64_t seed) {
+double ratioTracking(const medium::Medium& medium, const Ray& ray, std::uint64_t seed) {
     return track<1>(medium, ray, seed, 0);
 }
 
 /// As shadow rays do it: at up to four times the rate that is needed, with Russian roulette.
-double shadowTracking(const Medium& medium, const Ray& ray, std::uint64_t seed) {
+double shadowTracking(const medium::Medium& medium, const Ray& ray, std::uint64_t seed) {
     return track<3>(medium, ray, seed, 0.05f);
 }
 
-double escape(const Medium& medium, const Ray& ray, std::uint64_t seed) {
+double escape(const medium::Medium& medium, const Ray& ray, std::uint64_t seed) {
     RandomStream random(seed);
     const double u = random.uniformOpenLow();
-    DistanceQuery<1> q{ray.origin, ray.direction, ray.tMax, u, random, 0, false, Spectrum<1>(1.0f)};
-    TrackingCounters counters;
-    trackDistance<1>(medium, {&q, 1}, counters);
+    medium::DistanceQuery<1> q{ray.origin, ray.direction, ray.tMax,         u, random,
+                               0,          false,         Spectrum<1>(1.0f)};
+    medium::TrackingCounters counters;
+    medium::trackDistance<1>(medium, {&q, 1}, counters);
     return q.part < 0 ? q.throughput[0] : 0;
 }
 
-Medium looser(const Medium& medium) {
-    MediumPart::Description d = medium.parts[0].description();
+medium::Medium looser(const medium::Medium& medium) {
+    medium::MediumPart::Description d = medium.parts[0].description();
     d.majorantScale = 8, d.majorantSmallestLog2 = 3;
-    return {{MediumPart(d)}};
+    return {{medium::MediumPart(d)}};
 }
 
 /// The mean over rays, each estimated equally often. Estimates lie in [0, 1], so with mean T their
 /// variance is at most T (1 - T) (Bhatia and Davis 2000). The error follows from that bound: where
 /// events are rare, the samples' own variance is unreliable.
-void addTransmittance(Lab& lab, const std::string& name, const Medium& medium,
+void addTransmittance(Lab& lab, const std::string& name, const medium::Medium& medium,
                       const std::vector<Ray>& rays, const std::vector<double>& exact,
                       const Estimator& estimator) {
     const Precision precision{0, lab.pick(1e-2, 1e-3)};
@@ -153,13 +154,14 @@ void addTransmittance(Lab& lab, const std::string& name, const Medium& medium,
 
 void transmittance(Lab& lab) {
     for (const Volume& v : volumes(lab, Endless::Too)) {
-        const Medium medium{{v.part(Rgb(0.0f), Rgb(1.0f), 0)}}, loose = looser(medium);
+        const medium::Medium medium{{v.part(Rgb(0.0f), Rgb(1.0f), 0)}}, loose = looser(medium);
         double furthest = 0;
         for (const auto& [kind, rays] : raysOf(lab, v, lab.pick(16, 64))) {
             std::vector<double> exact;
             for (const Ray& r : rays) {
                 const double depth = v.opticalDepth(r.origin, r.direction, 0, r.tMax);
-                const double ours = exactOpticalDepth(medium, r.origin, r.direction, 0, r.tMax)[0];
+                const double ours =
+                    medium::exactOpticalDepth(medium, r.origin, r.direction, 0, r.tMax)[0];
                 furthest = std::max(furthest, std::abs(ours - depth) / (depth + 1e-3));
                 exact.push_back(std::exp(-depth));
             }
@@ -186,8 +188,8 @@ struct Violations {
 };
 
 /// Up to the rounding of f and of the position.
-bool bounds(Range r, const test::VoxelFunction& voxel, Vec3d at) {
-    const double f = test::trilinear(voxel, at);
+bool bounds(grid::Range r, const oracle::VoxelFunction& voxel, Vec3d at) {
+    const double f = oracle::trilinear(voxel, at);
     double largest = 0;
     for (int corner = 0; corner < 8; ++corner)
         largest = std::max(largest,
@@ -196,15 +198,15 @@ bool bounds(Range r, const test::VoxelFunction& voxel, Vec3d at) {
     return r.min <= f + slack && f - slack <= r.max;
 }
 
-void walkAlong(const Volume& v, const MediumPart& part, const Ray& ray, RandomStream& random,
-               Violations& found) {
-    const IndexRay index = part.indexRay(ray.origin, ray.direction);
-    const auto f = [&](double t) { return test::trilinear(v.voxels.at, index.at(t)); };
+void walkAlong(const Volume& v, const medium::MediumPart& part, const Ray& ray,
+               RandomStream& random, Violations& found) {
+    const grid::IndexRay index = part.indexRay(ray.origin, ray.direction);
+    const auto f = [&](double t) { return oracle::trilinear(v.voxels.at, index.at(t)); };
     const double slack = 1e-9 * ray.tMax;
     ++found.rays;
-    PartWalk walk(part, index, ray.tMax);
+    medium::PartWalk walk(part, index, ray.tMax);
     double first = ray.tMax, end = ray.tMax;
-    for (Segment s; walk.next(s); end = s.t1, ++found.segments) {
+    for (grid::Segment s; walk.next(s); end = s.t1, ++found.segments) {
         if (first == ray.tMax && end == ray.tMax)
             first = s.t0;
         else if (std::abs(s.t0 - end) > slack || s.t0 < end)
@@ -222,7 +224,8 @@ void walkAlong(const Volume& v, const MediumPart& part, const Ray& ray, RandomSt
 
 /// A cell's bounds hold for all voxels that interpolation in it touches, and each bound is one of
 /// them to the 2^-7 that storage rounds outwards.
-void inspectCell(const Volume& v, const MajorantGrid::Cell& cell, Vec3i corner, Violations& found) {
+void inspectCell(const Volume& v, const grid::MajorantGrid::Cell& cell, Vec3i corner,
+                 Violations& found) {
     ++found.cells;
     const int size = 1 << cell.log2Size;
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -232,7 +235,7 @@ void inspectCell(const Volume& v, const MajorantGrid::Cell& cell, Vec3i corner, 
         least = std::min(least, f), most = std::max(most, f);
     }
     constexpr double storage = 0x1p-7, rounding = 1e-6;
-    const Range r = cell.range;
+    const grid::Range r = cell.range;
     found.unbounded += r.min > least * (1 + rounding) || r.max < most * (1 - rounding);
     found.loose += r.min < least * (1 - storage) || r.max > most * (1 + storage);
 }
@@ -240,7 +243,7 @@ void inspectCell(const Volume& v, const MajorantGrid::Cell& cell, Vec3i corner, 
 void intervals(Lab& lab) {
     const int largestCell = lab.pick(4, 6), mostCells = lab.pick(400, 4000);
     for (const Volume& v : volumes(lab, Endless::Too)) {
-        const MediumPart part = v.part(Rgb(0.0f), Rgb(1.0f), 0);
+        const medium::MediumPart part = v.part(Rgb(0.0f), Rgb(1.0f), 0);
         Violations found;
         std::set<std::array<int, 3>> seen;
         RandomStream random(lab.seed("walk, " + v.name));
@@ -251,7 +254,7 @@ void intervals(Lab& lab) {
                 const Vec3d p =
                     part.indexRay(ray.origin, ray.direction).at(ray.tMax * random.uniform());
                 const Vec3i voxel = floorToInt(v.field->nearSupport(p));
-                const MajorantGrid::Cell cell = part.majorants().find(voxel);
+                const grid::MajorantGrid::Cell cell = part.majorants().find(voxel);
                 const int size = 1 << cell.log2Size;
                 const Vec3i corner{voxel.x & -size, voxel.y & -size, voxel.z & -size};
                 if (cell.log2Size <= largestCell &&

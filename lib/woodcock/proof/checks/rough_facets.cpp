@@ -59,8 +59,7 @@ void roughFacets(Lab& lab) {
                         "box = { min = [-1e4, -1, -1e4], max = [1e4, 0, 1e4] }\n"
                         "[[surface]]\nmaterial = \"white\"\nplane = {}\n"
                         "transform = { translate = [0, -0.9, 0] }\n" +
-                        sky +
-                        test::pencilCamera({0, -0.5, 0}, {std::sqrt((1 - mu) * (1 + mu)), mu, 0}),
+                        sky + pencilCamera({0, -0.5, 0}, {std::sqrt((1 - mu) * (1 + mu)), mu, 0}),
                     ior * ior, "index^2, above a white floor");
         }
     }

@@ -9,19 +9,19 @@
 #include <cmath>
 #include <limits>
 
-#include "woodcock/proof/oracles/closed_forms.h"
-#include "woodcock/proof/oracles/line_integral.h"
-#include "woodcock/proof/checks/cells.h"
-#include "woodcock/proof/checks/measure.h"
-#include "woodcock/proof/checks/subjects.h"
-#include "woodcock/proof/support/sky.h"
-#include "woodcock/proof/support/statistics.h"
-#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/base/random.h"
 #include "woodcock/base/sample_sequence.h"
 #include "woodcock/base/statistics.h"
 #include "woodcock/medium/phase.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/proof/checks/cells.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/oracles/closed_forms.h"
+#include "woodcock/proof/oracles/line_integral.h"
+#include "woodcock/proof/support/sky.h"
+#include "woodcock/proof/support/statistics.h"
+#include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/render/equiangular.h"
 
 namespace woodcock::proof {
@@ -36,9 +36,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// from the peak, which spreads it out.
 double phaseOverSphere(double g) {
     const double peak = g >= 0 ? 1 : -1, width = 1e-3 * (1 - std::abs(g)) * (1 - std::abs(g));
-    return 2 * pi * test::integrate(std::log(width), std::log(2 + width), 400, [&](double y) {
+    return 2 * pi * integrate(std::log(width), std::log(2 + width), 400, [&](double y) {
                const double distance = std::exp(y) - width;
-               return henyeyGreenstein(peak * (1 - distance), g) * std::exp(y);
+               return medium::henyeyGreenstein(peak * (1 - distance), g) * std::exp(y);
            });
 }
 
@@ -55,12 +55,12 @@ void phaseFunction(Lab& lab) {
         Moments cosine;
         double worst = 0;
         for (int i = 0; i < n; ++i) {
-            const PhaseSample s =
-                sampleHenyeyGreenstein(forward, g, random.uniform(), random.uniform());
+            const medium::PhaseSample s =
+                medium::sampleHenyeyGreenstein(forward, g, random.uniform(), random.uniform());
             const double c = dot(s.direction, forward);
-            cells.add(oracle::henyeyGreensteinCdf(c, g), test::turn(forward, s.direction));
+            cells.add(oracle::henyeyGreensteinCdf(c, g), turn(forward, s.direction));
             cosine.add(c);
-            worst = std::max(worst, std::abs(henyeyGreenstein(c, g) / s.pdf - 1));
+            worst = std::max(worst, std::abs(medium::henyeyGreenstein(c, g) / s.pdf - 1));
         }
         lab.add(cells.asCase("directions, " + name));
         lab.add(meanCase("mean cosine, " + name, g, cosine, lab.pick(1e-2, 1e-3)));
@@ -86,11 +86,11 @@ double noise(Vec3i v) {
 /// integrated over voxels, without cells or bounds.
 void flights(Lab& lab) {
     const int n = lab.pick(10000, 200000);
-    test::GridSpec grid;
+    GridSpec grid;
     grid.box = noiseBox, grid.value = noise;
-    test::writeVdb(lab.file("noise.vdb"), {grid});
+    writeVdb(lab.file("noise.vdb"), {grid});
     const double sigma = 0.25;
-    const Scene scene = sceneIn(
+    const render::Scene scene = sceneIn(
         lab, fmt::format("[[volume]]\nfile = \"noise.vdb\"\nscale = {}\nalbedo = 0.5\n", sigma) +
                  cameraAbove(1));
     // Voxels survive the file as floats.
@@ -108,24 +108,24 @@ void flights(Lab& lab) {
             const Vec3d direction = normalize(ray.direction);
             const auto reach = [&](double t) {  // the chance of it
                 return std::exp(-sigma *
-                                test::lineIntegral(voxel, noiseBox, ray.origin, direction, 0, t));
+                                oracle::lineIntegral(voxel, noiseBox, ray.origin, direction, 0, t));
             };
-            const Scene loose = test::withParts(
-                scene, [&](MediumPart::Description& d) { d.majorantScale = looseness; });
+            const render::Scene loose = withParts(
+                scene, [&](medium::MediumPart::Description& d) { d.majorantScale = looseness; });
             RandomStream random(lab.seed(name));
-            std::vector<DistanceQuery<1>> queries;
+            std::vector<medium::DistanceQuery<1>> queries;
             for (int i = 0; i < n; ++i)
                 queries.push_back({ray.origin, direction, infinity, random.uniformOpenLow(),
                                    RandomStream(random.bits()), 0, true, Spectrum<1>(1.0f), 0, -1});
-            TrackingCounters counters;
-            trackDistance<1>(loose.medium, queries, counters);
+            medium::TrackingCounters counters;
+            medium::trackDistance<1>(loose.medium, queries, counters);
             const double escape = reach(infinity);
             constexpr int bins = 32;
             std::vector<double> shares(bins + 1, (1 - escape) / bins);
             shares[bins] = escape;
             Cells cells(bins + 1, 1, shares);
             double worst = 0;
-            for (const DistanceQuery<1>& q : queries) {
+            for (const medium::DistanceQuery<1>& q : queries) {
                 const double share = q.part < 0 ? 1 : (1 - reach(q.t)) / (1 - escape);
                 cells.add(q.part < 0 ? 1 : std::min(share, 1 - 1e-12) * bins / (bins + 1));
                 worst = std::max(worst, std::abs(double{q.throughput[0]} - 1));
@@ -149,8 +149,8 @@ void equiangular(Lab& lab) {
         Vec3d side, other;
         orthonormalBasis(axis, side, other);
         const Vec3d origin{1, 2, 3};
-        const Equiangular e(origin, axis, origin + axis * s.along + side * s.offset, s.t0, s.t1,
-                            1e-9);
+        const render::Equiangular e(origin, axis, origin + axis * s.along + side * s.offset, s.t0,
+                                    s.t1, 1e-9);
         const auto angle = [&](double t) { return std::atan((t - s.along) / s.offset); };
         const double start = angle(s.t0), range = angle(s.t1) - start;
         RandomStream random(lab.seed(name));

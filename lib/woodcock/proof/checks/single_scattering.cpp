@@ -6,18 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/oracles/chandrasekhar.h"
 #include "woodcock/proof/oracles/closed_forms.h"
 #include "woodcock/proof/oracles/quadrature.h"
-#include "woodcock/proof/checks/measure.h"
-#include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::Estimate, test::RgbEstimate;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* evenLight = "[[light]]\ntype = \"environment\"\nradiance = 1\n";
@@ -81,7 +79,7 @@ void planeSlab(Lab& lab) {
                 fmt::format("once {} by {}, depth {}, albedo {}, g {}, mu {}, mu0 {}, azimuth {}",
                             reflected ? "reflected" : "transmitted", slabName, s.depth, s.albedo,
                             s.g, s.mu, s.mu0, s.azimuth);
-            const Scene scene =
+            const render::Scene scene =
                 sceneIn(lab, fmt::format("[[volume]]\n{}\nscale = {}\nalbedo = {}\ng = {}\n", slab,
                                          s.depth, s.albedo, s.g) +
                                  sun(travel) + cameraAbove(s.mu));
@@ -148,7 +146,8 @@ void halfSpaceUnderTheSun(Lab& lab) {
         const std::string name = fmt::format(
             "half-space ({}) under the sun, albedo {}, mu {}, mu0 {}", slabName, albedo, mu, mu0);
         const Vec3d travel{0, -mu0, std::sqrt(1 - mu0 * mu0)};
-        const Scene scene = sceneIn(lab, halfSpace(slab, albedo) + sun(travel) + cameraAbove(mu));
+        const render::Scene scene =
+            sceneIn(lab, halfSpace(slab, albedo) + sun(travel) + cameraAbove(mu));
         addSunLit(lab, name, oracle::halfSpaceRadiance(albedo, mu, mu0),
                   evenPicture(lab, name, scene, precision, {0}), precision);
     }
@@ -176,10 +175,10 @@ std::string sphere(Vec3d p, double radius) {
 
 /// Eye and light in fog that reaches 40 mean free paths and more: a box, or one tile of voxels.
 void airlight(Lab& lab) {
-    test::GridSpec tile;
+    GridSpec tile;
     tile.tiles = {{{0, 0, 0}, 128, {1}}};
     tile.worldFromIndex = Affine3d::translate({-64, -64, -64});
-    test::writeVdb(lab.file("fog.vdb"), {tile});
+    writeVdb(lab.file("fog.vdb"), {tile});
     const Precision precision = oncePrecision(lab);
     constexpr double radius = 1e-4;
     for (const bool voxels : {false, true})
@@ -194,10 +193,10 @@ void airlight(Lab& lab) {
                     const std::string name = fmt::format(
                         "airlight of a {} in fog ({}), g {}, offset {}, eye at {}",
                         ball ? "small sphere" : "point", voxels ? "voxels" : "box", g, offset, eye);
-                    const Scene scene = sceneIn(
+                    const render::Scene scene = sceneIn(
                         lab, fogIn(fog, g) +
                                  (ball ? sphere(lightPosition, radius) : point(lightPosition)) +
-                                 test::pencilCamera({eye, 0, 0}, {1, 0, 0}));
+                                 pencilCamera({eye, 0, 0}, {1, 0, 0}));
                     const double expected =
                         oracle::airlight({sigmaA, sigmaS, g, 1, offset}, eye, eye, infinity);
                     Case c = caseOf(name, expected,
@@ -249,8 +248,8 @@ void airlightOfABox(Lab& lab) {
             const std::string name =
                 fmt::format("airlight of a box of fog, light at {}/{}/{}, g {}", lightPosition.x,
                             lightPosition.y, lightPosition.z, g);
-            const Scene scene = sceneIn(lab, fogIn(fog.c_str(), g) + point(lightPosition) +
-                                                 test::pencilCamera({0, 0, 10}, {0, 0, -1}));
+            const render::Scene scene = sceneIn(lab, fogIn(fog.c_str(), g) + point(lightPosition) +
+                                                         pencilCamera({0, 0, 10}, {0, 0, -1}));
             Case c = caseOf(name, airlightInBox(lightPosition, g),
                             evenPicture(lab, name, scene, precision, {0}, 1)[0], precision);
             c.allowance += 1e-5 * c.expected;

@@ -4,18 +4,16 @@
 
 #include <cmath>
 
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/oracles/adding_doubling.h"
 #include "woodcock/proof/oracles/chandrasekhar.h"
 #include "woodcock/proof/oracles/published.h"
-#include "woodcock/proof/checks/measure.h"
-#include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/support/statistics.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::RgbEstimate;
 
 /// The distribution of optical depth over the height of a slab, on which its answer does not
 /// depend.
@@ -59,7 +57,7 @@ std::string blackBox(double bottom, double top) {
 
 enum class Part { Reflected, Transmitted };
 /// By black boxes.
-test::Estimate measure(const Lab& lab, const Parameters& p, const Precision& precision, Part part) {
+Estimate measure(const Lab& lab, const Parameters& p, const Precision& precision, Part part) {
     const bool above = part == Part::Transmitted;
     const std::string box = above ? blackBox(100, 1000) : blackBox(-1000, -100);
     return evenPicture(lab, p.name() + (above ? ", transmitted" : ", reflected"),
@@ -69,7 +67,7 @@ test::Estimate measure(const Lab& lab, const Parameters& p, const Precision& pre
 
 /// By reciprocity, the radiance seen at mu is the slab's answer to a beam at mu.
 struct Measured {
-    test::Estimate reflected, transmitted;
+    Estimate reflected, transmitted;
 };
 Measured measure(const Lab& lab, const Parameters& p, const Precision& precision, Divide divide) {
     if (divide == Divide::Boxes)
@@ -84,7 +82,7 @@ Measured measure(const Lab& lab, const Parameters& p, const Precision& precision
 void addSlab(Lab& lab, const Parameters& p, double reflected, double transmitted, double rounding,
              const std::string& source, const Precision& precision, Divide divide) {
     const Measured m = measure(lab, p, precision, divide);
-    const auto add = [&](const char* what, double expected, const test::Estimate& measured) {
+    const auto add = [&](const char* what, double expected, const Estimate& measured) {
         if (expected < 4 * precision.floor) return;  // too few paths to know their scatter
         Case c = caseOf(fmt::format("{}, {}", what, p.name()), expected, measured, precision);
         c.allowance += rounding + horizonAllowance;
@@ -232,11 +230,11 @@ void width(Lab& lab) {
 }
 
 /// White-sky albedo and transmittance: 2 mu times the above over mu, by Gauss-Legendre.
-test::Estimate whiteSky(const Lab& lab, Parameters p, const Precision& precision, Part part) {
+Estimate whiteSky(const Lab& lab, Parameters p, const Precision& precision, Part part) {
     double mean = 0, variance = 0;
-    for (const auto& [x, w] : test::gaussLegendre(8)) {
+    for (const auto& [x, w] : gaussLegendre(8)) {
         p.mu = (1 + x) / 2;
-        const test::Estimate e = measure(lab, p, precision, part);
+        const Estimate e = measure(lab, p, precision, part);
         mean += w * p.mu * e.mean;
         variance += w * p.mu * e.error * w * p.mu * e.error;
     }
@@ -306,12 +304,12 @@ void deep(Lab& lab) {
     const auto through = [&](double depth, double albedo, double mu) {
         return measure(lab, {0, depth, albedo, mu}, precision, Part::Transmitted);
     };
-    const auto ratio = [](test::Estimate a, test::Estimate b) {
+    const auto ratio = [](Estimate a, Estimate b) {
         const double mean = a.mean / b.mean;
-        return test::Estimate{mean, mean * std::hypot(a.error / a.mean, b.error / b.mean)};
+        return Estimate{mean, mean * std::hypot(a.error / a.mean, b.error / b.mean)};
     };
     const Precision ofRatio{2 * precision.relative, 0};
-    const test::Estimate straight = through(30, 1, 1);
+    const Estimate straight = through(30, 1, 1);
     for (const double mu : {0.2, 0.5})
         lab.add(caseOf(fmt::format("limb darkening at mu {}", mu), oracle::milneLimbDarkening(mu),
                        ratio(through(30, 1, mu), straight), ofRatio));

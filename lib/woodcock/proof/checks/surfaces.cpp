@@ -6,17 +6,14 @@
 
 #include <cmath>
 
-#include "woodcock/proof/oracles/adding_doubling.h"
-#include "woodcock/proof/oracles/plates.h"
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/oracles/adding_doubling.h"
+#include "woodcock/proof/oracles/plates.h"
 
 namespace woodcock::proof {
 
 namespace {
-
-using test::Estimate;
-using test::RgbEstimate;
 
 const std::string evenLight = "[[light]]\ntype = \"environment\"\nradiance = 1\n";
 
@@ -75,8 +72,7 @@ void plates(Lab& lab) {
                 "[[surface]]\nmaterial = \"glass\"\n"
                 "box = {{ min = [{0}, {1}, {0}], max = [{2}, 0, {2}] }}\n{3}\n",
                 -1e4 * scale, -scale, 1e4 * scale, medium(0.3 / scale, 0, 0)) +
-            twoColouredSky +
-            test::pencilCamera(Vec3d{0, 50, 0} * scale, {std::sqrt(0.75), -0.5, 0});
+            twoColouredSky + pencilCamera(Vec3d{0, 50, 0} * scale, {std::sqrt(0.75), -0.5, 0});
         addFaces(lab, fmt::format("plate {} thick", scale), scene, answer.reflectance,
                  answer.transmittance, precision, "as of any size");
     }
@@ -109,7 +105,7 @@ void nested(Lab& lab) {
     lab.add(caseOf(
         "from the centre of an absorbing ball of glass", expected,
         evenPicture(lab, "centre of a ball",
-                    sceneIn(lab, ball + evenLight + test::pencilCamera({0, 0, 0}, {0.3, 0.5, 0.2})),
+                    sceneIn(lab, ball + evenLight + pencilCamera({0, 0, 0}, {0.3, 0.5, 0.2})),
                     precision, {0})[0],
         precision));
 }
@@ -129,9 +125,8 @@ void totalReflection(Lab& lab) {
         const std::string name = fmt::format("from within glass, mu {}", mu);
         const RgbEstimate e = evenPicture(
             lab, name,
-            sceneIn(lab,
-                    glass + twoColouredSky +
-                        test::pencilCamera({0, -5, 0}, {std::sqrt((1 - mu) * (1 + mu)), mu, 0})),
+            sceneIn(lab, glass + twoColouredSky +
+                             pencilCamera({0, -5, 0}, {std::sqrt((1 - mu) * (1 + mu)), mu, 0})),
             precision, {0, 2});
         Case above =
             caseOf(name + ", the sky above", index * index * (1 - reflected), e[0], precision);
@@ -186,7 +181,7 @@ void mediaInside(Lab& lab) {
         "[[light]]\ntype = \"sun\"\ndirection = [1, -2, 0.5]\nirradiance = 3\n"
         "[[light]]\ntype = \"sphere\"\nposition = [0.2, 0.1, 0]\nradius = 0.1\nradiance = 30\n";
     const std::string fog = "sigma_a = [0.3, 0.1, 0], sigma_s = [0.5, 1, 2], g = 0.4";
-    const std::string eye = test::pencilCamera({3, 1, 2}, {-3, -1.2, -2.1});
+    const std::string eye = pencilCamera({3, 1, 2}, {-3, -1.2, -2.1});
     const RgbEstimate inside =
         evenPicture(lab, "fog in an interface",
                     sceneIn(lab, interface +
@@ -255,7 +250,7 @@ void furnaces(Lab& lab) {
     for (const double mu : {1e-2, 1e-4, 1e-6})
         furnace(fmt::format("a clear plate at mu {}", mu),
                 dielectric("glass", 1.5) + layer("glass", -1, 0),
-                test::pencilCamera({0, 1e-3, 0}, {std::sqrt((1 - mu) * (1 + mu)), -mu, 0}));
+                pencilCamera({0, 1e-3, 0}, {std::sqrt((1 - mu) * (1 + mu)), -mu, 0}));
 }
 
 /// Emissive surfaces, and rooms that they light.
@@ -281,15 +276,15 @@ void emissiveSurfaces(Lab& lab) {
                                                      {upper.x, lower.y, upper.z}},
                                                     point, up);
         const std::string name = fmt::format("ground at {} under a box of light", x);
-        lab.add(caseOf(
-            name, 3 * 0.5 / pi * irradiance,
-            evenPicture(lab, name,
-                        sceneIn(lab, emitter + ground +
-                                         "[[surface]]\nmaterial = \"lamp\"\nbox = { min "
-                                         "= [-1, 2, -0.5], max = [1, 4, 0.5] }\n" +
-                                         test::pencilCamera(point + Vec3d{0, 1, 2}, {0, -1, -2})),
-                        precision, {0})[0],
-            precision));
+        lab.add(
+            caseOf(name, 3 * 0.5 / pi * irradiance,
+                   evenPicture(lab, name,
+                               sceneIn(lab, emitter + ground +
+                                                "[[surface]]\nmaterial = \"lamp\"\nbox = { min "
+                                                "= [-1, 2, -0.5], max = [1, 4, 0.5] }\n" +
+                                                pencilCamera(point + Vec3d{0, 1, 2}, {0, -1, -2})),
+                               precision, {0})[0],
+                   precision));
     }
     for (const double cosine : {1.0, 0.3, 0.0}) {
         const double distance = 2.5, sine = std::sqrt(1 - cosine * cosine);
@@ -301,7 +296,7 @@ void emissiveSurfaces(Lab& lab) {
                                          fmt::format("[[surface]]\nmaterial = \"lamp\"\nsphere = "
                                                      "{{ centre = [{}, {}, 0], radius = 1 }}\n",
                                                      distance * sine, distance * cosine) +
-                                         test::pencilCamera({-1, 1, 3}, {1, -1, -3})),
+                                         pencilCamera({-1, 1, 3}, {1, -1, -3})),
                         precision, {0})[0],
             precision);
         c.allowance += 2e-4 * c.expected, c.note = "a ball of light is a mesh of equal area";
@@ -321,11 +316,10 @@ void emissiveSurfaces(Lab& lab) {
     for (const bool foggy : {false, true}) {
         const std::string name =
             foggy ? "a shining room full of white fog" : "a room whose walls shine and reflect";
-        const RgbEstimate e =
-            evenPicture(lab, name,
-                        sceneIn(lab, room + (foggy ? fog : "") +
-                                         test::pencilCamera({0.3, 0.1, 0.2}, {1, 0.4, -0.2})),
-                        precision);
+        const RgbEstimate e = evenPicture(
+            lab, name,
+            sceneIn(lab, room + (foggy ? fog : "") + pencilCamera({0.3, 0.1, 0.2}, {1, 0.4, -0.2})),
+            precision);
         for (int i = 0; i < 3; ++i)
             lab.add(caseOf(fmt::format("{}, channel {}", name, i), (3 - i) * even,
                            e[static_cast<std::size_t>(i)], precision));
@@ -337,7 +331,7 @@ void emissiveSurfaces(Lab& lab) {
                               "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = 2\n";
     lab.add(caseOf("ground in the shadow of fog", 0.5 / pi * 2 * std::exp(-0.7),
                    evenPicture(lab, "shadow of fog",
-                               sceneIn(lab, scene + test::pencilCamera({9, 0.5, 0}, {-18, -1, 0})),
+                               sceneIn(lab, scene + pencilCamera({9, 0.5, 0}, {-18, -1, 0})),
                                precision, {0})[0],
                    precision));
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/proof/checks/volume.h"
 
-#include "woodcock/proof/checks/hostile.h"
 #include "woodcock/base/error.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/proof/checks/hostile.h"
 
 namespace woodcock::proof {
 
@@ -13,15 +13,15 @@ namespace {
 Volume volumeOf(const std::filesystem::path& file, std::string name, std::uint64_t seed) {
     constexpr int points = 32;
     constexpr double depth = 5;
-    const VdbFile listed = listGrids(file);
-    const GridListing grid = findGrid(listed, GridRole::Density).grid;
-    LoadOptions options;
+    const grid::VdbFile listed = grid::listGrids(file);
+    const grid::GridListing grid = grid::findGrid(listed, grid::GridRole::Density).grid;
+    grid::LoadOptions options;
     options.repair = true;
-    LoadedGrid loaded = loadGrid(listed, grid, options);
+    grid::LoadedGrid loaded = grid::loadGrid(listed, grid, options);
     Volume v{std::move(name),
-             std::make_shared<const Field>(std::move(loaded.field)),
+             std::make_shared<const grid::Field>(std::move(loaded.field)),
              loaded.worldFromIndex,
-             test::readVoxels(file, grid.name, points, seed),
+             oracle::readVoxels(file, grid.name, points, seed),
              {},
              1};
     if (v.voxels.matter.empty()) throw inputError("{}: its density is the same everywhere", name);
@@ -49,22 +49,22 @@ double Volume::radius() const {
     return radius;
 }
 
-MediumPart Volume::part(Rgb absorption, Rgb scattering, double g) const {
-    MediumPart::Description d;
+medium::MediumPart Volume::part(Rgb absorption, Rgb scattering, double g) const {
+    medium::MediumPart::Description d;
     d.field = field;
     d.worldFromIndex = worldFromIndex;
     d.absorption = absorption * static_cast<float>(sigma);
     d.scattering = scattering * static_cast<float>(sigma);
     d.g = g;
-    return MediumPart(std::move(d));
+    return medium::MediumPart(std::move(d));
 }
 
 double Volume::opticalDepth(Vec3d origin, Vec3d direction, double t0, double t1) const {
     const Affine3d indexFromWorld = voxels.worldFromIndex.inverse();
     const auto aboveBackground = [this](Vec3i v) { return voxels.at(v) - voxels.background; };
     return sigma * (voxels.background * (t1 - t0) +
-                    test::lineIntegral(aboveBackground, voxels.box, indexFromWorld.point(origin),
-                                       indexFromWorld.vector(direction), t0, t1));
+                    oracle::lineIntegral(aboveBackground, voxels.box, indexFromWorld.point(origin),
+                                         indexFromWorld.vector(direction), t0, t1));
 }
 
 std::vector<Volume> volumes(const Lab& lab, Endless endless) {
@@ -73,7 +73,7 @@ std::vector<Volume> volumes(const Lab& lab, Endless endless) {
         all.push_back(volumeOf(file, file.filename().string(), lab.seed(file.filename().string())));
     for (const HostileGrid& h : hostileGrids()) {
         const auto file = lab.file(std::string(h.name) + ".vdb");
-        test::writeVdb(file, {h.grid});
+        writeVdb(file, {h.grid});
         all.push_back(volumeOf(file, h.name, lab.seed(h.name)));
     }
     if (endless == Endless::Not) std::erase_if(all, [](const Volume& v) { return v.endless(); });

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "woodcock/base/random.h"
 #include "woodcock/proof/oracles/vdb_voxels.h"
 #include "woodcock/proof/proof.h"
-#include "woodcock/base/random.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::proof {
@@ -15,9 +15,9 @@ namespace woodcock::proof {
 /// A volume for the checks of properties: in the renderer's own form, and in OpenVDB's.
 struct Volume {
     std::string name;
-    std::shared_ptr<const Field> field;
+    std::shared_ptr<const grid::Field> field;
     Affine3d worldFromIndex;
-    test::VdbVoxels voxels;
+    oracle::VdbVoxels voxels;
     std::vector<Vec3d> matter;  ///< world positions drawn in proportion to the density
     double sigma = 0;  ///< where the field is 1: lines through the matter are 5 deep in the mean
 
@@ -25,7 +25,7 @@ struct Volume {
     Vec3d centre() const;
     double radius() const;  ///< of a sphere around the support
     /// With these coefficients in units of sigma.
-    MediumPart part(Rgb absorption, Rgb scattering, double g) const;
+    medium::MediumPart part(Rgb absorption, Rgb scattering, double g) const;
     /// Optical depth for sigma, by brute force through OpenVDB's own lookups.
     double opticalDepth(Vec3d origin, Vec3d direction, double t0, double t1) const;
 };

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "woodcock/proof/oracles/matrix.h"
-#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/proof/oracles/matrix.h"
+#include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
 

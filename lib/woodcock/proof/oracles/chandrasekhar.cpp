@@ -5,8 +5,8 @@
 #include <iterator>
 #include <limits>
 
-#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
 

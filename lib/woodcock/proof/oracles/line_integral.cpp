@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace woodcock::test {
+namespace woodcock::oracle {
 
 double trilinear(const VoxelFunction& voxel, Vec3d at) {
     double sum = 0;
@@ -49,4 +49,4 @@ double lineIntegral(const VoxelFunction& voxel, const Box3i& box, Vec3d origin, 
     return sum;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::oracle

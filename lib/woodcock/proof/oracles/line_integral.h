@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock::test {
+namespace woodcock::oracle {
 
 /// A voxel's value; must be zero outside the box that goes with it.
 using VoxelFunction = std::function<double(Vec3i)>;
@@ -20,4 +20,4 @@ double lineIntegral(const VoxelFunction& voxel, const Box3i& box, Vec3d origin, 
 /// The trilinear interpolation itself.
 double trilinear(const VoxelFunction& voxel, Vec3d at);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::oracle

@@ -3,7 +3,7 @@
 
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock::test {
+namespace woodcock::oracle {
 
 namespace {
 
@@ -40,4 +40,4 @@ VdbValues::VdbValues(const std::filesystem::path& file, const std::string& grid)
     }
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::oracle

@@ -8,7 +8,7 @@
 
 #include "woodcock/base/affine.h"
 
-namespace woodcock::test {
+namespace woodcock::oracle {
 
 /// The voxels of a float grid with background 0, copied densely straight from OpenVDB.
 struct VdbValues {
@@ -38,4 +38,4 @@ private:
 /// OpenVDB's own memUsage() of a float grid's tree, everything loaded.
 std::size_t vdbTreeBytes(const std::filesystem::path& file, const std::string& grid);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::oracle

@@ -7,7 +7,7 @@
 #include "woodcock/base/random.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 
-namespace woodcock::test {
+namespace woodcock::oracle {
 
 namespace {
 
@@ -89,4 +89,4 @@ VdbVoxels readVoxels(const std::filesystem::path& file, const std::string& name,
     return voxels;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::oracle

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "woodcock/proof/oracles/line_integral.h"
 #include "woodcock/base/affine.h"
+#include "woodcock/proof/oracles/line_integral.h"
 
-namespace woodcock::test {
+namespace woodcock::oracle {
 
 /// A scalar grid as OpenVDB itself looks it up, sparse ones and backgrounds included: none of our
 /// code. Values that no medium can have (negative, NaN, infinite) are zero.
@@ -25,4 +25,4 @@ struct VdbVoxels {
 VdbVoxels readVoxels(const std::filesystem::path& file, const std::string& grid, int matterCount,
                      std::uint64_t seed);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::oracle

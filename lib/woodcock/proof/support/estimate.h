@@ -5,7 +5,7 @@
 
 #include "woodcock/base/statistics.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// A mean and its standard error.
 struct Estimate {
@@ -16,4 +16,4 @@ struct Estimate {
 };
 using RgbEstimate = std::array<Estimate, 3>;
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

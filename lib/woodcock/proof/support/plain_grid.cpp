@@ -5,7 +5,7 @@
 
 #include "woodcock/base/random.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 namespace {
 
@@ -42,7 +42,7 @@ float PlainGrid::voxel(Vec3i v, int channel) const {
     if (const auto leaf = leaves_.find(leafKey(v)); leaf != leaves_.end())
         return leaf->second[leafOffset(v) * static_cast<std::size_t>(channels_) +
                             static_cast<std::size_t>(channel)];
-    for (const FieldTile& t : tiles_) {
+    for (const grid::FieldTile& t : tiles_) {
         const Vec3i o = v - t.origin;
         if (std::min({o.x, o.y, o.z}) >= 0 && std::max({o.x, o.y, o.z}) < t.size)
             return t.value[static_cast<std::size_t>(channel)];
@@ -62,8 +62,8 @@ double PlainGrid::trilinear(Vec3d p, int channel) const {
     return sum;
 }
 
-Range PlainGrid::range(Vec3i lower, Vec3i upper) const {
-    Range r{voxel(lower), voxel(lower)};
+grid::Range PlainGrid::range(Vec3i lower, Vec3i upper) const {
+    grid::Range r{voxel(lower), voxel(lower)};
     for (int x = lower.x; x <= upper.x; ++x)
         for (int y = lower.y; y <= upper.y; ++y)
             for (int z = lower.z; z <= upper.z; ++z)
@@ -86,7 +86,7 @@ Box3d PlainGrid::support() const {
             const Vec3i v = leaf + Vec3i{i >> 6, i >> 3 & 7, i & 7};
             if (differs(v)) box.add(v.as<double>());
         }
-    for (const FieldTile& t : tiles_)
+    for (const grid::FieldTile& t : tiles_)
         if (differs(t.origin)) {
             const int last = t.size - 1;
             box.add(t.origin.as<double>());
@@ -96,8 +96,8 @@ Box3d PlainGrid::support() const {
     return {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}};
 }
 
-FieldSource PlainGrid::source() const {
-    FieldSource s;
+grid::FieldSource PlainGrid::source() const {
+    grid::FieldSource s;
     s.channels = channels_, s.background = background_;
     s.leafOrigins = leafOrigins_, s.tiles = tiles_;
     s.copyLeaf = [this](std::size_t i, std::span<float> values) {
@@ -150,4 +150,4 @@ PlainGrid scatteredGrid(std::uint64_t seed, int channels, std::array<float, 3> b
     return grid;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -8,7 +8,7 @@
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/field_source.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// A grid as a plain list of leaves and tiles, looked up and interpolated in the most obvious way:
 /// the truth that a Field, its majorants and the trackers are held against.
@@ -23,26 +23,28 @@ public:
 
     int channels() const { return channels_; }
     const std::vector<Vec3i>& leaves() const { return leafOrigins_; }
-    const std::vector<FieldTile>& tiles() const { return tiles_; }
+    const std::vector<grid::FieldTile>& tiles() const { return tiles_; }
     float background(int channel = 0) const { return background_[static_cast<size_t>(channel)]; }
 
     float voxel(Vec3i v, int channel = 0) const;
     double trilinear(Vec3d p, int channel = 0) const;
     /// Smallest and largest voxel of the box, both ends included, over all channels.
-    Range range(Vec3i lower, Vec3i upper) const;
+    grid::Range range(Vec3i lower, Vec3i upper) const;
     /// One voxel around all voxels of leaves and tiles that differ from the background.
     Box3d support() const;
 
     /// Refers to this grid.
-    FieldSource source() const;
-    Field field(Storage storage = Storage::Float) const { return buildField(source(), storage); }
+    grid::FieldSource source() const;
+    grid::Field field(grid::Storage storage = grid::Storage::Float) const {
+        return grid::buildField(source(), storage);
+    }
 
 private:
     int channels_;
     std::array<float, 3> background_;
     std::vector<Vec3i> leafOrigins_;
     std::map<std::array<int, 3>, std::vector<float>> leaves_;
-    std::vector<FieldTile> tiles_;
+    std::vector<grid::FieldTile> tiles_;
 };
 
 /// A grid with a bit of everything near the origin: leaves of rough noise (a third of the voxels
@@ -54,4 +56,4 @@ PlainGrid mixedGrid(std::uint64_t seed, int channels = 1, std::array<float, 3> b
 /// flat table.
 PlainGrid scatteredGrid(std::uint64_t seed, int channels = 1, std::array<float, 3> background = {});
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "woodcock/proof/support/statistics.h"
 #include "woodcock/base/random.h"
+#include "woodcock/proof/support/statistics.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 namespace {
 
@@ -33,14 +33,15 @@ Vec3d gauss(double a, double b, int n, F&& f) {
 
 }  // namespace
 
-Medium PlainMedium::medium(double majorantScale, int smallestLog2, Storage storage) const {
-    Medium medium;
+medium::Medium PlainMedium::medium(double majorantScale, int smallestLog2,
+                                   grid::Storage storage) const {
+    medium::Medium medium;
     for (const PlainPart& p : parts_) {
-        MediumPart::Description d;
-        if (p.grid) d.field = std::make_shared<Field>(p.grid->field(storage));
+        medium::MediumPart::Description d;
+        if (p.grid) d.field = std::make_shared<grid::Field>(p.grid->field(storage));
         d.box = p.box, d.worldFromIndex = p.worldFromIndex;
         d.absorption = p.absorption, d.scattering = p.scattering, d.g = p.g;
-        if (p.albedo) d.albedo = std::make_shared<Field>(p.albedo->field(storage));
+        if (p.albedo) d.albedo = std::make_shared<grid::Field>(p.albedo->field(storage));
         d.albedoWorldFromIndex = p.albedoWorldFromIndex;
         d.majorantScale = majorantScale, d.majorantSmallestLog2 = smallestLog2;
         medium.parts.emplace_back(std::move(d));
@@ -121,7 +122,7 @@ Vec3d PlainMedium::scattered(const PlainPart& part, Vec3d origin, Vec3d directio
     return sum;
 }
 
-std::vector<TestRay> testRays(const Medium& medium, int count, std::uint64_t seed) {
+std::vector<TestRay> testRays(const medium::Medium& medium, int count, std::uint64_t seed) {
     RandomStream random(seed);
     const Affine3d& world = medium.parts[0].description().worldFromIndex;
     const Box3d& box = medium.parts[0].support();
@@ -149,4 +150,4 @@ std::vector<TestRay> testRays(const Medium& medium, int count, std::uint64_t see
     return rays;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

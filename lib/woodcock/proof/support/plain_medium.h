@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "woodcock/proof/support/plain_grid.h"
 #include "woodcock/medium/medium.h"
+#include "woodcock/proof/support/plain_grid.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// One part of a medium, described by plain grids.
 struct PlainPart {
@@ -29,8 +29,8 @@ public:
     const std::vector<PlainPart>& parts() const { return parts_; }
 
     /// The same for the renderer.
-    Medium medium(double majorantScale = 1, int smallestLog2 = 1,
-                  Storage storage = Storage::Float) const;
+    medium::Medium medium(double majorantScale = 1, int smallestLog2 = 1,
+                          grid::Storage storage = grid::Storage::Float) const;
 
     Vec3d sigmaT(Vec3d world) const;
     Vec3d sigmaS(const PlainPart& part, Vec3d world) const;
@@ -56,6 +56,6 @@ struct TestRay {
 
 /// Rays of every kind through a medium: from far outside, from inside, along voxel planes, grazing
 /// the bounds, ending inside. Finite.
-std::vector<TestRay> testRays(const Medium& medium, int count, std::uint64_t seed);
+std::vector<TestRay> testRays(const medium::Medium& medium, int count, std::uint64_t seed);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

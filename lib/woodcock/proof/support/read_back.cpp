@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 bool ReadBack::has(const std::string& channel) const { return types.count(channel) == 1; }
 
@@ -58,4 +58,4 @@ void writeFloats(const std::filesystem::path& file, int width, int height, int c
         throw std::runtime_error("cannot write " + file.string());
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

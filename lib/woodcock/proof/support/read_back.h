@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// An image file as another program sees it: through OpenImageIO, none of our code.
 struct ReadBack {
@@ -28,4 +28,4 @@ ReadBack readBack(const std::filesystem::path& file);
 void writeFloats(const std::filesystem::path& file, int width, int height, int channels,
                  const std::vector<float>& values);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -8,16 +8,16 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 namespace {
 
 std::string text(Vec3d v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); }
 
 /// The statistics of `value(x, y)` over the pixels of a film.
-Estimate even(const Film& film, const std::function<double(int, int)>& value) {
+Estimate even(const image::Film& film, const std::function<double(int, int)>& value) {
     Moments m;
-    const Film::Window crop = film.crop();
+    const image::Film::Window crop = film.crop();
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) m.add(value(x, y));
     return Estimate(m);
@@ -25,16 +25,18 @@ Estimate even(const Film& film, const std::function<double(int, int)>& value) {
 
 }  // namespace
 
-Scene sceneFrom(const std::string& sceneText, const std::filesystem::path& directory) {
-    const SceneDescription description = parseSceneText(sceneText, "scene.toml", directory);
-    return buildScene(description, loadScene(description));
+render::Scene sceneFrom(const std::string& sceneText, const std::filesystem::path& directory) {
+    const scene::SceneDescription description =
+        scene::parseSceneText(sceneText, "scene.toml", directory);
+    return scene::buildScene(description, scene::loadScene(description));
 }
 
-Scene withParts(const Scene& scene, const std::function<void(MediumPart::Description&)>& edit) {
-    Scene edited = scene;
+render::Scene withParts(const render::Scene& scene,
+                        const std::function<void(medium::MediumPart::Description&)>& edit) {
+    render::Scene edited = scene;
     edited.medium.parts.clear();
-    for (const MediumPart& part : scene.medium.parts) {
-        MediumPart::Description d = part.description();
+    for (const medium::MediumPart& part : scene.medium.parts) {
+        medium::MediumPart::Description d = part.description();
         edit(d);
         edited.medium.parts.emplace_back(std::move(d));
     }
@@ -47,8 +49,8 @@ bool adaptiveSamples = false;
 
 void sampleAdaptively(bool adaptive) { adaptiveSamples = adaptive; }
 
-RenderResult renderScene(const Scene& scene, const Picture& picture) {
-    RenderSettings settings;
+render::RenderResult renderScene(const render::Scene& scene, const Picture& picture) {
+    render::RenderSettings settings;
     settings.adaptive = adaptiveSamples;
     settings.width = picture.width, settings.height = picture.height;
     settings.endSample = picture.samples * (adaptiveSamples ? 2 : 1);
@@ -56,52 +58,52 @@ RenderResult renderScene(const Scene& scene, const Picture& picture) {
     settings.maxScatterings = picture.maxScatterings;
     settings.depthLayers = picture.depthLayers;
     settings.featureLayers = picture.featureLayers;
-    RenderResult result = render(scene, settings);
+    render::RenderResult result = render::render(scene, settings);
     if (const auto count = result.film.nonFiniteCount())
         throw std::runtime_error(fmt::format("{} samples are not finite", count));
     return result;
 }
 
-RgbEstimate evenRadiance(const Film& film) {
+RgbEstimate evenRadiance(const image::Film& film) {
     RgbEstimate e;
     for (int c = 0; c < 3; ++c)
         e[static_cast<std::size_t>(c)] = even(film, [&](int x, int y) {
-            const Film::Pixel& p = film.at(x, y);
+            const image::Film::Pixel& p = film.at(x, y);
             return p.radiance[c] / static_cast<double>(p.samples);
         });
     return e;
 }
 
-Estimate evenAlpha(const Film& film) {
+Estimate evenAlpha(const image::Film& film) {
     return even(film, [&](int x, int y) {
-        const Film::Pixel& p = film.at(x, y);
+        const image::Film::Pixel& p = film.at(x, y);
         return p.alpha / static_cast<double>(p.samples);
     });
 }
 
-RgbEstimate evenTransmittance(const Film& film) {
+RgbEstimate evenTransmittance(const image::Film& film) {
     RgbEstimate e;
     for (int c = 0; c < 3; ++c)
         e[static_cast<std::size_t>(c)] = even(film, [&](int x, int y) {
-            const Film::Pixel& p = film.at(x, y);
+            const image::Film::Pixel& p = film.at(x, y);
             return p.transmittance[c] / static_cast<double>(p.depthSamples);
         });
     return e;
 }
 
-double meanRadiance(const Film& film, int channel) {
+double meanRadiance(const image::Film& film, int channel) {
     return evenRadiance(film)[static_cast<std::size_t>(channel)].mean;
 }
 
-Estimate meanOverSeeds(const Scene& scene, Picture picture, int seeds,
-                       const std::function<double(const Film&)>& measure) {
+Estimate meanOverSeeds(const render::Scene& scene, Picture picture, int seeds,
+                       const std::function<double(const image::Film&)>& measure) {
     Moments m;
     for (int i = 0; i < seeds; ++i, ++picture.seed)
         m.add(measure(renderScene(scene, picture).film));
     return Estimate(m);
 }
 
-RgbEstimate meanOverSeeds(const Scene& scene, Picture picture, int seeds) {
+RgbEstimate meanOverSeeds(const render::Scene& scene, Picture picture, int seeds) {
     std::array<Moments, 3> m;
     for (int i = 0; i < seeds; ++i, ++picture.seed) {
         const RgbEstimate e = evenRadiance(renderScene(scene, picture).film);
@@ -119,4 +121,4 @@ std::string pencilCamera(Vec3d eye, Vec3d direction) {
         text(eye), text(eye + d), text(up));
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -5,7 +5,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// The direction of 1 - cos = `below` from unit vector `axis`, at `angle` around it; keeps the
 /// digits of tiny angles.
@@ -28,4 +28,4 @@ inline double turn(Vec3d axis, Vec3d d) {
     return a < 0 ? a + 1 : a;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -6,7 +6,7 @@
 
 #include "woodcock/base/vec.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 namespace {
 
@@ -87,4 +87,4 @@ std::vector<std::pair<double, double>> gaussLegendre(int n) {
     return rule;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// Probability that chance alone makes counts differ this much from what is expected of them. Cells
 /// expected to hold few are pooled. Anything in a cell expected to hold none: 0.
@@ -28,4 +28,4 @@ double integrate(double a, double b, int n, F&& f) {
     return sum * (b - a) / 2;
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 TempDir::TempDir() {
     std::string name = (std::filesystem::temp_directory_path() / "woodcock-XXXXXX").string();
@@ -32,4 +32,4 @@ void writeText(const std::filesystem::path& file, const std::string& text) {
         throw std::runtime_error("cannot write " + file.string());
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// A directory of its own removed with its contents at the end.
 class TempDir {
@@ -24,4 +24,4 @@ private:
 std::string readText(const std::filesystem::path& file);
 void writeText(const std::filesystem::path& file, const std::string& text);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -12,7 +12,7 @@
 #include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/proof/support/temp_dir.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 namespace {
 
@@ -77,7 +77,7 @@ openvdb::GridBase::Ptr makeValues(const GridSpec& spec) {
         case VdbType::Float:
             return makeGrid<openvdb::FloatTree>(spec);
         case VdbType::Half:
-            return makeGrid<HalfTree>(spec);
+            return makeGrid<grid::HalfTree>(spec);
         case VdbType::Double:
             return makeGrid<openvdb::DoubleTree>(spec);
         case VdbType::Int32:
@@ -176,4 +176,4 @@ void patchFile(const std::filesystem::path& file, const std::string& from, const
     writeText(file, bytes);
 }
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

@@ -12,7 +12,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock::test {
+namespace woodcock::proof {
 
 /// Points makes an empty point grid: a type that holds no voxel values. Half is OpenVDB 13's.
 enum class VdbType { Float, Half, Double, Int32, Int64, Bool, Mask, Vec3s, Vec3d, Vec3i, Points };
@@ -70,4 +70,4 @@ void truncateFile(const std::filesystem::path& file, std::uintmax_t bytes);
 /// Overwrites every occurrence of `from` by `to`, of the same length; throws where there is none.
 void patchFile(const std::filesystem::path& file, const std::string& from, const std::string& to);
 
-}  // namespace woodcock::test
+}  // namespace woodcock::proof

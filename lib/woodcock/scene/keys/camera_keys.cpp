@@ -4,7 +4,7 @@
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using C = CameraDescription;
@@ -46,8 +46,9 @@ Key<C> poseKey(KeyInfo info, Vec3d LookAt::*full, std::optional<Vec3d> PartialPo
 Key<C> matrixKey() {
     Key<C> key;
     key.info = {.name = "matrix",
-                .doc = "instead of these: world from camera, which looks along -z with +y up; no "
-                       "shear; its scale is ignored",
+                .doc =
+                    "instead of these: world from camera, which looks along -z with +y up; no "
+                    "shear; its scale is ignored",
                 .type = matrix().type,
                 .fallback = "none",
                 .comment = "world from camera, which looks along -z",
@@ -71,20 +72,19 @@ std::vector<Key<C>> lensKeys() {
     const std::string instead = "perspective: instead of `fov`, in millimetres; ";
     const auto other = [&](std::string name, const std::string& needs, std::string beside) {
         return only(C::Kind::Perspective, otherWay<C>({.name = std::move(name),
-                            .doc = instead + needs,
-                            .type = number(positive).type,
-                            .fallback = "none",
-                            .example = "30",
-                            .beside = std::move(beside)}));
+                                                       .doc = instead + needs,
+                                                       .type = number(positive).type,
+                                                       .fallback = "none",
+                                                       .example = "30",
+                                                       .beside = std::move(beside)}));
     };
     return {
-        only(C::Kind::Orthographic,
-             key({.name = "height",
-                  .doc = "orthographic: world units from bottom to top",
-                  .fallback = "*chosen* to frame the volumes and surfaces",
-                  .comment = "world units, bottom to top",
-                  .beside = "type = \"orthographic\""},
-                 &C::height, number(positive))),
+        only(C::Kind::Orthographic, key({.name = "height",
+                                         .doc = "orthographic: world units from bottom to top",
+                                         .fallback = "*chosen* to frame the volumes and surfaces",
+                                         .comment = "world units, bottom to top",
+                                         .beside = "type = \"orthographic\""},
+                                        &C::height, number(positive))),
         only(C::Kind::Perspective,
              key({.name = "fov",
                   .doc = "perspective: degrees from the picture's bottom to its top",
@@ -103,7 +103,8 @@ std::vector<Key<C>> placeKeys() {
              .doc = "heights of the picture: moves the film, which then shows what lies there, "
                     "without turning the camera (and keeps verticals upright)",
              .comment = "of the film, in heights of the picture: right, up"},
-            &C::shift, [] {
+            &C::shift,
+            [] {
                 Value<std::array<double, 2>> shift = numberPair("[right, up]", {-1000, 1000});
                 shift.read = [](const TomlValue& v, Base) {
                     const auto sides = v.elements("[right, up], in heights of the picture", 2);
@@ -175,8 +176,8 @@ std::optional<double> fovOfSensor(const TomlTable& table, double aspect) {
 
 void checkUp(const TomlTable& table, const PartialPose& given) {
     if (!given.up || (length(*given.up) > 0 && std::isfinite(length(*given.up)))) return;
-    throw table.find("up")->error("is [{}, {}, {}], which points nowhere", given.up->x,
-                                  given.up->y, given.up->z);
+    throw table.find("up")->error("is [{}, {}, {}], which points nowhere", given.up->x, given.up->y,
+                                  given.up->z);
 }
 
 /// An eye and a target, and an up or its default.
@@ -215,12 +216,11 @@ const KeyTable<C>& keysOf() {
     static const KeyTable<C> table{
         .id = "camera",
         .exclusions = exclusions(),
-        .keys = joined(
-            std::vector{key({.name = "type"}, &C::kind,
-                            choice<C::Kind>("camera type",
-                                            {{C::Kind::Perspective, "perspective"},
-                                             {C::Kind::Orthographic, "orthographic"}}))},
-            lensKeys(), placeKeys()),
+        .keys = joined(std::vector{key({.name = "type"}, &C::kind,
+                                       choice<C::Kind>("camera type",
+                                                       {{C::Kind::Perspective, "perspective"},
+                                                        {C::Kind::Orthographic, "orthographic"}}))},
+                       lensKeys(), placeKeys()),
         .check = checkPose,
         .outer = "[[surface]]\nsphere = {}\n[camera]\n",
         .path = "camera"};
@@ -239,4 +239,4 @@ CameraDescription readCamera(const TomlTable& table, double aspect) {
     return camera;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

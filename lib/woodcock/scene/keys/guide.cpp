@@ -6,7 +6,7 @@
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 template <class D>
@@ -35,8 +35,8 @@ std::string fallbackCell(const KeyInfo& key) {
     const std::string& text = key.fallback;
     if (key.required) return "must be given";
     if (text == "\"\"") return "none";
-    const bool isToml = text == "true" || text == "false" || text.starts_with('"') ||
-                        text.starts_with('[');
+    const bool isToml =
+        text == "true" || text == "false" || text.starts_with('"') || text.starts_with('[');
     return isToml ? "`" + text + "`" : text;
 }
 
@@ -52,7 +52,7 @@ constexpr std::string_view beginMark = "<!-- keys: ", endMark = "<!-- end -->", 
 std::vector<KeyList> allKeys() {
     std::vector<KeyList> all =
         listsOf<SceneDescription, VolumeDescription, GridCoefficient, BlackbodyDescription, Box3d,
-                SurfaceDescription, SphereShape, DiskShape, PlaneShape, LatheShape, FacetRing,
+                SurfaceDescription, SphereShape, DiskShape, PlaneShape, LatheShape, mesh::FacetRing,
                 Transform, InteriorDescription, MaterialDescription, TextureDescription,
                 CameraDescription, RenderDescription, OutputDescription>();
     for (KeyList& list : listsOfKinds(MaterialDescription().material)) all.push_back(list);
@@ -88,4 +88,4 @@ std::string withGuideTables(const std::string& guide) {
     return text;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

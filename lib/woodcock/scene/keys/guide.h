@@ -6,7 +6,7 @@
 
 #include "woodcock/scene/keys/key.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// What is said of a table of keys, whatever it describes.
 struct KeyList {
@@ -27,4 +27,4 @@ std::string guideTable(const KeyList& list);
 /// anew. Throws Error{Input} on an unknown ID and a table without an end.
 std::string withGuideTables(const std::string& guide);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -15,7 +15,7 @@
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/scene/scene_writer.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // A key of a scene file is written once, in the table of its section: <section>_keys.cpp of this
 // folder. Parsing, the keys that messages list, --set, --write-scene, the digest of a scene and the
@@ -108,8 +108,8 @@ void addNames(const D& d, std::vector<std::string>& names) {
             names.push_back(key.info.name);
 }
 
-/// Throws Error{Input} where `table` holds a key that `d` does not have, nor `others`; `where` names
-/// the table in the message.
+/// Throws Error{Input} where `table` holds a key that `d` does not have, nor `others`; `where`
+/// names the table in the message.
 template <class D>
 void allowKeys(const TomlTable& table, const D& d, std::string_view where,
                std::vector<std::string> others = {}) {
@@ -171,7 +171,8 @@ std::string inlineTable(const D& d, const SceneWriter& out) {
 /// A table of its own as the value of a key.
 template <class D>
 Value<D> nested() {
-    return {"table", {},
+    return {"table",
+            {},
             [](const TomlValue& value, const std::filesystem::path& base) {
                 D d{};
                 readKeys(value.table(), d, base);
@@ -268,4 +269,4 @@ Key<D> biasedWhenSaid(Key<D> key) {
     return key;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -4,7 +4,7 @@
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using Sun = SunDescription;
@@ -14,9 +14,7 @@ using Environment = EnvironmentDescription;
 
 const std::string outer = "[[surface]]\nsphere = {}\n[[light]]\n";
 
-Value<UpAxis> upAxis() {
-    return choice<UpAxis>("up axis", {{UpAxis::Y, "y"}, {UpAxis::Z, "z"}});
-}
+Value<UpAxis> upAxis() { return choice<UpAxis>("up axis", {{UpAxis::Y, "y"}, {UpAxis::Z, "z"}}); }
 
 /// A key of the sun's place, which is there as soon as one of them is read.
 template <class M>
@@ -180,8 +178,7 @@ const KeyTable<Sphere>& keysOf() {
         .keys = {position(&Sphere::position),
                  key({.name = "radius", .example = "0.1", .required = true, .always = true},
                      &Sphere::radius, number(positive)),
-                 key({.name = "radiance", .always = true}, &Sphere::radiance,
-                     colour(notNegative)),
+                 key({.name = "radiance", .always = true}, &Sphere::radiance, colour(notNegative)),
                  power<Sphere>("instead of `radiance`: 4 pi^2 radius^2 radiance"),
                  key({.name = "visible", .doc = "to the camera"}, &Sphere::visible, flag())},
         .check = checkSphere,
@@ -208,8 +205,7 @@ const KeyTable<Environment>& keysOf() {
                       .comment = "degrees"},
                      &Environment::rotation, number()),
                  key({.name = "up"}, &Environment::up, upAxis()),
-                 key({.name = "visible", .doc = "to the camera"}, &Environment::visible,
-                     flag())},
+                 key({.name = "visible", .doc = "to the camera"}, &Environment::visible, flag())},
         .outer = outer,
         .path = "light[0]"};
     return table;
@@ -221,4 +217,4 @@ LightDescription readLight(const TomlTable& table, const std::filesystem::path& 
     return light;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -2,7 +2,7 @@
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using Texture = TextureDescription;
@@ -249,4 +249,4 @@ MaterialDescription readMaterial(const TomlTable& table, const std::filesystem::
     return material;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

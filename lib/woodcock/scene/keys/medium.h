@@ -3,7 +3,7 @@
 
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // What volumes and the media of surfaces say alike.
 
@@ -17,4 +17,4 @@ std::optional<std::pair<Rgb, Rgb>> readScaleAndAlbedo(const TomlTable& table);
 /// { min = [x, y, z], max = [x, y, z] }
 Value<Box3d> bounds();
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

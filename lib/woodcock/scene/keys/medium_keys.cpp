@@ -4,7 +4,7 @@
 #include "woodcock/scene/keys/medium.h"
 #include "woodcock/scene/keys/sections.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using I = InteriorDescription;
@@ -138,11 +138,12 @@ const KeyTable<I>& keysOf() {
         .exclusions = interiorExclusions(),
         .keys = interiorKeys(),
         .check = checkInterior,
-        .outer = "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\n"
-                 "[[surface]]\nsphere = {}\nmaterial = \"glass\"\n[surface.medium]\n",
+        .outer =
+            "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\n"
+            "[[surface]]\nsphere = {}\nmaterial = \"glass\"\n[surface.medium]\n",
         .least = "sigma_a = 1",
         .path = "surface[0].medium"};
     return table;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -4,7 +4,7 @@
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using O = OutputDescription;
@@ -12,7 +12,7 @@ using Base = const std::filesystem::path&;
 
 std::filesystem::path readFile(const TomlValue& value, Base base) {
     try {
-        imageFormat(value.text());
+        image::imageFormat(value.text());
     } catch (const Error& e) {
         throw inputError("{}: {}: {}", value.place(), value.name(), e.what());
     }
@@ -20,7 +20,8 @@ std::filesystem::path readFile(const TomlValue& value, Base base) {
 }
 
 Value<std::vector<std::filesystem::path>> files() {
-    return {"list", {"[\"a.exr\", \"folder/b.png\"]"},
+    return {"list",
+            {"[\"a.exr\", \"folder/b.png\"]"},
             [](const TomlValue& v, Base base) {
                 std::vector<std::filesystem::path> all;
                 for (const TomlValue& file : v.elements("a list of files, such as [\"smoke.exr\"]"))
@@ -35,7 +36,7 @@ Value<std::vector<std::filesystem::path>> files() {
 }
 
 std::vector<std::string> readLayers(const TomlValue& value, Base) {
-    const std::vector<std::string> known = layerNames();
+    const std::vector<std::string> known = image::layerNames();
     std::vector<std::string> layers;
     for (const TomlValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
         const std::string& layer = known[element.choice("layer", known)];
@@ -47,7 +48,9 @@ std::vector<std::string> readLayers(const TomlValue& value, Base) {
 }
 
 Value<std::vector<std::string>> layers() {
-    return {"list", {"[\"depth\", \"error\"]"}, readLayers,
+    return {"list",
+            {"[\"depth\", \"error\"]"},
+            readLayers,
             [](const std::vector<std::string>& all, const SceneWriter&) {
                 std::vector<std::string> items;
                 for (const std::string& layer : all) items.push_back(tomlText(layer));
@@ -116,4 +119,4 @@ const KeyTable<SceneDescription>& keysOf() {
     return table;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -5,11 +5,11 @@
 #include "woodcock/scene/keys/values.h"
 #include "woodcock/scene/quality.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using R = RenderDescription;
-using A = Approximations;
+using A = render::Approximations;
 using Base = const std::filesystem::path&;
 
 /// What `parse` makes of a value's text; its complaints gain the value's place.
@@ -32,7 +32,9 @@ Value<double> numberOrText(NumberRange range, double parse(std::string_view)) {
 }
 
 Value<std::uint64_t> seed() {
-    return {"integer, 0..2^63 - 1", {"42"}, [](const TomlValue& v, Base) { return v.count(); },
+    return {"integer, 0..2^63 - 1",
+            {"42"},
+            [](const TomlValue& v, Base) { return v.count(); },
             [](const std::uint64_t& v, const SceneWriter&) {
                 if (v >> 63 != 0)
                     throw usageError("the seed {} is larger than a scene file can hold (2^63 - 1)",
@@ -61,14 +63,14 @@ Key<R> resolution() {
 
 /// It says something of marching alone.
 Key<R> marchEstimate() {
-    Key<R> k = key(
-        {.name = "march_estimate",
-         .doc = "how marched optical depths become transmittance, by two look-ups a step or by "
-                "one; needs `march_step`",
-         .beside = "march_step = 0.5",
-         .choice = true},
-        &R::approximations, &A::jackknife,
-        choice<bool>("estimate", {{true, "jackknife"}, {false, "exponential"}}));
+    Key<R> k =
+        key({.name = "march_estimate",
+             .doc = "how marched optical depths become transmittance, by two look-ups a step or by "
+                    "one; needs `march_step`",
+             .beside = "march_step = 0.5",
+             .choice = true},
+            &R::approximations, &A::jackknife,
+            choice<bool>("estimate", {{true, "jackknife"}, {false, "exponential"}}));
     k.write = [write = k.write](const R& r, const SceneWriter& out) {
         return r.approximations.marchStep != 0 ? write(r, out) : std::nullopt;
     };
@@ -153,8 +155,8 @@ std::vector<Key<R>> approximationKeys() {
                                    "\"Fields\"",
                             .choice = true},
                            &R::lookup,
-                           choice<Lookup>("lookup", {{Lookup::Trilinear, "trilinear"},
-                                                     {Lookup::Nearest, "nearest"}}))),
+                           choice<grid::Lookup>("lookup", {{grid::Lookup::Trilinear, "trilinear"},
+                                                           {grid::Lookup::Nearest, "nearest"}}))),
         biasedWhenSaid(key({.name = "level_of_detail",
                             .doc = "biased. Grids are coarsened by powers of two as long as their "
                                    "voxels, where they are next to the camera, are at most so many "
@@ -175,9 +177,10 @@ std::vector<Key<R>> effortKeys() {
              .choice = true},
             &R::adaptive, flag()),
         key({.name = "time_limit",
-             .doc = "seconds, or a text such as `\"90s\"`, `\"2m\"`, `\"1.5h\"`; 0: none. The first "
-                    "sample of all pixels may take twice as long; pixels that still have none are "
-                    "said, and are black with alpha 0",
+             .doc =
+                 "seconds, or a text such as `\"90s\"`, `\"2m\"`, `\"1.5h\"`; 0: none. The first "
+                 "sample of all pixels may take twice as long; pixels that still have none are "
+                 "said, and are black with alpha 0",
              .comment = "seconds",
              .inDigest = false},
             &R::timeLimit, numberOrText(notNegative, parseDuration)),
@@ -206,14 +209,13 @@ void checkRender(const TomlTable& table, R& r) {
 
 template <>
 const KeyTable<R>& keysOf() {
-    static const KeyTable<R> table{
-        .id = "render",
-        .where = "[render]",
-        .keys = joined(amountKeys(), approximationKeys(), effortKeys()),
-        .check = checkRender,
-        .outer = "[[surface]]\nsphere = {}\n[render]\n",
-        .path = "render"};
+    static const KeyTable<R> table{.id = "render",
+                                   .where = "[render]",
+                                   .keys = joined(amountKeys(), approximationKeys(), effortKeys()),
+                                   .check = checkRender,
+                                   .outer = "[[surface]]\nsphere = {}\n[render]\n",
+                                   .path = "render"};
     return table;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -4,7 +4,7 @@
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/keys/key.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // The tables of keys, and the sections of a scene file that take more than one of them.
 
@@ -63,7 +63,7 @@ const KeyTable<PlaneShape>& keysOf();
 template <>
 const KeyTable<LatheShape>& keysOf();
 template <>
-const KeyTable<FacetRing>& keysOf();
+const KeyTable<mesh::FacetRing>& keysOf();
 template <>
 const KeyTable<InteriorDescription>& keysOf();
 
@@ -116,9 +116,8 @@ MaterialDescription readMaterial(const TomlTable& table, const std::filesystem::
 SurfaceDescription readSurface(const TomlTable& table, const std::filesystem::path& base);
 LightDescription readLight(const TomlTable& table, const std::filesystem::path& base);
 /// All [[light]] sections.
-std::vector<LightDescription> readLights(const TomlTable& scene,
-                                         const std::filesystem::path& base);
+std::vector<LightDescription> readLights(const TomlTable& scene, const std::filesystem::path& base);
 /// `aspect` is the image's width over its height: a sensor's width needs it.
 CameraDescription readCamera(const TomlTable& table, double aspect);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -3,13 +3,13 @@
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/shapes.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using S = SurfaceDescription;
 using Base = const std::filesystem::path&;
 using Profile = std::vector<std::array<double, 2>>;
-using Rings = std::vector<FacetRing>;
+using Rings = std::vector<mesh::FacetRing>;
 
 constexpr int mostSegments = 100'000, mostFacets = 1000;
 
@@ -20,9 +20,7 @@ Key<S> shapeKey(KeyInfo info) {
     if (!info.beside) info.beside = "disk = { radius = 3 }";
     Key<S> key;
     key.info = std::move(info);
-    key.read = [](const TomlValue& v, S& s, Base base) {
-        s.shape = nested<Shape>().read(v, base);
-    };
+    key.read = [](const TomlValue& v, S& s, Base base) { s.shape = nested<Shape>().read(v, base); };
     key.write = [](const S& s, const SceneWriter& out) -> std::optional<Written> {
         const auto* shape = std::get_if<Shape>(&s.shape);
         return shape ? std::optional(Written{inlineTable(*shape, out)}) : std::nullopt;
@@ -32,8 +30,8 @@ Key<S> shapeKey(KeyInfo info) {
 
 Key<S> box() {
     Key<S> key;
-    key.info = {.name = "box", .type = bounds().type, .fallback = "none",
-                .examples = bounds().examples};
+    key.info = {
+        .name = "box", .type = bounds().type, .fallback = "none", .examples = bounds().examples};
     key.read = [](const TomlValue& v, S& s, Base base) {
         s.shape = BoxShape{bounds().read(v, base)};
     };
@@ -47,23 +45,26 @@ Key<S> box() {
 Key<S> facets() {
     Key<S> key;
     key.info = {.name = "facets",
-                .doc = "a convex body as a cutter of gems says it: rings `{ angle, count, "
-                       "distance, turn }` of facets around y",
+                .doc =
+                    "a convex body as a cutter of gems says it: rings `{ angle, count, "
+                    "distance, turn }` of facets around y",
                 .type = "list",
                 .fallback = "none",
-                .example = "[{ angle = 0, distance = 1 }, { angle = 120, count = 3, distance = 2, "
-                           "turn = 10 }]"};
+                .example =
+                    "[{ angle = 0, distance = 1 }, { angle = 120, count = 3, distance = 2, "
+                    "turn = 10 }]"};
     key.read = [](const TomlValue& v, S& s, Base base) {
         FacetShape shape;
         for (const TomlValue& ring : v.elements("a list of rings of facets"))
-            shape.rings.push_back(nested<FacetRing>().read(ring, base));
+            shape.rings.push_back(nested<mesh::FacetRing>().read(ring, base));
         s.shape = shape;
     };
     key.write = [](const S& s, const SceneWriter& out) -> std::optional<Written> {
         const auto* shape = std::get_if<FacetShape>(&s.shape);
         if (!shape) return std::nullopt;
         std::string all = "[";
-        for (const FacetRing& ring : shape->rings) all += "\n    " + inlineTable(ring, out) + ",";
+        for (const mesh::FacetRing& ring : shape->rings)
+            all += "\n    " + inlineTable(ring, out) + ",";
         return Written{all + "\n]"};
     };
     return key;
@@ -81,20 +82,17 @@ Profile readProfile(const TomlValue& value, Base) {
 }
 
 Value<Profile> profile() {
-    return {"list of `[radius, height]`", {}, readProfile,
-            [](const Profile& all, const SceneWriter&) {
-                std::vector<std::string> points;
-                for (const auto& [radius, height] : all)
-                    points.push_back(
-                        fmt::format("[{}, {}]", tomlNumber(radius), tomlNumber(height)));
-                return fmt::format("[{}]", fmt::join(points, ", "));
-            }};
+    return {
+        "list of `[radius, height]`", {}, readProfile, [](const Profile& all, const SceneWriter&) {
+            std::vector<std::string> points;
+            for (const auto& [radius, height] : all)
+                points.push_back(fmt::format("[{}, {}]", tomlNumber(radius), tomlNumber(height)));
+            return fmt::format("[{}]", fmt::join(points, ", "));
+        }};
 }
 
 /// The scene in which such a shape stands.
-std::string outerOf(const std::string& shape) {
-    return "[[surface]]\n[surface." + shape + "]\n";
-}
+std::string outerOf(const std::string& shape) { return "[[surface]]\n[surface." + shape + "]\n"; }
 
 }  // namespace
 
@@ -168,9 +166,7 @@ template <>
 const KeyTable<PlaneShape>& keysOf() {
     static const KeyTable<PlaneShape> table{
         .id = "surface.plane",
-        .keys = {key({.name = "size",
-                      .doc = "along x and z",
-                      .fallback = "infinite"},
+        .keys = {key({.name = "size", .doc = "along x and z", .fallback = "infinite"},
                      &PlaneShape::size, numberPair("[width, depth]", positive))},
         .outer = outerOf("plane"),
         .path = "surface[0].plane"};
@@ -198,8 +194,8 @@ const KeyTable<LatheShape>& keysOf() {
 }
 
 template <>
-const KeyTable<FacetRing>& keysOf() {
-    static const KeyTable<FacetRing> table{
+const KeyTable<mesh::FacetRing>& keysOf() {
+    static const KeyTable<mesh::FacetRing> table{
         .id = "surface.facets",
         .keys = {key({.name = "angle",
                       .doc = "degrees from +y of the outward normal: 0 a table, 90 the girdle, "
@@ -207,23 +203,23 @@ const KeyTable<FacetRing>& keysOf() {
                       .example = "34.5",
                       .required = true,
                       .always = true},
-                     &FacetRing::angle, number({0, 180})),
+                     &mesh::FacetRing::angle, number({0, 180})),
                  key({.name = "count", .doc = "of facets, evenly around y", .always = true},
-                     &FacetRing::count, integer(1, mostFacets)),
+                     &mesh::FacetRing::count, integer(1, mostFacets)),
                  key({.name = "distance",
                       .doc = "of their planes from the origin",
                       .example = "1",
                       .required = true,
                       .always = true},
-                     &FacetRing::distance, number(positive)),
+                     &mesh::FacetRing::distance, number(positive)),
                  key({.name = "turn",
                       .doc = "degrees of the first normal, from +z towards +x",
                       .always = true},
-                     &FacetRing::turn, number())},
+                     &mesh::FacetRing::turn, number())},
         .outer = "[[surface]]\n[[surface.facets]]\n",
         .least = "angle = 10\ndistance = 2",
         .path = "surface[0].facets[0]"};
     return table;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -4,9 +4,9 @@
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/keys/key.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 /// The keys of a surface that are its shape, of which it has one; and `level_set`, of a file.
 std::vector<Key<SurfaceDescription>> shapeKeys();
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

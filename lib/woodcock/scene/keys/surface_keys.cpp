@@ -4,7 +4,7 @@
 #include "woodcock/scene/keys/shapes.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using S = SurfaceDescription;
@@ -27,9 +27,10 @@ std::optional<double> readSmooth(const TomlValue& value, const S& surface) {
 Key<S> smooth() {
     Key<S> key;
     key.info = {.name = "smooth",
-                .doc = "for files and lathes: an angle in degrees, up to which neighbouring "
-                       "triangles look like one smooth surface; `\"flat\"`; `\"file\"`: the "
-                       "normals of the file",
+                .doc =
+                    "for files and lathes: an angle in degrees, up to which neighbouring "
+                    "triangles look like one smooth surface; `\"flat\"`; `\"file\"`: the "
+                    "normals of the file",
                 .type = "number, 0..180, or a word",
                 .fallback = "`\"file\"`; 60 for lathes and level sets",
                 .example = "33.3",
@@ -72,7 +73,8 @@ Key<S> instances() {
              .type = "list or path",
              .fallback = "once",
              .example = "[{ rotate = [0, 33, 0] }, { scale = 2 }]"},
-            readInstances, writeInstances};
+            readInstances,
+            writeInstances};
 }
 
 std::vector<Key<S>> contentKeys() {
@@ -158,21 +160,21 @@ void checkSurface(const TomlTable& table, S& surface) {
 }
 
 std::vector<Key<S>> surfaceKeys() {
-    return joined(
-        std::vector{key({.name = "name", .doc = "for `inside` of volumes, and for messages",
-                         .fallback = "none"},
-                        &S::name, text())},
-        shapeKeys(),
-        std::vector{key({.name = "material",
-                         .doc = "name of a `[[material]]`",
-                         .fallback = "diffuse, 0.8",
-                         .example = "\"paint\"",
-                         .beside = "disk = {}\n[[material]]\nname = \"paint\"\n"
-                                   "type = \"conductor\""},
-                        &S::material, text()),
-                    smooth()},
-        placementKeys(&S::worldFromObject, "surface", "`{ translate, rotate, scale }`"),
-        std::vector{instances()}, contentKeys(), compositingKeys());
+    return joined(std::vector{key({.name = "name",
+                                   .doc = "for `inside` of volumes, and for messages",
+                                   .fallback = "none"},
+                                  &S::name, text())},
+                  shapeKeys(),
+                  std::vector{key({.name = "material",
+                                   .doc = "name of a `[[material]]`",
+                                   .fallback = "diffuse, 0.8",
+                                   .example = "\"paint\"",
+                                   .beside = "disk = {}\n[[material]]\nname = \"paint\"\n"
+                                             "type = \"conductor\""},
+                                  &S::material, text()),
+                              smooth()},
+                  placementKeys(&S::worldFromObject, "surface", "`{ translate, rotate, scale }`"),
+                  std::vector{instances()}, contentKeys(), compositingKeys());
 }
 
 }  // namespace
@@ -199,4 +201,4 @@ SurfaceDescription readSurface(const TomlTable& table, Base base) {
     return surface;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using Base = const std::filesystem::path&;
@@ -52,37 +52,43 @@ Value<int> integer(int lower, int upper) {
 }
 
 Value<bool> flag() {
-    return {"`true` or `false`", {"true", "false"},
+    return {"`true` or `false`",
+            {"true", "false"},
             [](const TomlValue& v, Base) { return v.flag(); },
             [](const bool& v, const SceneWriter&) { return std::string(v ? "true" : "false"); }};
 }
 
 Value<std::string> text() {
-    return {"text", {"\"a \\\"b\\\"\"", "\"c\""},
+    return {"text",
+            {"\"a \\\"b\\\"\"", "\"c\""},
             [](const TomlValue& v, Base) { return v.text(); },
             [](const std::string& v, const SceneWriter&) { return tomlText(v); }};
 }
 
 Value<std::filesystem::path> path() {
-    return {"path", {"\"folder/b $$5.exr\"", "\"c.exr\""},
+    return {"path",
+            {"\"folder/b $$5.exr\"", "\"c.exr\""},
             [](const TomlValue& v, Base base) { return v.path(base); },
             [](const std::filesystem::path& v, const SceneWriter& out) { return out.quoted(v); }};
 }
 
 Value<Vec3d> vector() {
-    return {"`[x, y, z]`", {"[1, 2, 0.1]", "[3, 4, 5]"},
+    return {"`[x, y, z]`",
+            {"[1, 2, 0.1]", "[3, 4, 5]"},
             [](const TomlValue& v, Base) { return v.vector(); },
             [](const Vec3d& v, const SceneWriter&) { return tomlVector(v); }};
 }
 
 Value<Rgb> colour(NumberRange range) {
-    return {"colour" + rangeText(range), {"[0.1, 0.2, 0.3]", "0.6"},
+    return {"colour" + rangeText(range),
+            {"[0.1, 0.2, 0.3]", "0.6"},
             [=](const TomlValue& v, Base) { return v.colour(range); },
             [](const Rgb& v, const SceneWriter&) { return tomlColour(v); }};
 }
 
 Value<Vec3d> exactColour(NumberRange range) {
-    return {"colour" + rangeText(range), {"[0.1, 0.2, 0.3]", "0.6"},
+    return {"colour" + rangeText(range),
+            {"[0.1, 0.2, 0.3]", "0.6"},
             [=](const TomlValue& v, Base) { return v.exactColour(range); },
             [](const Vec3d& v, const SceneWriter&) { return tomlColour(v); }};
 }
@@ -95,7 +101,8 @@ Value<Affine3d> matrix() {
 }
 
 Value<std::array<double, 2>> numberPair(std::string what, NumberRange range) {
-    return {fmt::format("`{}`{}", what, rangeText(range)), {"[0.1, 2]", "[3, 4]"},
+    return {fmt::format("`{}`{}", what, rangeText(range)),
+            {"[0.1, 2]", "[3, 4]"},
             [=](const TomlValue& v, Base) {
                 const auto both = v.elements(what, 2);
                 return std::array{both[0].number(range), both[1].number(range)};
@@ -106,12 +113,13 @@ Value<std::array<double, 2>> numberPair(std::string what, NumberRange range) {
 }
 
 Value<float> meanCosine() {
-    return {fmt::format("number, {}..{}", -largestG, largestG), {"0.1", "0.5"},
+    return {fmt::format("number, {}..{}", -largestG, largestG),
+            {"0.1", "0.5"},
             [](const TomlValue& v, Base) { return readG(v); },
             [](const float& v, const SceneWriter&) { return fmt::format("{}", v); }};
 }
 
-Value<Storage> storage() { return choiceOf<Storage>("storage", storageNames); }
+Value<grid::Storage> storage() { return choiceOf<grid::Storage>("storage", grid::storageNames); }
 
 template <>
 const KeyTable<Transform>& keysOf() {
@@ -123,13 +131,13 @@ const KeyTable<Transform>& keysOf() {
         .keys = {key({.name = "translate"}, &Transform::translate, vector()),
                  key({.name = "rotate"}, &Transform::rotate, vector()),
                  key({.name = "scale"}, &Transform::scale,
-                     Value<Vec3d>{"number, or `[x, y, z]`", {"2"},
-                                  [](const TomlValue& v, Base) {
-                                      return v.isArray() ? v.vector() : Vec3d{1, 1, 1} * v.number();
-                                  },
-                                  [](const Vec3d& v, const SceneWriter&) {
-                                      return tomlVector(v);
-                                  }})},
+                     Value<Vec3d>{
+                         "number, or `[x, y, z]`",
+                         {"2"},
+                         [](const TomlValue& v, Base) {
+                             return v.isArray() ? v.vector() : Vec3d{1, 1, 1} * v.number();
+                         },
+                         [](const Vec3d& v, const SceneWriter&) { return tomlVector(v); }})},
         .outer = "[[surface]]\nsphere = {}\n[surface.transform]\n",
         .path = "surface[0].transform"};
     return table;
@@ -152,4 +160,4 @@ Affine3d readTransform(const TomlValue& value, std::string_view what) {
     return map;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -10,7 +10,7 @@
 #include "woodcock/grid/field_source.h"
 #include "woodcock/scene/keys/key.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // The kinds of values that keys of a scene file have. What is read throws Error{Input}.
 
@@ -30,7 +30,7 @@ Value<Affine3d> matrix();
 Value<std::array<double, 2>> numberPair(std::string what, NumberRange range);
 /// The mean cosine of a phase function.
 Value<float> meanCosine();
-Value<Storage> storage();
+Value<grid::Storage> storage();
 
 /// One of several words; `what` names the kind of thing in messages ("camera type").
 template <class E>
@@ -73,8 +73,11 @@ Affine3d readTransform(const TomlValue& value, std::string_view what);
 /// The keys `transform` and `matrix` of a table that describes a D, which both set `member`.
 template <class D>
 std::vector<Key<D>> placementKeys(Affine3d D::*member, std::string what, const std::string& doc) {
-    Key<D> transform = otherWay<D>({.name = "transform", .doc = doc, .type = "table",
-                                    .fallback = "none", .example = "{ translate = [1, 2, 3] }"});
+    Key<D> transform = otherWay<D>({.name = "transform",
+                                    .doc = doc,
+                                    .type = "table",
+                                    .fallback = "none",
+                                    .example = "{ translate = [1, 2, 3] }"});
     transform.read = [=](const TomlValue& v, D& d, const std::filesystem::path&) {
         d.*member = readTransform(v, what);
     };
@@ -84,4 +87,4 @@ std::vector<Key<D>> placementKeys(Affine3d D::*member, std::string what, const s
                            member, matrix())};
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

@@ -2,7 +2,7 @@
 #include "woodcock/scene/keys/medium.h"
 #include "woodcock/scene/keys/sections.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 namespace {
 
 using V = VolumeDescription;
@@ -87,8 +87,9 @@ std::vector<Key<V>> densityKeys() {
              .doc = "name of a scalar grid, or of a vec3 one, whose three numbers are the "
                     "densities of red, green and blue; where several share a name, `name[0]` is "
                     "the first, `name[1]` the second",
-             .fallback = "*chosen*: `density` or `smoke` in any case, or the finest of its levels "
-                         "of detail (`density_level_0`), else the only scalar grid that may be one"},
+             .fallback =
+                 "*chosen*: `density` or `smoke` in any case, or the finest of its levels "
+                 "of detail (`density_level_0`), else the only scalar grid that may be one"},
             &V::coefficients, &Density::density, text()),
         keyOfKind<Density>({.name = "scale",
                             .doc = "extinction per world unit where the density is 1. sigma_t = "
@@ -114,8 +115,8 @@ std::vector<Key<V>> coefficientKeys() {
                         &V::file, path()),
                     box()},
         densityKeys(),
-        std::vector{absorption(), separateKey("sigma_s", "the same of scattering",
-                                              &Separate::sigmaS),
+        std::vector{absorption(),
+                    separateKey("sigma_s", "the same of scattering", &Separate::sigmaS),
                     boxCoefficient("sigma_a", &Homogeneous::sigmaA),
                     boxCoefficient("sigma_s", &Homogeneous::sigmaS),
                     uncommentedForGrids(
@@ -272,15 +273,14 @@ const KeyTable<BlackbodyDescription>& keysOf() {
 
 template <>
 const KeyTable<V>& keysOf() {
-    static const KeyTable<V> table{
-        .id = "volume",
-        .where = "[[volume]]",
-        .exclusions = exclusions(),
-        .keys = volumeKeys(),
-        .check = checkVolume,
-        .outer = "[[volume]]\n",
-        .least = "file = \"a.vdb\"",
-        .path = "volume[0]"};
+    static const KeyTable<V> table{.id = "volume",
+                                   .where = "[[volume]]",
+                                   .exclusions = exclusions(),
+                                   .keys = volumeKeys(),
+                                   .check = checkVolume,
+                                   .outer = "[[volume]]\n",
+                                   .least = "file = \"a.vdb\"",
+                                   .path = "volume[0]"};
     return table;
 }
 
@@ -294,4 +294,4 @@ VolumeDescription readVolume(const TomlTable& table, Base base) {
     return volume;
 }
 
-}  // namespace woodcock
+}  // namespace woodcock::scene
