@@ -105,9 +105,9 @@ mesh("odd", lambda shape: bmesh.ops.create_cube(shape, size=1), toon, location=(
 sun = bpy.data.lights.new("sun", "SUN")
 sun.energy, sun.color, sun.angle = 3, (1, 0.9, 0.7), 0.1
 place("sun", sun, rotation_euler=(0.7, 0.2, 0.4))
-lamp = bpy.data.lights.new("lamp", "POINT")
-lamp.energy, lamp.shadow_soft_size = 200, 0
-place("lamp", lamp, location=(2, -1, 2.5))
+light = bpy.data.lights.new("light", "POINT")
+light.energy, light.shadow_soft_size = 200, 0
+place("light", light, location=(2, -1, 2.5))
 world = bpy.data.worlds.new("world")
 world.use_nodes = True
 world.node_tree.nodes["Background"].inputs[0].default_value = (0.2, 0.3, 0.5, 1)

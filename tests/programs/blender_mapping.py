@@ -70,7 +70,7 @@ class Mapping(unittest.TestCase):
         self.assertEqual(mapping.voxel_offset((4, 5, 9)), -0.5)
         self.assertEqual(mapping.voxel_offset((5, 0, 0)), 0)
 
-    def test_lamps(self):
+    def test_lights(self):
         self.near(mapping.point_intensity((1, 0.5, 0), 4 * math.pi), (1, 0.5, 0))
         # The same flux all around: 4 pi r^2 pi L.
         radiance = mapping.sphere_radiance((1, 1, 1), 10, 0.5)[0]

@@ -11,6 +11,9 @@
 #include "woodcock/proof/support/read_back.h"
 
 namespace woodcock::test {
+
+using namespace proof;
+
 namespace {
 
 struct Mean {

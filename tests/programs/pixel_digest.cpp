@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // pixel_digest IMAGE...: a line for each image, of the FNV-1a hash of all its channels' names and
-// numbers, and its path. Two images with the same bits in every pixel have the same digest, whatever
-// their headers say.
+// numbers, and its path. Two images with the same bits in every pixel have the same digest,
+// whatever their headers say.
 #include <fmt/format.h>
 
 #include <bit>
@@ -12,6 +12,9 @@
 #include "woodcock/image/read_layers.h"
 
 namespace woodcock::test {
+
+using namespace image;
+
 namespace {
 
 /// Fowler, Noll and Vo's FNV-1a of 64 bits.
@@ -48,7 +51,7 @@ int main(int argc, char** argv) {
     try {
         for (int i = 1; i < argc; ++i)
             fmt::print("{:016x}  {}\n",
-                       woodcock::test::digestOf(woodcock::readLayers(argv[i])), argv[i]);
+                       woodcock::test::digestOf(woodcock::image::readLayers(argv[i])), argv[i]);
         if (argc > 1) return 0;
         fmt::print(stderr, "usage: pixel_digest IMAGE...\n");
     } catch (const std::exception& e) {

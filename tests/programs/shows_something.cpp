@@ -10,7 +10,7 @@
 int main(int count, char** words) {
     if (count != 2) return 2;
     try {
-        const woodcock::Image image = woodcock::readImage(words[1]);
+        const woodcock::image::Image image = woodcock::image::readImage(words[1]);
         return *std::max_element(image.rgb.begin(), image.rgb.end()) > 0.01f ? 0 : 1;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

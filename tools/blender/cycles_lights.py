@@ -32,7 +32,7 @@ def add_point(scene, name, light):
 
 
 def add_sphere(scene, name, light):
-    """Radiates outwards and lets other light pass, which Blender's lamps with a radius do not in
+    """Radiates outwards and lets other light pass, which Blender's lights with a radius do not in
     every version: before 4.0 they are discs that face whoever looks."""
     import bmesh
 

@@ -7,7 +7,7 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/scene/description.h"
 
-namespace woodcock {
+namespace woodcock::scene {
 
 // Woodcock's parameters in Blender Cycles' terms. The other direction is tools/blender/mapping.py.
 
@@ -42,7 +42,7 @@ constexpr float cyclesLargestG = 0.999f;
 
 /// The most bounces of any kind that Blender counts.
 constexpr int cyclesMostBounces = 1024;
-/// Cycles' m bounces are m + 1 scatterings, or reflections: the last one is still lit by lamps.
+/// Cycles' m bounces are m + 1 scatterings, or reflections: the last one is still lit by lights.
 /// Absent: unlimited. Needs `events` > 0.
 int cyclesBounces(std::optional<int> events);
 
@@ -53,11 +53,11 @@ struct CyclesColour {
 };
 CyclesColour cyclesColour(Rgb light);
 
-/// Of a point lamp: power, 4 pi times the intensity.
+/// Of a point light: power, 4 pi times the intensity.
 CyclesColour cyclesPoint(Rgb intensity);
 
 /// Turns a world direction to where Cycles looks it up in an environment image: the image's centre
 /// is towards +x, its top +z and its left +y there.
 Affine3d cyclesImageFromWorld(const EnvironmentDescription& environment);
 
-}  // namespace woodcock
+}  // namespace woodcock::scene

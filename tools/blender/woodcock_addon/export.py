@@ -63,8 +63,8 @@ class Exporter:
             self.add_volume(shown, placed)
         elif shown.type == "LIGHT":
             report = lambda problem: self.report(shown.name, problem)
-            self.sections += lights.lamp(
-                shown.data, placed, "lamp %d" % len(self.sections), report)
+            self.sections += lights.light(
+                shown.data, placed, "light %d" % len(self.sections), report)
         elif shown.type in ("MESH", "CURVE", "SURFACE", "META", "FONT"):
             self.add_mesh(shown, placed)
         elif shown.type not in IGNORED:

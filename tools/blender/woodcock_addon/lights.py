@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lamps and the world."""
+"""Lights and the world."""
 import os
 
 import bpy
@@ -10,36 +10,36 @@ from .sockets import Untranslatable, named, product, scalar, source
 from .toml_text import Section, colour, matrix, path, quoted, value
 
 
-def lamp_colour(lamp):
+def light_colour(light):
     """What multiplies the energy: colour, temperature, exposure and an Emission node."""
-    tint = list(lamp.color)
-    if getattr(lamp, "use_temperature", False):
-        tint = [a * b for a, b in zip(tint, lamp.temperature_color)]
-    tint = [c * 2 ** getattr(lamp, "exposure", 0.0) for c in tint]
-    if lamp.use_nodes and lamp.node_tree:
-        output = next((n for n in lamp.node_tree.nodes if n.type == "OUTPUT_LIGHT"), None)
+    tint = list(light.color)
+    if getattr(light, "use_temperature", False):
+        tint = [a * b for a, b in zip(tint, light.temperature_color)]
+    tint = [c * 2 ** getattr(light, "exposure", 0.0) for c in tint]
+    if light.use_nodes and light.node_tree:
+        output = next((n for n in light.node_tree.nodes if n.type == "OUTPUT_LIGHT"), None)
         shader = source(output.inputs["Surface"]) if output else None
         if not shader or shader.node.type != "EMISSION":
             raise Untranslatable("its nodes are more than an Emission")
         node = shader.node
         glow = product(node.inputs["Color"]).times(product(node.inputs["Strength"]))
-        tint = [a * b for a, b in zip(tint, glow.constant("a lamp's colour"))]
+        tint = [a * b for a, b in zip(tint, glow.constant("a light's colour"))]
     return tint
 
 
-def area(lamp, placed, name, report):
+def area(light, placed, name, report):
     """Sections of a surface that emits, and its material of this name."""
-    width, depth = lamp.size, lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size
-    if lamp.spread < 3.1415:
-        report("an area lamp's spread is left out")
-    report("an area lamp becomes a surface, which stands in the way of light")
-    round_one = lamp.shape in ("DISK", "ELLIPSE")
-    # Woodcock's shapes lie in y = 0 and face +y, lamps shine along -z.
+    width, depth = light.size, light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    if light.spread < 3.1415:
+        report("an area light's spread is left out")
+    report("an area light becomes a surface, which stands in the way of light")
+    round_one = light.shape in ("DISK", "ELLIPSE")
+    # Woodcock's shapes lie in y = 0 and face +y, lights shine along -z.
     turned = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
     where = placed @ turned @ Matrix.Diagonal((width, 1, depth, 1))
     x, z = where.col[0].to_3d(), where.col[2].to_3d()
     size = x.cross(z).length * (0.25 * 3.141592653589793 if round_one else 1)
-    radiance = colour(mapping.area_radiance(lamp_colour(lamp), lamp.energy, size))
+    radiance = colour(mapping.area_radiance(light_colour(light), light.energy, size))
     material = Section("[[material]]").set("name", quoted(name))
     material.set("type", quoted("emissive")).set("radiance", radiance)
     surface = Section("[[surface]]").set("material", quoted(name))
@@ -50,34 +50,34 @@ def area(lamp, placed, name, report):
     return [material, surface.set("matrix", matrix(where)).set("camera_visible", False)]
 
 
-def lamp(lamp, placed, name, report):
+def light(light, placed, name, report):
     """Sections of a scene file; `name` is one that nothing else in it has."""
-    if not getattr(lamp, "normalize", True):
-        raise Untranslatable("a lamp whose power grows with its size")
-    if lamp.type == "AREA":
-        return area(lamp, placed, name, report)
-    tint = lamp_colour(lamp)
+    if not getattr(light, "normalize", True):
+        raise Untranslatable("a light whose power grows with its size")
+    if light.type == "AREA":
+        return area(light, placed, name, report)
+    tint = light_colour(light)
     section = Section("[[light]]")
-    if lamp.type == "SUN":
+    if light.type == "SUN":
         direction = placed.to_3x3() @ Vector((0, 0, -1))
         section.set("type", quoted("sun")).set("direction", value(direction.normalized()))
         section.set("irradiance", colour(mapping.sun_irradiance(
-            bpy.app.version, tint, lamp.energy, lamp.angle)))
-        if lamp.angle > 0:
-            section.set("angular_diameter", lamp.angle * 57.29577951308232)
-    elif lamp.type == "POINT":
-        radius = lamp.shadow_soft_size
+            bpy.app.version, tint, light.energy, light.angle)))
+        if light.angle > 0:
+            section.set("angular_diameter", light.angle * 57.29577951308232)
+    elif light.type == "POINT":
+        radius = light.shadow_soft_size
         position = value(placed.translation)
         if radius > 0:
             section.set("type", quoted("sphere")).set("position", position).set("radius", radius)
-            section.set("radiance", colour(mapping.sphere_radiance(tint, lamp.energy, radius)))
+            section.set("radiance", colour(mapping.sphere_radiance(tint, light.energy, radius)))
             section.set("visible", False)
-            report("Cycles' lamps with a radius are spheres only from afar")
+            report("Cycles' lights with a radius are spheres only from afar")
         else:
             section.set("type", quoted("point")).set("position", position)
-            section.set("intensity", colour(mapping.point_intensity(tint, lamp.energy)))
+            section.set("intensity", colour(mapping.point_intensity(tint, light.energy)))
     else:
-        raise Untranslatable("lamps of type %s" % lamp.type.lower())
+        raise Untranslatable("lights of type %s" % light.type.lower())
     return [section]
 
 

@@ -89,17 +89,17 @@ def sun_irradiance(version, colour, strength, angle):
 
 
 def point_intensity(colour, power):
-    """Of a point lamp without a radius: power per solid angle."""
+    """Of a point light without a radius: power per solid angle."""
     return [c * power / (4 * math.pi) for c in colour]
 
 
 def sphere_radiance(colour, power, radius):
-    """Of a point lamp with a radius."""
+    """Of a point light with a radius."""
     return [c * power / (4 * math.pi ** 2 * radius ** 2) for c in colour]
 
 
 def area_radiance(colour, power, area):
-    """Of an area lamp, to its front."""
+    """Of an area light, to its front."""
     return [c * power / (4 * area) for c in colour]
 
 
