@@ -13,6 +13,7 @@
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
+#include "tools/common/report_options.h"
 #include "tools/common/scratch_directory.h"
 #include "tools/compare/against_cycles.h"
 #include "tools/compare/report.h"
