@@ -59,7 +59,7 @@ TEST(LevelSetToFog, RefusesWhatIsNone) {
     expectError(ErrorKind::Input, "NaN at [20, 0, 0]", [&] { levelSetToFog(faulty, {}, notes); });
     VdbGrids empty{{openvdb::FloatGrid::create(1.0f)}};
     empty.grids[0]->setGridClass(openvdb::GRID_LEVEL_SET);
-    expectError(ErrorKind::Input, "no inside", [&] { levelSetToFog(empty, {}, notes); });
+    expectError(ErrorKind::Input, "encloses nothing", [&] { levelSetToFog(empty, {}, notes); });
 }
 
 }  // namespace

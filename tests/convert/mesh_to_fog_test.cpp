@@ -249,7 +249,7 @@ TEST(MeshToFog, PlatesThinnerThanVoxelsAreSaid) {
                         boxOf({{-1, -1, 0.025}, {1, 1, 0.075}})}),
               {.voxel = 0.1}, notes);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_NE(notes[0].find("thinner than a voxel at 8"), std::string::npos) << notes[0];
+    EXPECT_NE(notes[0].find("thinner than a voxel over 8"), std::string::npos) << notes[0];
 }
 
 /// A map's coordinates: what floats would make of them is layers half a metre apart.

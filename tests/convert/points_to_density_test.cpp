@@ -240,7 +240,7 @@ TEST(PointsRead, WhatColumnsWereTakenForIsSaid) {
     writeText(dir / "a.csv", "x,y,z,Intensity\n0.5,2,3,9\n-1,2.5,4,9\n");
     EXPECT_EQ(readPoints(dir / "a.csv").columns,
               "'x' is x, 'y' is y, 'z' is z, 'Intensity' is not used");
-    expectError(ErrorKind::Usage, "'intensity' is none of x, y, z",
+    expectError(ErrorKind::Usage, "'intensity' is not one of x, y, z",
                 [&] { readPoints(dir / "a.csv", "x,y,z,intensity"); });
     expectError(ErrorKind::Usage, "does not name x, y and z",
                 [&] { readPoints(dir / "a.csv", "x,y"); });
@@ -270,13 +270,13 @@ TEST(PointsRead, ErrorsNameLineAndColumn) {
         expectError(ErrorKind::Input, part, [&] { readPoints(dir / name); });
     };
     expectBad("a.csv", "x,y,z\n1,2,3\n1, two,3\n", "a.csv:3:4: 'two' is not a number");
-    expectBad("a.csv", "x,y,z\n1,2\n", "a.csv:2: 2 columns where 3 are expected");
+    expectBad("a.csv", "x,y,z\n1,2\n", "a.csv:2: 2 columns; expected 3");
     expectBad("a.csv", "x,y\n1,2\n",
               "expected one x, one y and one z of each point; found: 'x' is x, 'y' is y");
-    expectBad("a.csv", "1,2\n", "a.csv:1: 2 numbers, where x, y and z are expected");
-    expectBad("a.csv", "x,y,z\n0,5,2,0,3,0\n", "6 columns where 3 are expected; if commas are");
+    expectBad("a.csv", "1,2\n", "a.csv:1: 2 numbers; expected x, y and z");
+    expectBad("a.csv", "x,y,z\n0,5,2,0,3,0\n", "6 columns; expected 3; if commas are");
     expectBad("a.csv", std::string("\xff\xfex\0,\0", 6),
-              "a.csv is text in UTF-16; save it as UTF-8");
+              "a.csv is text in UTF-16; save it as text in UTF-8");
     expectBad("a.csv", std::string("x\0,\0y\0", 6), "UTF-16");
     expectBad("a.csv", "x;y;z\n1,000,000;2;3\n", "'1,000,000' is not a number");
     expectBad("a.csv", "x,y,z\n1,nan,2\n", "a.csv:2:3: 'nan'");
@@ -285,7 +285,7 @@ TEST(PointsRead, ErrorsNameLineAndColumn) {
     expectBad("a.ply",
               "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n",
               "99999999999 of element 'vertex'");
-    expectBad("a.las", "", "ends in '.las', where .ply, .csv, .txt or .xyz");
+    expectBad("a.las", "", "ends in '.las'; expected .ply, .csv, .txt or .xyz");
 }
 
 }  // namespace

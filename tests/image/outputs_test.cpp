@@ -108,7 +108,8 @@ TEST_F(GlowingOutputs, CountExposure) {
 TEST_F(GlowingOutputs, SayWhatIsRaised) {
     settings_.files = {dir_ / "a.exr", dir_ / "a.png"};
     const std::string note = Outputs(settings_).write(film_, {});
-    EXPECT_NE(note.find("a.png: 50 % of the pixels shine more than they cover"), std::string::npos)
+    EXPECT_NE(note.find("a.png: 50 % of the pixels emit more light than their alpha covers"),
+              std::string::npos)
         << note;
     settings_.withAlpha = false;
     EXPECT_EQ(Outputs(settings_).write(film_, {}), "");

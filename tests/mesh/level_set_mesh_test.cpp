@@ -83,7 +83,7 @@ TEST(LevelSetMesh, WhatIsNoLevelSetIsAnError) {
     expectBad("a.vdb", "", "several level sets");
     expectBad("a.vdb", "density", "is not a level set: its class is 'fog volume'");
     expectBad("a.vdb", "colour", "no grid 'colour' in");
-    expectBad("a.vdb", "whole", "holds int32 where float or double is expected");
+    expectBad("a.vdb", "whole", "holds int32; expected float or double");
     expectBad("a.vdb", "nan", "holds a NaN at [9, 0, 0]");
     expectBad("fog.vdb", "", "no level set in");
     expectBad("missing.vdb", "", "");

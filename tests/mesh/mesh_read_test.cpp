@@ -241,7 +241,7 @@ TEST(MeshRead, BadFilesAreErrorsThatNameThem) {
         expectError(ErrorKind::Input, part, [&] { readMesh(dir / name); });
         expectError(ErrorKind::Input, name, [&] { readMesh(dir / name); });
     };
-    expectBad("words.fbx", "words", "ends in '.fbx', where .obj, .ply, .stl, .gltf or .glb");
+    expectBad("words.fbx", "words", "ends in '.fbx'; expected .obj, .ply, .stl, .gltf or .glb");
     expectBad("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "");
     expectBad("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n", "holds no triangles");
     expectBad("flat.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n", "holds no triangles");

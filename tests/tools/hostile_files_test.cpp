@@ -197,7 +197,8 @@ TEST_F(HostileFiles, DeepNestingIsRefused) {
     refused({"bake", file("c.toml"), "-o", file("o.vdb")}, "nested more than 500 nodes deep");
     writeText(dir / "l.toml",
               let + "v6000 = 1\n" + recipe + "[node.n]\ntype = \"sphere\"\nradius = \"v0\"\n");
-    refused({"bake", file("l.toml"), "-o", file("o.vdb")}, "a chain of more than 100 others");
+    refused({"bake", file("l.toml"), "-o", file("o.vdb")},
+            "a chain of more than 100 other parameters");
     // Each warp of two warps is evaluated at its own moved points: 2^40 steps.
     std::string warps = recipe;
     for (int i = 0; i < 40; ++i)

@@ -46,8 +46,7 @@ std::string requireReadable(const fs::path& file) {
     if (std::find(known.begin(), known.end(), extension) == known.end())
         throw inputError(
             "cannot read mesh '{}': its name ends in '{}'; expected .obj, .ply, .stl, .gltf or "
-            ".glb "
-            "is expected",
+            ".glb",
             file.string(), extension);
     const double needed = memoryPerByte * static_cast<double>(fs::file_size(file, error));
     if (const auto limit = static_cast<double>(memoryLimit()); needed > limit)

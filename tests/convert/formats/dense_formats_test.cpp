@@ -149,10 +149,11 @@ TEST_F(DenseFormats, RawOfAnotherSizeGetsAHint) {
     EXPECT_NE(wrongSide.find("4 x 4 x 4 would fit"), std::string::npos) << wrongSide;
     const std::string header = message({.dims = {11, 11, 1}, .type = SampleType::U8});
     EXPECT_NE(header.find("header of 7 bytes"), std::string::npos) << header;
-    EXPECT_NE(message({.dims = {4, 4, 4}, .headerBytes = 1000}).find("header of 1000"),
+    EXPECT_NE(message({.dims = {4, 4, 4}, .headerBytes = 1000}).find("--header gives 1000"),
               std::string::npos);
-    EXPECT_NE(message({.dims = {0, 4, 4}}).find("no volume"), std::string::npos);
-    EXPECT_NE(message({.dims = {1 << 30, 1 << 30, 1 << 30}}).find("no volume"), std::string::npos);
+    EXPECT_NE(message({.dims = {0, 4, 4}}).find("not a volume"), std::string::npos);
+    EXPECT_NE(message({.dims = {1 << 30, 1 << 30, 1 << 30}}).find("not a volume"),
+              std::string::npos);
 }
 
 TEST_F(DenseFormats, NpyInBothOrdersAndEnds) {
@@ -198,9 +199,9 @@ TEST_F(DenseFormats, DamagedNpyIsRefused) {
         expectError(ErrorKind::Input, said, [&] { readNpy(file("a.npy", npy(header, "1234"))); });
     };
     refused(npyHeader("<f4", "False", "(1, 1)"), "dimensions");
-    refused(npyHeader("<f4", "False", "(-1, 1, 1)"), "no volume");
+    refused(npyHeader("<f4", "False", "(-1, 1, 1)"), "not a volume");
     refused(npyHeader("<f4", "False", "(99999999999999999999, 1, 1)"), "whole numbers");
-    refused(npyHeader("<f4", "False", "(1073741824, 1073741824, 1073741824)"), "no volume");
+    refused(npyHeader("<f4", "False", "(1073741824, 1073741824, 1073741824)"), "not a volume");
     refused(npyHeader("<f4", "Maybe", "(1, 1, 1)"), "fortran_order");
     refused(npyHeader("<c8", "False", "(1, 1, 1)"), "known");
     refused(npyHeader("", "False", "(1, 1, 1)"), "known");
@@ -239,9 +240,9 @@ TEST_F(DenseFormats, DamagedMitsubaVolumesAreRefused) {
     refused("LOV\x03", "VOL");
     refused("VOL\x04", "version 4");
     refused(vol({4, 1, 1, 1, 1}, box, "1234"), "encoding 4");
-    refused(vol({1, -1, 1, 1, 1}, box, "1234"), "no volume");
-    refused(vol({1, 1, 1, 1, -1}, box, "1234"), "no volume");
-    refused(vol({1, 1 << 30, 1 << 30, 1 << 30, 1 << 30}, box, "1234"), "no volume");
+    refused(vol({1, -1, 1, 1, 1}, box, "1234"), "not a volume");
+    refused(vol({1, 1, 1, 1, -1}, box, "1234"), "not a volume");
+    refused(vol({1, 1 << 30, 1 << 30, 1 << 30, 1 << 30}, box, "1234"), "not a volume");
 }
 
 /// Mitsuba does not look at the box, and fills the unit cube.

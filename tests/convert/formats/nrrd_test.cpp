@@ -151,12 +151,12 @@ TEST_F(Nrrd, FindsTheAxisOfChannels) {
     expectAxes(read(four("1 4 3 2", "kinds: vector space space space\n")), {4, 3, 2}, 1, "", 1);
     expectRefused(four("2 3 2 2", "kinds: space space space space\n"), "4 of the NRRD file's 4");
     expectRefused(four("2 3 2 2", "kinds: list space space vector\n"),
-                  "axes 0 and 3 are both no axes of space");
+                  "neither axis 0 nor axis 3 is an axis of space");
     expectRefused(
         "NRRD0004\ntype: short\ndimension: 5\nsizes: 2 2 2 1 3\nencoding: raw\n"
         "endian: little\nkinds: list space space space vector\n\n" +
             shorts(24),
-        "axes 0 and 4 are both no axes of space");
+        "neither axis 0 nor axis 4 is an axis of space");
 }
 
 /// The values in other files, as 3D Slicer and ITK write them.
@@ -190,7 +190,7 @@ TEST_F(Nrrd, DataMayLieInOtherFiles) {
 
     expectRefused(header(raw + "data file: none.raw\n"), "none.raw does not exist");
     expectRefused(header(raw + "data file: slice.03.raw\n"),
-                  "slice.03.raw is too short: its values take 48 bytes, and there are 12");
+                  "slice.03.raw is too short: its values take 48 bytes, and it has 12");
     expectRefused(header(raw + "data file: slice.%02d.raw 3 11 2\n"), "among 5 data files");
     expectRefused(header(raw + "data file: slice.%02d.raw 3 9 0\n"), "FIRST LAST STEP");
     expectRefused(header(raw + "data file: slice.%s.raw 3 9 2\n"), "FIRST LAST STEP");
@@ -249,7 +249,7 @@ TEST_F(Nrrd, DamagedFilesAreRefused) {
     expectRefused(
         "NRRD0004\ntype: float\ndimension: 3\nsizes: 1073741824 1073741824 1073741824\n"
         "encoding: gzip\nendian: little\n\nabc",
-        "no volume");
+        "not a volume");
     expectRefused(
         "NRRD0004\ntype: float\ndimension: 3\nsizes: 1024 1024 1024\n"
         "encoding: gzip\nendian: little\n\nabc",

@@ -84,7 +84,7 @@ TEST_F(PbrtGrids, DamagedScenesAreRefused) {
     refused(R"("integer nx" 2 "float density" [ 1 2 3 ])", "has 3 numbers; nx x ny x nz = 2");
     refused(R"("integer nx" -2 "float density" [ 1 2 ])", "whole number");
     refused(R"("integer nx" 1e9 "integer ny" 1e9 "integer nz" 1e9 "float density" [ 1 ])",
-            "no volume");
+            "not a volume");
     refused(R"("float density" [ 1 )", "end of the file");
     refused(R"("float density" [ x ])", "'x' where parameter 'density'");
     refused(R"("density" [ 1 ])", "float density");
