@@ -52,7 +52,7 @@ void forEachKey(Try tryKey) {
     for (const KeyList& list : allKeys())
         for (const KeyInfo& key : list.keys) {
             SCOPED_TRACE(list.id + ": " + key.name);
-            ASSERT_NO_THROW(tryKey(list, key));
+            EXPECT_NO_THROW(tryKey(list, key));
         }
 }
 
@@ -79,7 +79,8 @@ TEST(SceneKeys, EachHasItsSayInTheDigestOrIsMarkedAsHavingNone) {
 
 TEST(SceneKeys, APermissionIsNeeded) {
     forEachKey([](const KeyList& list, const KeyInfo& key) {
-        if (key.permission) EXPECT_THROW(parse(sceneBefore(list, key)), Error);
+        if (!key.permission) return;
+        EXPECT_THROW(parse(sceneBefore(list, key)), Error);
     });
 }
 

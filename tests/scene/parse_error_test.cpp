@@ -242,8 +242,8 @@ TEST(ParseErrors, OfCameras) {
               "scene.toml:4:8: unknown camera type 'fisheye'; known: perspective, orthographic");
     EXPECT_EQ(
         sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
-        "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, eye, "
-        "look_at, up, matrix, height, shift, orbit");
+        "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, "
+        "height, shift, orbit, eye, look_at, up, matrix");
     EXPECT_EQ(
         sectionMistake(
             "[camera]\nmatrix = [[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),

@@ -17,7 +17,6 @@ constexpr int mostSegments = 100'000, mostFacets = 1000;
 template <class Shape>
 Key<S> shapeKey(KeyInfo info) {
     if (info.fallback.empty()) info.fallback = "none";
-    if (!info.beside) info.beside = "disk = { radius = 3 }";
     Key<S> key;
     key.info = std::move(info);
     key.read = [](const TomlValue& v, S& s, Base base) { s.shape = nested<Shape>().read(v, base); };
@@ -50,9 +49,9 @@ Key<S> facets() {
                     "distance, turn }` of facets around y",
                 .type = "list",
                 .fallback = "none",
-                .example =
-                    "[{ angle = 0, distance = 1 }, { angle = 120, count = 3, distance = 2, "
-                    "turn = 10 }]"};
+                .example = "[{ angle = 0, distance = 1 }, { angle = 120, count = 3, distance = 2, "
+                           "turn = 10 }]",
+                .beside = "facets = [{ angle = 90, distance = 1 }]"};
     key.read = [](const TomlValue& v, S& s, Base base) {
         FacetShape shape;
         for (const TomlValue& ring : v.elements("a list of rings of facets"))
@@ -125,7 +124,8 @@ std::vector<Key<S>> shapeKeys() {
         shapeKey<DiskShape>({.name = "disk",
                              .doc = "in y = 0, facing +y; encloses nothing",
                              .type = "`{ radius = 1 }`",
-                             .example = "{ radius = 2 }"}),
+                             .example = "{ radius = 2 }",
+                             .beside = "disk = {}"}),
         shapeKey<PlaneShape>({.name = "plane",
                               .doc = "in y = 0 about the origin, facing +y; `{}`: infinite, and "
                                      "what is below is inside",
