@@ -5,7 +5,9 @@
 
 #include "tests/support/paths.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace proof;
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +98,4 @@ TEST(FrameNames, NumbersAreWrittenAsShellsTakeThem) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-namespace woodcock {
+namespace woodcock::test {
 namespace {
 
 TEST(MemoryLimit, FollowsTheShells) {
@@ -28,4 +28,4 @@ TEST(FormatGiB, KeepsTheDigitsThatMatter) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace woodcock {
+namespace woodcock::test {
 namespace {
 
 const std::vector<std::string> keys{"file", "density", "scale", "albedo", "albedo_grid", "g"};
@@ -42,4 +42,4 @@ TEST(NearestName, ListsNamesForMessages) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -7,7 +7,7 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::test {
 namespace {
 
 /// The message of the usage error that `parse(text)` throws; empty when it throws none.
@@ -107,4 +107,4 @@ TEST(FormatDuration, RoundsWithinItsUnit) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -7,11 +7,13 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace proof;
 namespace {
 
 std::string opening(const std::filesystem::path& file) {
-    return test::messageOf(ErrorKind::Input, [&] { RegularFile(file, "table"); });
+    return messageOf(ErrorKind::Input, [&] { RegularFile(file, "table"); });
 }
 
 TEST(RegularFile, OthersAreRefusedAtOnce) {
@@ -38,9 +40,9 @@ TEST(RegularFile, ReadsWhatIsThere) {
     EXPECT_EQ(file.read(10, 1), "");
     EXPECT_EQ(file.read(~std::uint64_t{0}, 1), "");
     EXPECT_EQ(readRegularFile(dir / "a", "table", 10), "0123456789");
-    test::expectError(ErrorKind::Input, "it has 10 bytes; such a file may have 9 at most",
-                      [&] { readRegularFile(dir / "a", "table", 9); });
+    expectError(ErrorKind::Input, "it has 10 bytes; such a file may have 9 at most",
+                [&] { readRegularFile(dir / "a", "table", 9); });
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -10,7 +10,9 @@
 #include "tests/support/paths.h"
 #include "woodcock/base/toml_nesting.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace proof;
 namespace {
 
 std::string keyOf(std::size_t parts) {
@@ -22,14 +24,14 @@ std::string keyOf(std::size_t parts) {
 TEST(TomlNesting, KeysHaveAnEnd) {
     for (const std::string before : {"", "x = 1\n", "[t]\n"}) {
         EXPECT_NO_THROW(parseToml(before + keyOf(mostKeyParts) + " = 1", "f"));
-        test::expectError(ErrorKind::Input, "a key has more than 32 parts",
-                          [&] { parseToml(before + keyOf(mostKeyParts + 1) + " = 1", "f"); });
+        expectError(ErrorKind::Input, "a key has more than 32 parts",
+                    [&] { parseToml(before + keyOf(mostKeyParts + 1) + " = 1", "f"); });
     }
     for (const std::string& text :
          {"[" + keyOf(100000) + "]", "x = {" + keyOf(100000) + " = 1}",
           "x = [{" + keyOf(100000) + " = 1}]", "\"a\" . 'b' . " + keyOf(100000) + " = 1"})
-        test::expectError(ErrorKind::Input, "f:1: a key has more than 32 parts",
-                          [&] { parseToml(text, "f"); });
+        expectError(ErrorKind::Input, "f:1: a key has more than 32 parts",
+                    [&] { parseToml(text, "f"); });
 }
 
 TEST(TomlNesting, DotsElsewhereAreNoKeys) {
@@ -44,7 +46,7 @@ TEST(TomlNesting, DotsElsewhereAreNoKeys) {
 
 TEST(TomlNesting, ValuesHaveAnEndToo) {
     for (const char* const open : {"[", "{a="})
-        test::expectError(ErrorKind::Input, "f:1:", [&] {
+        expectError(ErrorKind::Input, "f:1:", [&] {
             std::string text = "a = ";
             for (int i = 0; i < 100000; ++i) text += open;
             parseToml(text, "f");
@@ -57,8 +59,8 @@ TEST(TomlReader, APipeIsReadAndEndlessOnesAreNot) {
     std::thread writer([&] { proof::writeText(dir / "pipe", "a = 1"); });
     EXPECT_EQ(readTomlFile(dir / "pipe", "recipe"), "a = 1");
     writer.join();
-    test::expectError(ErrorKind::Input, "recipe '/dev/zero' is larger than 4 MB",
-                      [] { readTomlFile("/dev/zero", "recipe"); });
+    expectError(ErrorKind::Input, "recipe '/dev/zero' is larger than 4 MB",
+                [] { readTomlFile("/dev/zero", "recipe"); });
 }
 
 TEST(TomlReader, MessagesQuoteNoMoreThanIsRead) {
@@ -67,13 +69,13 @@ TEST(TomlReader, MessagesQuoteNoMoreThanIsRead) {
     const TomlTable read(table, "");
     const std::vector<std::string> known{"one", "two"};
     for (const std::string& message :
-         {test::messageOf(ErrorKind::Input, [&] { read.find("a")->choice("kind", known); }),
-          test::messageOf(ErrorKind::Input, [&] { read.allowOnly({"a"}, "the file"); }),
-          test::messageOf(ErrorKind::Input, [&] { read.find(longWord)->text(); })}) {
+         {messageOf(ErrorKind::Input, [&] { read.find("a")->choice("kind", known); }),
+          messageOf(ErrorKind::Input, [&] { read.allowOnly({"a"}, "the file"); }),
+          messageOf(ErrorKind::Input, [&] { read.find(longWord)->text(); })}) {
         EXPECT_NE(message.find("xxx..."), std::string::npos);
         EXPECT_LT(message.size(), 400u);
     }
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

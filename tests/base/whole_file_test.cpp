@@ -18,7 +18,9 @@
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace proof;
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +61,7 @@ TEST(WholeFile, AFullDiskLeavesNothing) {
     // More than a buffer, so that writing fails; less than one, so that closing does.
     for (const size_t size : {1u << 20, 2000u}) {
         const std::vector<unsigned char> bytes(size, 7);
-        const std::string message = test::messageOf(ErrorKind::Failure, [&] {
+        const std::string message = messageOf(ErrorKind::Failure, [&] {
             const FileSizeLimit limit(1000);
             writeWholeFile(dir / "a.bin", bytes);
         });
@@ -83,7 +85,7 @@ TEST(WholeFile, AFailureKeepsTheFormerFile) {
 }
 
 std::string check(const fs::path& file) {
-    return test::messageOf(ErrorKind::Usage, [&] { checkWritable(file); });
+    return messageOf(ErrorKind::Usage, [&] { checkWritable(file); });
 }
 
 TEST(WholeFile, ChecksThePlaceBeforehand) {
@@ -181,7 +183,7 @@ TEST(WholeFile, WritesIntoADevice) {
     FileInTheMaking making(null);
     proof::writeText(making.temporary(), "gone as well");
     making.commit();
-    EXPECT_EQ(test::messageOf(ErrorKind::Failure, [&] { writeWholeFile(full, "no room"); }),
+    EXPECT_EQ(messageOf(ErrorKind::Failure, [&] { writeWholeFile(full, "no room"); }),
               fmt::format("cannot write '{}': No space left on device", full.string()));
     EXPECT_TRUE(fs::is_character_file(null));
     EXPECT_TRUE(fs::is_character_file(full));
@@ -246,7 +248,7 @@ TEST(WholeFile, NothingThatIsReadIsWrittenOver) {
     fs::create_symlink("in.vdb", dir / "link.vdb");
     fs::create_hard_link(dir / "in.vdb", dir / "hard.vdb");
     const auto said = [&](std::vector<fs::path> written) {
-        return test::messageOf(ErrorKind::Usage, [&] {
+        return messageOf(ErrorKind::Usage, [&] {
             refuseOverwriting(written, std::array{fs::path(), dir / "in.vdb"});
         });
     };
@@ -260,4 +262,4 @@ TEST(WholeFile, NothingThatIsReadIsWrittenOver) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

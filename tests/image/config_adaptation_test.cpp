@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+
 namespace {
 
 TEST(ConfigVersion, IsReadFromItsOwnLineOnly) {
@@ -39,4 +42,4 @@ description: ocio_profile_version: 2.4
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -13,7 +13,11 @@
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 /// IEC 61966-2-1.
@@ -37,7 +41,7 @@ float grey(const ColorConfig& config, const DisplaySettings& settings, float v) 
 }
 
 class ShippedConfig : public testing::Test {
-    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const EnvironmentVariable none_{"OCIO", std::nullopt};
 
 protected:
     const ColorConfig config_;
@@ -92,7 +96,7 @@ TEST_F(ShippedConfig, WorksInLinearRec709) {
 
 TEST_F(ShippedConfig, UnknownNamesListTheKnown) {
     const auto message = [&](const DisplaySettings& settings) {
-        return test::messageOf(ErrorKind::Usage, [&] { config_.displayTransform(settings); });
+        return messageOf(ErrorKind::Usage, [&] { config_.displayTransform(settings); });
     };
     EXPECT_EQ(message({"sRGB", "Filmc", "", 0}),
               "view 'Filmc' not found for display 'sRGB' in the OpenColorIO config that Woodcock "
@@ -168,7 +172,7 @@ looks:
         return dir_ / "config.ocio";
     }
 
-    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const EnvironmentVariable none_{"OCIO", std::nullopt};
     const proof::TempDir dir_;
 };
 
@@ -189,7 +193,7 @@ TEST_F(ConfigWithTables, OneOfALaterVersionIsUsedAsFarAsItGoes) {
               std::string::npos);
     EXPECT_NE(config.note().find("need the built-in transform 'OF - THE FUTURE'"),
               std::string::npos);
-    const std::string message = test::messageOf(ErrorKind::Usage, [&] {
+    const std::string message = messageOf(ErrorKind::Usage, [&] {
         config.displayTransform({"sRGB", "New", "", 0});
     });
     EXPECT_NE(message.find("view 'New' of display 'sRGB' needs 'OF - THE FUTURE' of OpenColorIO "
@@ -200,17 +204,17 @@ TEST_F(ConfigWithTables, OneOfALaterVersionIsUsedAsFarAsItGoes) {
 
 TEST_F(ConfigWithTables, ExplicitComesBeforeTheVariableBeforeTheShippedOne) {
     const std::filesystem::path file = write("2");
-    const test::EnvironmentVariable variable("OCIO", file.string());
+    const EnvironmentVariable variable("OCIO", file.string());
     EXPECT_NEAR(grey(ColorConfig(), {}, 0.2f), 0.4f, 1e-5);
-    const ColorConfig named(test::sourceDir() / "data/ocio/woodcock.ocio");
+    const ColorConfig named(sourceDir() / "data/ocio/woodcock.ocio");
     EXPECT_NEAR(grey(named, {"", "Standard", "", 0}, 0.2f), srgb(0.2), 2e-5);
-    const test::EnvironmentVariable empty("OCIO", "");
+    const EnvironmentVariable empty("OCIO", "");
     EXPECT_NEAR(grey(ColorConfig(), {"", "Standard", "", 0}, 0.2f), srgb(0.2), 2e-5);
 }
 
 TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
     const auto message = [](const std::filesystem::path& file) {
-        return test::messageOf(ErrorKind::Input, [&] { ColorConfig config(file); });
+        return messageOf(ErrorKind::Input, [&] { ColorConfig config(file); });
     };
     EXPECT_EQ(message("/nowhere/config.ocio"),
               "cannot read the OpenColorIO config '/nowhere/config.ocio': there is no such file");
@@ -219,7 +223,7 @@ TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
     proof::writeText(dir_ / "no.ocio", "ocio_profile_version: 2\nroles: [\n");
     EXPECT_NE(message(dir_ / "no.ocio").find("no.ocio' cannot be used: "), std::string::npos);
 
-    const test::EnvironmentVariable variable("OCIO", "/nowhere/config.ocio");
+    const EnvironmentVariable variable("OCIO", "/nowhere/config.ocio");
     EXPECT_EQ(
         message({}),
         "cannot read the OpenColorIO config of $OCIO '/nowhere/config.ocio': there is no such "
@@ -229,7 +233,7 @@ TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
 TEST_F(ConfigWithTables, AMissingTableIsNamed) {
     const ColorConfig config(write("2.1"));
     std::filesystem::remove(dir_ / "tables/filmic.spi1d");
-    const std::string message = test::messageOf(ErrorKind::Input, [&] {
+    const std::string message = messageOf(ErrorKind::Input, [&] {
         config.displayTransform({"", "Filmic", "", 0});
     });
     EXPECT_NE(message.find("view 'Filmic'"), std::string::npos) << message;
@@ -252,7 +256,7 @@ protected:
                              "colorspaces:\n  - !<ColorSpace> {name: lin}\n"
                              "  - !<ColorSpace> {name: log}\n" +
                              spaces);
-        return test::messageOf(ErrorKind::Input, [&] {
+        return messageOf(ErrorKind::Input, [&] {
             const ColorConfig config(dir_ / "c.ocio");
             config.displayTransform({});
         });
@@ -261,7 +265,7 @@ protected:
         return fmt::format("  - !<ColorSpace>\n    name: {}\n    from_scene_reference: {}\n", name,
                            transform);
     }
-    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const EnvironmentVariable none_{"OCIO", std::nullopt};
     const proof::TempDir dir_;
 };
 
@@ -350,14 +354,14 @@ TEST_F(HostileConfig, TablesAreRegularFiles) {
 TEST_F(HostileConfig, NumbersBeyondAllBoundsAreRefusedInWords) {
     for (const std::string version : {"9223372036854775807", "99999999999999999999.5"}) {
         proof::writeText(dir_ / "v.ocio", "ocio_profile_version: " + version + "\n");
-        test::expectError(ErrorKind::Input, "v.ocio' is of version ",
-                          [&] { ColorConfig config(dir_ / "v.ocio"); });
+        expectError(ErrorKind::Input, "v.ocio' is of version ",
+                    [&] { ColorConfig config(dir_ / "v.ocio"); });
     }
     // A million digits took all of the stack.
     proof::writeText(dir_ / "v.ocio", "ocio_profile_version: " + std::string(1000000, '1') + "\n");
-    test::expectError(ErrorKind::Input, "v.ocio' is of version ",
-                      [&] { ColorConfig config(dir_ / "v.ocio"); });
+    expectError(ErrorKind::Input, "v.ocio' is of version ",
+                [&] { ColorConfig config(dir_ / "v.ocio"); });
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

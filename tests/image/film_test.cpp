@@ -9,7 +9,10 @@
 
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+
 namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -247,4 +250,4 @@ TEST(Film, RefusesEmptyImagesAndCropsOutside) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -11,7 +11,11 @@
 #include "woodcock/base/error.h"
 #include "woodcock/proof/support/read_back.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 /// One grey that a Standard sRGB view shows as byte 118 (0.18), one half as bright behind half the
@@ -32,10 +36,10 @@ protected:
 
     std::string refusal(std::vector<std::filesystem::path> files) {
         settings_.files = std::move(files);
-        return test::messageOf(ErrorKind::Usage, [&] { Outputs outputs(settings_); });
+        return messageOf(ErrorKind::Usage, [&] { Outputs outputs(settings_); });
     }
 
-    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const EnvironmentVariable none_{"OCIO", std::nullopt};
     const proof::TempDir dir_;
     Film film_;
     OutputSettings settings_;
@@ -180,8 +184,7 @@ TEST_F(OutputsTest, OneThatFailsLetsTheOthersBeWritten) {
     settings_.files = {dir_ / "sub/a.exr", dir_ / "a.png"};
     const Outputs outputs(settings_);
     remove(dir_ / "sub");
-    const std::string message =
-        test::messageOf(ErrorKind::Failure, [&] { outputs.write(film_, {}); });
+    const std::string message = messageOf(ErrorKind::Failure, [&] { outputs.write(film_, {}); });
     EXPECT_EQ(message,
               "cannot write '" + (dir_ / "sub/a.exr").string() + "': No such file or directory");
     EXPECT_TRUE(exists(dir_ / "a.png"));
@@ -204,4 +207,4 @@ TEST_F(OutputsTest, WhatCannotWorkIsRefusedBeforehand) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

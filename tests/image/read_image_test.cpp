@@ -10,11 +10,15 @@
 #include "woodcock/base/error.h"
 #include "woodcock/proof/support/read_back.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 std::string refusalOf(const std::filesystem::path& file) {
-    return test::messageOf(ErrorKind::Input, [&] { readImage(file); });
+    return messageOf(ErrorKind::Input, [&] { readImage(file); });
 }
 
 class ReadImage : public testing::Test {
@@ -79,4 +83,4 @@ TEST_F(ReadImage, RefusesSizesBeyondTheFile) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

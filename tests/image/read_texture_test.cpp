@@ -10,7 +10,11 @@
 #include "tests/support/paths.h"
 #include "woodcock/proof/support/read_back.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 /// IEC 61966-2-1, backwards.
@@ -19,14 +23,14 @@ double linear(double shown) {
 }
 
 class ReadTexture : public testing::Test {
-    const test::EnvironmentVariable none_{"OCIO", std::nullopt};
+    const EnvironmentVariable none_{"OCIO", std::nullopt};
 
 protected:
     Rgb read(const std::string& file, const std::string& space) const {
         return readTexture(dir_ / file, space, config_).at(0, 0);
     }
     std::string refusal(const std::string& file, const std::string& space) const {
-        return test::messageOf(ErrorKind::Input, [&] { read(file, space); });
+        return messageOf(ErrorKind::Input, [&] { read(file, space); });
     }
 
     const ColorConfig config_;
@@ -83,10 +87,10 @@ TEST_F(ReadTexture, AsksForTheSpaceWhereTheConfigHasNone) {
                      "  - !<ColorSpace> {name: plain}\n");
     const ColorConfig config(dir_ / "config.ocio");
     proof::writeFloats(dir_ / "a.png", 1, 1, 3, {0, 1, 0});
-    test::expectError(ErrorKind::Input, "name the texture's colour space",
-                      [&] { readTexture(dir_ / "a.png", "", config); });
+    expectError(ErrorKind::Input, "name the texture's colour space",
+                [&] { readTexture(dir_ / "a.png", "", config); });
     EXPECT_EQ(readTexture(dir_ / "a.png", "plain", config).at(0, 0), Rgb(0, 1, 0));
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

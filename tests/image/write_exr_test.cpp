@@ -10,7 +10,11 @@
 #include "woodcock/base/version.h"
 #include "woodcock/proof/support/read_back.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
 namespace {
 
 class WriteExr : public testing::Test {
@@ -155,4 +159,4 @@ TEST(Chromaticities, KnowTheNamesThatConfigsUse) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -5,7 +5,11 @@
 
 #include "woodcock/proof/support/render_scene.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace render;
+using namespace proof;
+
 namespace {
 
 /// Of a box from -1 to 1 with an even extinction, seen from `eye` towards -z, at 40 x 40 pixels.
@@ -59,4 +63,4 @@ TEST(ViewDepth, InsideOfASurfaceTheMediumOutsideDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

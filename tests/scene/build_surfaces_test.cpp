@@ -11,14 +11,16 @@
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using proof::TempDir;
-using proof::writeText;
-using test::buildLit;
-using test::buildMistake;
-using test::BuiltScene;
+using namespace light;
+using namespace medium;
+using namespace proof;
+using namespace render;
+using namespace scene;
+using namespace surface;
+
+namespace {
 
 const std::string materials = R"(
 [[material]]
@@ -308,4 +310,4 @@ TEST(CompleteScene, ChoosesNoLightWhereSurfacesEmit) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -11,16 +11,15 @@
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using proof::GridSpec;
-using proof::TempDir;
-using proof::writeVdb;
-using test::buildLit;
-using test::buildMistake;
-using test::BuiltScene;
-using test::lightAndCamera;
+using namespace light;
+using namespace medium;
+using namespace proof;
+using namespace render;
+using namespace scene;
+
+namespace {
 
 constexpr Box3i block{{0, 0, 0}, {7, 7, 7}};
 
@@ -317,4 +316,4 @@ TEST(LoadScene, AlbedosAboveOneAreRefusedOrRepaired) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

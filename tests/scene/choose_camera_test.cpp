@@ -8,7 +8,11 @@
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace camera;
+using namespace scene;
+
 namespace {
 
 const std::string plank = "[[volume]]\nbox = { min = [0, 0, 0], max = [8, 2, 1] }\nscale = 1\n";
@@ -88,4 +92,4 @@ TEST(Orbit, IsDoneInTheSceneThatIsSaved) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

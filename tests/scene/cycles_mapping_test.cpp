@@ -6,7 +6,10 @@
 #include "woodcock/base/random.h"
 #include "woodcock/scene/build.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace scene;
+
 namespace {
 
 void expectNear(Rgb a, Rgb b, float relative = 1e-6f) {
@@ -118,4 +121,4 @@ TEST(CyclesMapping, EnvironmentImagesAreTurnedAlike) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

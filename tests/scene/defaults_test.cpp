@@ -10,12 +10,15 @@
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using proof::GridSpec;
-using proof::TempDir;
-using proof::writeVdb;
+using namespace camera;
+using namespace medium;
+using namespace proof;
+using namespace render;
+using namespace scene;
+
+namespace {
 
 /// A ball of even density, 24 voxels wide.
 GridSpec ball(const Affine3d& worldFromIndex) {
@@ -391,4 +394,4 @@ TEST(Defaults, SurviveAVolumeWithoutDensity) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

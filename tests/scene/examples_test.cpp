@@ -9,12 +9,16 @@
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace render;
+using namespace scene;
+
 namespace {
 
 std::vector<std::filesystem::path> exampleFiles() {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(test::sourceDir() / "data/scenes"))
+    for (const auto& entry : std::filesystem::directory_iterator(sourceDir() / "data/scenes"))
         if (entry.path().extension() == ".toml") files.push_back(entry.path());
     return files;
 }
@@ -61,4 +65,4 @@ TEST(ExampleScenes, RenderWhereTheyNeedNoFile) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

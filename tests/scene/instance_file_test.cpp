@@ -6,7 +6,11 @@
 #include "woodcock/base/error.h"
 #include "woodcock/proof/support/temp_dir.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace scene;
+using namespace proof;
+
 namespace {
 
 std::vector<Affine3d> read(const std::string& text) {
@@ -61,4 +65,4 @@ TEST(InstanceFile, MistakesNameTheLine) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -9,7 +9,10 @@
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace scene;
+
 namespace {
 
 using Overrides = std::vector<std::string>;
@@ -65,8 +68,8 @@ TEST(LightChanges, ElevationAndAzimuthTogetherReplaceADirection) {
     const std::string sun = volume + "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\n";
     expectTowards(sunOf(completed(sun, {"light[0].elevation=0", "light[0].azimuth=90"})),
                   {1, 0, 0});
-    test::expectError(ErrorKind::Input, "light[0].azimuth cannot be used together with direction",
-                      [&] { completed(sun, {"light[0].azimuth=90"}); });
+    expectError(ErrorKind::Input, "light[0].azimuth cannot be used together with direction",
+                [&] { completed(sun, {"light[0].azimuth=90"}); });
 }
 
 TEST(LightChanges, WorkOnTheSceneThatWasSaved) {
@@ -81,7 +84,7 @@ TEST(LightChanges, WorkOnTheSceneThatWasSaved) {
 
 TEST(LightChanges, MistakesAreFoundBeforeAnythingIsLoaded) {
     const auto mistake = [&](const Overrides& overrides, const std::string& more = "") {
-        return test::messageOf(ErrorKind::Input, [&] {
+        return messageOf(ErrorKind::Input, [&] {
             parseSceneText("[[volume]]\nfile = \"none.vdb\"\n" + more, "scene.toml", ".",
                            overrides);
         });
@@ -110,4 +113,4 @@ TEST(LightChanges, AreForeseen) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

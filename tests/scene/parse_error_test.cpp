@@ -8,10 +8,12 @@
 #include "woodcock/base/error.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using test::mistakeIn;
+using namespace scene;
+using namespace proof;
+
+namespace {
 
 std::string volumeMistake(const std::string& lines) {
     return mistakeIn("[[volume]]\nfile = \"a.vdb\"\n" + lines);
@@ -240,10 +242,9 @@ TEST(ParseErrors, OfCameras) {
         "scene.toml:4:16: camera.sensor_width needs a focal_length beside it, in millimetres");
     EXPECT_EQ(sectionMistake("[camera]\ntype = \"fisheye\""),
               "scene.toml:4:8: unknown camera type 'fisheye'; known: perspective, orthographic");
-    EXPECT_EQ(
-        sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
-        "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, "
-        "height, shift, orbit, eye, look_at, up, matrix");
+    EXPECT_EQ(sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
+              "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, "
+              "height, shift, orbit, eye, look_at, up, matrix");
     EXPECT_EQ(
         sectionMistake(
             "[camera]\nmatrix = [[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
@@ -376,4 +377,4 @@ TEST(ParseErrors, OfFiles) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -5,10 +5,8 @@
 #include "woodcock/base/error.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
+namespace woodcock::test {
 namespace {
-
-using test::mistakeIn;
 
 /// Its lines start at line 3 of the file.
 std::string materialMistake(const std::string& lines) {
@@ -225,4 +223,4 @@ TEST(SurfaceErrors, OfOverrides) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -6,7 +6,10 @@
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace scene;
+
 namespace {
 
 SceneDescription parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -195,4 +198,4 @@ TEST(SurfaceNature, FollowsFromTheMaterial) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

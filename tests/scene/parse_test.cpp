@@ -8,7 +8,13 @@
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace grid;
+using namespace render;
+using namespace scene;
+using namespace proof;
+
 namespace {
 
 SceneDescription parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -310,4 +316,4 @@ TEST(Overrides, CannotSmuggleOtherKeysIn) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

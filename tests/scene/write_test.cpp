@@ -8,7 +8,11 @@
 #include "woodcock/base/error.h"
 #include "woodcock/scene/parse.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace grid;
+using namespace scene;
+
 namespace {
 
 /// As read back, without the places that only a file gives.
@@ -256,4 +260,4 @@ TEST(SceneDigest, ChangesWithAllThatTheImageShows) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

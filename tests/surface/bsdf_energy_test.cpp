@@ -7,12 +7,11 @@
 #include "woodcock/base/statistics.h"
 #include "woodcock/surface/fresnel.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using test::at;
-using test::bsdfOf;
-using test::flatPoint;
+using namespace surface;
+
+namespace {
 
 constexpr double cosines[] = {1, 0.9, 0.5, 0.1, 0.01, 1.745e-4, 1e-8};  // 1.745e-4: 89.99 degrees
 
@@ -26,7 +25,7 @@ Shares sharesOf(const Bsdf& bsdf, Vec3d out, double squeeze, int n, std::uint64_
     RandomStream random(seed);
     Shares shares;
     for (int i = 0; i < n; ++i) {
-        const BsdfSample s = bsdf.sample(out, test::three(random));
+        const BsdfSample s = bsdf.sample(out, three(random));
         const double weight = double{s.weight[0]} * (s.transmitted ? squeeze : 1);
         EXPECT_TRUE(weight >= 0 && weight <= 1 + 2e-7) << weight;
         shares.reflected.add(s.transmitted ? 0 : weight);
@@ -38,10 +37,10 @@ Shares sharesOf(const Bsdf& bsdf, Vec3d out, double squeeze, int n, std::uint64_
 
 TEST(BsdfEnergy, WhiteDiffuseAndMirrorsLoseNothing) {
     for (const double cosine : cosines)
-        for (const Material& material : {test::diffuse(1), test::whiteMetal(0)}) {
+        for (const Material& material : {diffuse(1), whiteMetal(0)}) {
             RandomStream random(1);
             for (int i = 0; i < 1000; ++i) {
-                const BsdfSample s = bsdfOf(material).sample(at(cosine, 1), test::three(random));
+                const BsdfSample s = bsdfOf(material).sample(at(cosine, 1), three(random));
                 EXPECT_EQ(s.weight, Rgb(1.0f));
             }
         }
@@ -50,7 +49,7 @@ TEST(BsdfEnergy, WhiteDiffuseAndMirrorsLoseNothing) {
 TEST(BsdfEnergy, SmoothGlassLosesNothingAndSplitsByFresnel) {
     for (const double eta : {1.0001, 1.33, 1.5, 3.0, 1 / 1.5, 1 / 3.0})
         for (const double cosine : cosines) {
-            const Bsdf bsdf = bsdfOf(test::glass(0), flatPoint(1, eta));
+            const Bsdf bsdf = bsdfOf(glass(0), flatPoint(1, eta));
             const double reflectance = refraction(cosine, eta).reflectance;
             int reflected = 0;
             constexpr int n = 1000;
@@ -69,7 +68,7 @@ TEST(BsdfEnergy, SmoothGlassLosesNothingAndSplitsByFresnel) {
 TEST(BsdfEnergy, TotalReflectionIsExact) {
     for (const double ior : {1.0001, 1.33, 1.5, 3.0})
         for (const double roughness : {0.0, 0.01}) {
-            const Bsdf bsdf = bsdfOf(test::glass(roughness), flatPoint(1, ior));
+            const Bsdf bsdf = bsdfOf(glass(roughness), flatPoint(1, ior));
             const double critical = std::sqrt(1 - 1 / (ior * ior));
             for (const double u : {0.0, 0.5, 1 - 0x1p-53}) {
                 const BsdfSample s = bsdf.sample(-at(critical * (1 - 1e-9), 1), {u, 0.5, 0.5});
@@ -85,11 +84,10 @@ TEST(BsdfEnergy, TotalReflectionIsExact) {
 TEST(BsdfEnergy, RoughFacetsCreateNone) {
     for (const double roughness : {0.03, 0.1, 0.3, 0.5, 0.7, 1.0})
         for (const double cosine : cosines) {
-            const Shares metal =
-                sharesOf(bsdfOf(test::whiteMetal(roughness)), at(cosine, 1), 1, 2000, 1);
+            const Shares metal = sharesOf(bsdfOf(whiteMetal(roughness)), at(cosine, 1), 1, 2000, 1);
             EXPECT_LE(metal.all.mean(), 1.0 + 1e-7) << roughness << " " << cosine;
             for (const double eta : {1.0001, 1.5, 3.0, 1 / 1.5, 1 / 3.0}) {
-                const Shares shares = sharesOf(bsdfOf(test::glass(roughness), flatPoint(1, eta)),
+                const Shares shares = sharesOf(bsdfOf(glass(roughness), flatPoint(1, eta)),
                                                at(cosine, 1), eta * eta, 2000, 2);
                 EXPECT_LE(shares.all.mean(), 1.0 + 1e-7)
                     << roughness << " " << cosine << " " << eta;
@@ -106,8 +104,8 @@ TEST(BsdfEnergy, OfTheRoughestMetalThatIsScatteredOnceIsKnown) {
 TEST(BsdfEnergy, OfBarelyRoughMatterIsThatOfSmooth) {
     for (const double eta : {1.5, 1 / 1.5})
         for (const double cosine : {1.0, 0.8}) {
-            const Shares shares = sharesOf(bsdfOf(test::glass(0.03), flatPoint(1, eta)),
-                                           at(cosine, 1), eta * eta, 100000, 4);
+            const Shares shares = sharesOf(bsdfOf(glass(0.03), flatPoint(1, eta)), at(cosine, 1),
+                                           eta * eta, 100000, 4);
             const double reflectance = refraction(cosine, eta).reflectance;
             EXPECT_NEAR(shares.reflected.mean(), reflectance,
                         4 * shares.reflected.standardError() + 1e-4);
@@ -124,15 +122,15 @@ TEST(BsdfEnergy, RoughWhiteMetalAndGlassLoseNothing) {
     const auto losesNothing = [](const Bsdf& bsdf, double cosine, double squeeze) {
         RandomStream random(6);
         for (int i = 0; i < 1000; ++i) {
-            const BsdfSample s = bsdf.sample(at(cosine, 1), test::three(random));
+            const BsdfSample s = bsdf.sample(at(cosine, 1), three(random));
             ASSERT_NEAR(double{s.weight[0]} * (s.transmitted ? squeeze : 1), 1, 2e-6) << cosine;
         }
     };
     for (const double roughness : roughnesses)
         for (const double cosine : cosines) {
-            losesNothing(bsdfOf(test::whiteMetal(roughness)), cosine, 1);
+            losesNothing(bsdfOf(whiteMetal(roughness)), cosine, 1);
             for (const double eta : etas)
-                losesNothing(bsdfOf(test::glass(roughness), flatPoint(1, eta)), cosine, eta * eta);
+                losesNothing(bsdfOf(glass(roughness), flatPoint(1, eta)), cosine, eta * eta);
         }
 }
 
@@ -159,12 +157,12 @@ TEST(BsdfEnergy, EvaluatesToAllLight) {
     };
     for (const double roughness : {0.5, 0.7, 1.0})
         for (const double cosine : {1.0, 0.6, 0.2}) {
-            EXPECT_NEAR(sumOf(bsdfOf(test::whiteMetal(roughness)), at(cosine, 1), 1), 1, 1e-3)
+            EXPECT_NEAR(sumOf(bsdfOf(whiteMetal(roughness)), at(cosine, 1), 1), 1, 1e-3)
                 << roughness << " " << cosine;
             for (const double eta : {1.33, 1.5, 1 / 1.5, 1 / 2.4})
-                EXPECT_NEAR(sumOf(bsdfOf(test::glass(roughness), flatPoint(1, eta)), at(cosine, 1),
-                                  eta * eta),
-                            1, 1e-3)
+                EXPECT_NEAR(
+                    sumOf(bsdfOf(glass(roughness), flatPoint(1, eta)), at(cosine, 1), eta * eta), 1,
+                    1e-3)
                     << roughness << " " << cosine << " " << eta;
         }
 }
@@ -186,4 +184,4 @@ TEST(FacetLosses, SampleTheirDensity) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

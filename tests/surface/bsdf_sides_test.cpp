@@ -5,22 +5,21 @@
 #include "tests/surface/one_bsdf.h"
 #include "woodcock/surface/fresnel.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using test::at;
-using test::bsdfOf;
-using test::flatPoint;
+using namespace surface;
+
+namespace {
 
 std::vector<Material> all(double roughness) {
     ConductorMaterial gold;
     gold.schlick = false;
     gold.eta = Rgb(0.143f, 0.375f, 1.442f), gold.k = Rgb(3.983f, 2.386f, 1.603f);
     gold.roughness = roughness;
-    return {test::diffuse(1),
-            test::whiteMetal(roughness),
+    return {diffuse(1),
+            whiteMetal(roughness),
             gold,
-            test::glass(roughness),
+            glass(roughness),
             InterfaceMaterial{},
             EmissiveMaterial{Rgb(2.0f), false},
             MixMaterial{0, 3, Rgb(0.4f)},
@@ -96,7 +95,7 @@ TEST(Bsdf, MirrorsAreNotBlackWhereShadingNormalsTurnAway) {
         BsdfPoint point = flatPoint(1, 1.5);
         point.shadingNormal = at(random.uniformOpenLow(), 6 * random.uniform());
         const Vec3d out = at(random.uniformOpenLow(), 6 * random.uniform());
-        const BsdfSample s = bsdfOf(test::whiteMetal(0), point).sample(out, {0.5, 0.5, 0.5});
+        const BsdfSample s = bsdfOf(whiteMetal(0), point).sample(out, {0.5, 0.5, 0.5});
         EXPECT_EQ(s.weight, Rgb(1.0f));
         EXPECT_GT(s.direction.z, 0);
         // Where the mirrored direction is well above the surface, it is the shading normal's.
@@ -113,21 +112,21 @@ TEST(Bsdf, ShadingNormalsLeakNoLight) {
         BsdfPoint point = flatPoint(1, 1.5);
         point.shadingNormal = at(0.2, 6 * random.uniform());
         const Vec3d out = anyDirection(random), in = anyDirection(random);
-        for (const Material& material : {test::diffuse(1), test::whiteMetal(0.6)})
+        for (const Material& material : {diffuse(1), whiteMetal(0.6)})
             EXPECT_TRUE(out.z * in.z > 0 || bsdfOf(material, point).scatter(out, in).pdf == 0);
         // The shading normal colours what is seen: a diffuse point is lit by the cosine to it.
         const double lit = out.z > 0 && in.z > 0 ? std::max(0.0, dot(in, point.shadingNormal)) : 0;
         if (out.z > 0) {
-            EXPECT_NEAR(bsdfOf(test::diffuse(1), point).evaluate(out, in)[0], lit / pi, 1e-6);
+            EXPECT_NEAR(bsdfOf(diffuse(1), point).evaluate(out, in)[0], lit / pi, 1e-6);
         }
     }
 }
 
 TEST(Bsdf, PassesWhereNothingChanges) {
     const std::vector<Material> materials{InterfaceMaterial{},
-                                          test::glass(0),
-                                          test::glass(0.5),
-                                          test::diffuse(0.5f),
+                                          glass(0),
+                                          glass(0.5),
+                                          diffuse(0.5f),
                                           MixMaterial{0, 1, Rgb(0.3f)},
                                           MixMaterial{0, 3, Rgb(0.3f)},
                                           MixMaterial{0, 3, Rgb(0.0f)},
@@ -170,13 +169,13 @@ TEST(Bsdf, EmitsToItsSides) {
     const Vec3d out = at(0.2, pi);
     ASSERT_LT(dot(out, point.shadingNormal), 0);
     EXPECT_EQ(bsdfOf(lamp, point).emitted(out), Rgb(1, 2, 3));
-    const Bsdf mix(std::vector<Material>{test::diffuse(1), lamp, MixMaterial{0, 1, Rgb(0.25f)}}, 2,
+    const Bsdf mix(std::vector<Material>{diffuse(1), lamp, MixMaterial{0, 1, Rgb(0.25f)}}, 2,
                    point);
     EXPECT_EQ(mix.emitted(out), Rgb(0.25f, 0.5f, 0.75f));
 }
 
 TEST(Bsdf, MixesByTheMeanOfTheWeight) {
-    const std::vector<Material> materials{test::diffuse(0.5f), test::whiteMetal(0.7),
+    const std::vector<Material> materials{diffuse(0.5f), whiteMetal(0.7),
                                           MixMaterial{0, 1, Rgb(0.1f, 0.2f, 0.6f)}};
     const Bsdf mix(materials, 2, flatPoint());
     const Vec3d out = at(0.5, 0), in = at(0.4, 3);
@@ -192,19 +191,19 @@ TEST(Bsdf, StraightTransmittanceOfAPlateIsThatOfTheBentRays) {
     for (const double ior : {1.33, 1.5, 1 / 1.5})
         for (const double cosine : {1.0, 0.5, 0.1}) {
             const Vec3d along = at(-cosine, 1);
-            const Bsdf in = bsdfOf(test::glass(0.3), flatPoint(1, ior)),
-                       back = bsdfOf(test::glass(0.3), flatPoint(ior, 1));
+            const Bsdf in = bsdfOf(glass(0.3), flatPoint(1, ior)),
+                       back = bsdfOf(glass(0.3), flatPoint(ior, 1));
             const double t = 1 - refraction(cosine, ior > 1 ? ior : 1 / ior).reflectance;
             EXPECT_NEAR(in.straightTransmittance(along)[1], t, 1e-6);
             EXPECT_NEAR(back.straightTransmittance(along)[1], t, 1e-6);
         }
-    EXPECT_EQ(bsdfOf(test::diffuse(1)).straightTransmittance({0, 0, 1}), Rgb());
-    EXPECT_EQ(bsdfOf(test::glass(0), flatPoint(1, 1.5)).straightTransmittance({1, 0, 0}), Rgb());
+    EXPECT_EQ(bsdfOf(diffuse(1)).straightTransmittance({0, 0, 1}), Rgb());
+    EXPECT_EQ(bsdfOf(glass(0), flatPoint(1, 1.5)).straightTransmittance({1, 0, 0}), Rgb());
 }
 
 TEST(Bsdf, HasTheAlbedoOfItsKind) {
     EXPECT_EQ(bsdfOf(DiffuseMaterial{Rgb(0.1f, 0.2f, 0.3f)}).albedo(), Rgb(0.1f, 0.2f, 0.3f));
-    EXPECT_EQ(bsdfOf(test::glass(0.5), flatPoint(1, 1.5)).albedo(), Rgb(1.0f));
+    EXPECT_EQ(bsdfOf(glass(0.5), flatPoint(1, 1.5)).albedo(), Rgb(1.0f));
     EXPECT_EQ(bsdfOf(EmissiveMaterial{}).albedo(), Rgb());
     ConductorMaterial metal;
     metal.fresnelColour = Rgb(0.9f, 0.5f, 0.1f);
@@ -217,8 +216,7 @@ TEST(Bsdf, HasTheAlbedoOfItsKind) {
 TEST(Bsdf, RefractsBySnellsLaw) {
     for (const double eta : {1.5, 1 / 1.5, 1.0001}) {
         const Vec3d out = at(0.8, 0.3);
-        const BsdfSample s =
-            bsdfOf(test::glass(0), flatPoint(1, eta)).sample(out, {0.999, 0.5, 0.5});
+        const BsdfSample s = bsdfOf(glass(0), flatPoint(1, eta)).sample(out, {0.999, 0.5, 0.5});
         ASSERT_TRUE(s.transmitted && s.delta);
         EXPECT_NEAR(s.direction.x, -out.x / eta, 1e-15);
         EXPECT_NEAR(s.direction.y, -out.y / eta, 1e-15);
@@ -227,4 +225,4 @@ TEST(Bsdf, RefractsBySnellsLaw) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -9,12 +9,12 @@
 #include "woodcock/proof/support/statistics.h"
 #include "woodcock/surface/fresnel.h"
 
-namespace woodcock {
-namespace {
+namespace woodcock::test {
 
-using test::at;
-using test::bsdfOf;
-using test::flatPoint;
+using namespace surface;
+using namespace proof;
+
+namespace {
 
 // ---- formulas as they are printed ---------------------------------------------------------------
 
@@ -93,7 +93,7 @@ TEST(Bsdf, RoughGlassIsTheFormula) {
             above = 1 + random.uniform(), below = above * (1.01 + random.uniform());
         }
         const double alpha = roughness * roughness;
-        const Bsdf bsdf = bsdfOf(test::glass(roughness), flatPoint(above, below));
+        const Bsdf bsdf = bsdfOf(glass(roughness), flatPoint(above, below));
         const double side = random.uniform() < 0.5 ? 1 : -1;
         const double here = side > 0 ? above : below, there = side > 0 ? below : above;
         const Vec3d o = at(random.uniformOpenLow(), 6 * random.uniform()),
@@ -140,8 +140,7 @@ TEST(Bsdf, IsReciprocal) {
         const Vec3d a = at(2 * random.uniform() - 1, 6 * random.uniform()),
                     b = at(2 * random.uniform() - 1, 6 * random.uniform());
         const auto index = [&](Vec3d v) { return v.z > 0 ? above : below; };
-        for (const Material& material :
-             {test::diffuse(0.5f), test::whiteMetal(roughness), test::glass(roughness)}) {
+        for (const Material& material : {diffuse(0.5f), whiteMetal(roughness), glass(roughness)}) {
             const Bsdf bsdf = bsdfOf(material, flatPoint(above, below));
             // Veach 1997, eq. 5.14.
             const double there =
@@ -217,7 +216,7 @@ void expectSampling(const Bsdf& bsdf, Vec3d out, Side side, Vec3d axis, double w
     std::vector<double> counts(expected.size());
     RandomStream random(hashOf(what.size(), what[0], what.back()));
     for (int i = 0; i < n; ++i) {
-        const BsdfSample s = bsdf.sample(out, test::three(random));
+        const BsdfSample s = bsdf.sample(out, three(random));
         if (s.delta || s.pdf == 0 || !counted(s.direction)) continue;
         ++counts[cells.cellOf(s.direction)];
         ASSERT_EQ(s.transmitted, side == Side::Transmitted);
@@ -235,8 +234,8 @@ double cellWidth(double roughness) { return roughness == 1 ? 1e6 : std::pow(roug
 
 TEST(BsdfSampling, FollowsTheDensityOfDiffuse) {
     for (const double cosine : {1.0, 0.6, -0.1})
-        expectSampling(bsdfOf(test::diffuse(0.5f)), at(cosine, 0.3), Side::Reflected, {0, 0, 1},
-                       1e6, fmt::format("diffuse at {}", cosine));
+        expectSampling(bsdfOf(diffuse(0.5f)), at(cosine, 0.3), Side::Reflected, {0, 0, 1}, 1e6,
+                       fmt::format("diffuse at {}", cosine));
 }
 
 TEST(BsdfSampling, FollowsTheDensityOfMetal) {
@@ -244,7 +243,7 @@ TEST(BsdfSampling, FollowsTheDensityOfMetal) {
         for (const double cosine : {1.0, 0.6, -0.1}) {
             const Vec3d out = at(cosine, 0.3);
             const Vec3d axis = roughness == 1 ? Vec3d{0, 0, 1} : Vec3d{-out.x, -out.y, out.z};
-            expectSampling(bsdfOf(test::whiteMetal(roughness)), out, Side::Reflected, axis,
+            expectSampling(bsdfOf(whiteMetal(roughness)), out, Side::Reflected, axis,
                            cellWidth(roughness), fmt::format("metal {} at {}", roughness, cosine));
         }
 }
@@ -254,7 +253,7 @@ TEST(BsdfSampling, FollowsTheDensityOfGlass) {
         for (const double eta : {1.5, 1 / 1.5})
             for (const double cosine : {1.0, 0.8, 0.2}) {
                 const Vec3d out = at(cosine, 0.3);
-                const Bsdf bsdf = bsdfOf(test::glass(roughness), flatPoint(1, eta));
+                const Bsdf bsdf = bsdfOf(glass(roughness), flatPoint(1, eta));
                 const Refraction r = refraction(cosine, eta);
                 const bool broad = roughness == 1;
                 const std::string what =
@@ -271,10 +270,13 @@ TEST(BsdfSampling, FollowsTheDensityOfGlass) {
 }
 
 TEST(BsdfSampling, FollowsTheDensityOfMixes) {
-    const std::vector<Material> materials{
-        test::diffuse(0.5f),         test::whiteMetal(0.5),        test::glass(0),
-        EmissiveMaterial{},          MixMaterial{0, 1, Rgb(0.3f)}, MixMaterial{0, 2, Rgb(0.6f)},
-        MixMaterial{3, 1, Rgb(0.4f)}};
+    const std::vector<Material> materials{diffuse(0.5f),
+                                          whiteMetal(0.5),
+                                          glass(0),
+                                          EmissiveMaterial{},
+                                          MixMaterial{0, 1, Rgb(0.3f)},
+                                          MixMaterial{0, 2, Rgb(0.6f)},
+                                          MixMaterial{3, 1, Rgb(0.4f)}};
     for (const std::uint32_t mix : {4u, 5u, 6u}) {
         const Bsdf bsdf(materials, mix, flatPoint(1, 1.5));
         const Vec3d out = at(0.6, 0.3);
@@ -284,8 +286,7 @@ TEST(BsdfSampling, FollowsTheDensityOfMixes) {
 
 /// What one lobe draws to the wrong side of the surface is not what the other one would draw there.
 TEST(BsdfSampling, FollowsTheDensityUnderShadingNormals) {
-    const std::vector<Material> materials{test::diffuse(0.5f), test::glass(0.8),
-                                          MixMaterial{0, 1, Rgb(0.5f)}};
+    const std::vector<Material> materials{diffuse(0.5f), glass(0.8), MixMaterial{0, 1, Rgb(0.5f)}};
     BsdfPoint point = flatPoint(1, 1.5);
     for (const double tilt : {1.0, 0.9, 0.4})
         for (const double cosine : {0.8, -0.5}) {
@@ -298,4 +299,4 @@ TEST(BsdfSampling, FollowsTheDensityUnderShadingNormals) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -8,7 +8,10 @@
 #include "woodcock/base/random.h"
 #include "woodcock/base/vec.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace surface;
+
 namespace {
 
 using Complex = std::complex<double>;
@@ -132,4 +135,4 @@ TEST(Schlick, MeetsBothEnds) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

@@ -6,7 +6,11 @@
 #include "woodcock/base/random.h"
 #include "woodcock/proof/support/statistics.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace surface;
+using namespace proof;
+
 namespace {
 
 Vec3d at(double cosine, double phi) {
@@ -133,4 +137,4 @@ TEST(Ggx, StandsTheEndsOfItsNumbers) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

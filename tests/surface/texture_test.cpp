@@ -7,7 +7,10 @@
 
 #include "tests/support/expect_error.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace surface;
+
 namespace {
 
 /// Rows from the top: 1 2 3 4 / 5 6 7 8.
@@ -65,9 +68,9 @@ TEST(TextureImage, KnowsItsMaximumAndMean) {
 
 TEST(TextureImage, RefusesNumbersThatDoNotFillIt) {
     for (const std::size_t count : {0u, 5u, 7u, 9u})
-        test::expectError(ErrorKind::Failure, "cannot have",
-                          [&] { TextureImage(2, 1, std::vector<float>(count)); });
-    test::expectError(ErrorKind::Failure, "0 x 1", [] { TextureImage(0, 1, {}); });
+        expectError(ErrorKind::Failure, "cannot have",
+                    [&] { TextureImage(2, 1, std::vector<float>(count)); });
+    expectError(ErrorKind::Failure, "0 x 1", [] { TextureImage(0, 1, {}); });
 }
 
 TEST(Texture, IsAColourOrAnImageTimesOne) {
@@ -78,4 +81,4 @@ TEST(Texture, IsAColourOrAnImageTimesOne) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

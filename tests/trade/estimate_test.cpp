@@ -8,7 +8,10 @@
 
 #include "woodcock/base/statistics.h"
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace trade;
+
 namespace {
 
 constexpr std::size_t pixels = 200;
@@ -102,4 +105,4 @@ TEST(MeanOf, OneNumberHasNoKnownError) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

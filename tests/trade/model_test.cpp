@@ -5,7 +5,10 @@
 
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace trade;
+
 namespace {
 
 /// Unbiased: variance 4 at half a second a sample.
@@ -83,4 +86,4 @@ TEST(Pareto, AnUncertainBiasTies) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test

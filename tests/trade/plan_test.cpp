@@ -5,7 +5,10 @@
 
 #include <cmath>
 
-namespace woodcock {
+namespace woodcock::test {
+
+using namespace trade;
+
 namespace {
 
 double secondsOf(const TradePlan& plan, const std::vector<PilotCost>& costs,
@@ -79,4 +82,4 @@ TEST(PictureSize, KeepsTheShape) {
 }
 
 }  // namespace
-}  // namespace woodcock
+}  // namespace woodcock::test
