@@ -169,13 +169,15 @@ const std::vector<std::string>& RenderedImage::notes() const { return impl_->not
 void RenderedImage::write(const fs::path& file) const {
     const scene::SceneDescription& scene = impl_->scene;
     const scene::OutputDescription& output = scene.output;
-    image::OutputSettings settings{.colour = image::ColorConfig(scene.ocio)};
-    settings.files = {file};
-    settings.half = output.half;
-    settings.layers = image::layersFromNames(output.layers);
-    settings.display = {output.display, output.view, output.look, output.exposure};
-    settings.withAlpha = scene::environmentIsHidden(scene);
-    settings.glows = scene::anythingGlows(scene);
+    image::ColorConfig colour(scene.ocio);
+    image::OutputSettings settings{
+        .files = {file},
+        .half = output.half,
+        .layers = image::layersFromNames(output.layers),
+        .display = {output.display, output.view, output.look, output.exposure},
+        .colour = std::move(colour),
+        .withAlpha = scene::environmentIsHidden(scene),
+        .glows = scene::anythingGlows(scene)};
     const render::RenderResult& result = impl_->result;
     image::Outputs(std::move(settings))
         .write(result.film,
