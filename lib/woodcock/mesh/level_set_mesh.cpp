@@ -93,7 +93,7 @@ SurfaceMesh levelSetMesh(const fs::path& path, const std::string& name, double a
         return meshOf(static_cast<const openvdb::FloatGrid&>(*grid), adaptivity, place);
     if (grid->isType<openvdb::DoubleGrid>())
         return meshOf(static_cast<const openvdb::DoubleGrid&>(*grid), adaptivity, place);
-    throw inputError("{} holds {} where float or double is expected", place, grid->valueType());
+    throw inputError("{} holds {}; expected float or double", place, grid->valueType());
 }
 
 }  // namespace woodcock::mesh
