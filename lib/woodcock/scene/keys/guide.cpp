@@ -41,8 +41,7 @@ std::string fallbackCell(const KeyInfo& key) {
 }
 
 std::string row(const KeyInfo& key) {
-    const std::string doc = key.doc.empty() ? "" : ": " + key.doc;
-    return fmt::format("| `{}` | {}{} | {} |\n", key.name, key.type, doc, fallbackCell(key));
+    return fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.type, fallbackCell(key), key.doc);
 }
 
 constexpr std::string_view beginMark = "<!-- keys: ", endMark = "<!-- end -->", markEnd = " -->";
@@ -61,8 +60,9 @@ std::vector<KeyList> allKeys() {
 }
 
 std::string guideTable(const KeyList& list) {
-    std::string text = "| key | value | default |\n|---|---|---|\n";
-    if (!list.tag.empty()) text += fmt::format("| `type` | `\"{}\"` | must be given |\n", list.tag);
+    std::string text = "| key | value | default | what it says |\n|---|---|---|---|\n";
+    if (!list.tag.empty())
+        text += fmt::format("| `type` | `\"{}\"` | must be given | |\n", list.tag);
     for (const KeyInfo& key : list.keys) text += row(key);
     return text;
 }

@@ -24,7 +24,7 @@ namespace woodcock::scene {
 /// What is said of a key, whatever it is a key of.
 struct KeyInfo {
     std::string name = {};
-    std::string doc = {};       ///< what it does, for the guide: goes on after the type
+    std::string doc = {};       ///< what it says, for the guide
     std::string type = {};      ///< in the guide's words; empty: that of its kind of value
     std::string fallback = {};  ///< in the guide's words; empty: that of the described structure
     std::string comment = {};   ///< stands behind the value where it is written

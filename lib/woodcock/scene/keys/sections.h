@@ -67,6 +67,9 @@ const KeyTable<mesh::FacetRing>& keysOf();
 template <>
 const KeyTable<InteriorDescription>& keysOf();
 
+/// The keys of a surface that are its shape, of which it has one; and `level_set`, of a file.
+std::vector<Key<SurfaceDescription>> shapeKeys();
+
 /// The lists of tables that a scene has: [[volume]] and so on.
 inline const std::array<std::string, 4> sceneLists{"volume", "material", "surface", "light"};
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/keys/medium.h"
 #include "woodcock/scene/keys/sections.h"
-#include "woodcock/scene/keys/shapes.h"
+#include "woodcock/scene/keys/values.h"
 
 namespace woodcock::scene {
 namespace {
@@ -49,8 +48,9 @@ Key<S> facets() {
                     "distance, turn }` of facets around y",
                 .type = "list",
                 .fallback = "none",
-                .example = "[{ angle = 0, distance = 1 }, { angle = 120, count = 3, distance = 2, "
-                           "turn = 10 }]",
+                .example =
+                    "[{ angle = 0, distance = 1 }, { angle = 120, count = 3, distance = 2, "
+                    "turn = 10 }]",
                 .beside = "facets = [{ angle = 90, distance = 1 }]"};
     key.read = [](const TomlValue& v, S& s, Base base) {
         FacetShape shape;
@@ -107,7 +107,7 @@ std::vector<Key<S>> shapeKeys() {
     return {
         keyAt<S>({.name = "file",
                   .doc = "a mesh (OBJ, PLY, STL, glTF), or a VDB, whose level set is the surface",
-                  .fallback = "none",
+                  .fallback = "this or another shape must be given",
                   .example = "\"b $$5.obj\"",
                   .beside = "file = \"a.obj\""},
                  file(&MeshShape::file), path()),

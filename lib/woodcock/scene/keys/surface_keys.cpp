@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/scene/keys/sections.h"
-#include "woodcock/scene/keys/shapes.h"
 #include "woodcock/scene/keys/values.h"
 
 namespace woodcock::scene {

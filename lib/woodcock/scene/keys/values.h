@@ -65,6 +65,9 @@ struct Transform {
 template <>
 const KeyTable<Transform>& keysOf();
 
+/// { min = [x, y, z], max = [x, y, z] }
+Value<Box3d> bounds();
+
 /// Scaled, then turned about x, y and z in this order (degrees), then moved.
 Affine3d placement(Vec3d translate, Vec3d rotate, Vec3d scale);
 /// The same of { translate, rotate, scale }; `what` is placed by it ("volume").
@@ -86,5 +89,14 @@ std::vector<Key<D>> placementKeys(Affine3d D::*member, std::string what, const s
                             .fallback = "identity"},
                            member, matrix())};
 }
+
+// What volumes and the media of surfaces say alike.
+
+/// sigma_a and sigma_s against scale and albedo.
+std::vector<Exclusion> coefficientExclusions();
+
+/// The sigma_a and sigma_s that a table's scale and albedo say; nothing where it has no scale.
+/// Throws Error{Input} on an albedo without a scale.
+std::optional<std::pair<Rgb, Rgb>> readScaleAndAlbedo(const TomlTable& table);
 
 }  // namespace woodcock::scene

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/keys/medium.h"
 #include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/keys/values.h"
 
 namespace woodcock::scene {
 namespace {
