@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "tests/support/keys_guide.h"
 #include "tests/support/paths.h"
-#include "woodcock/scene/keys/guide.h"
 #include "woodcock/scene/parse.h"
 #include "woodcock/scene/write.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/light_changes.h"
+#include "woodcock/scene/overrides.h"
 
 #include <gtest/gtest.h>
 

@@ -276,7 +276,8 @@ TEST(ParseErrors, OfRenderSettings) {
     EXPECT_EQ(sectionMistake("[render]\nmarch_estimate = \"jackknife\""),
               "scene.toml:4:18: render.march_estimate needs march_step: tracking takes no steps");
     EXPECT_EQ(sectionMistake("[render]\noctaves = 3\nsimilarity_after = 2"),
-              "scene.toml:4:11: render.octaves contradicts similarity_after: octaves have no paths "
+              "scene.toml:4:11: render.octaves cannot be used together with similarity_after: "
+              "octaves have no paths "
               "that go on");
     EXPECT_EQ(sectionMistake("[render]\nmajorant_scale = 0.5"),
               "scene.toml:4:18: render.majorant_scale is 0.5; it must lie between 1 and 1000");

@@ -6,7 +6,7 @@
 #include "tools/cycles/json.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/surface_bounds.h"
+#include "woodcock/scene/scene_bounds.h"
 #include "woodcock/scene/unit_shapes.h"
 
 namespace woodcock::tool {

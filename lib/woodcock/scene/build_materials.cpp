@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/load_textures.h"
+#include "woodcock/scene/load_surfaces.h"
 
 namespace woodcock::scene {
 namespace {

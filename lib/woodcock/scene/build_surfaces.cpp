@@ -8,7 +8,7 @@
 #include "woodcock/scene/build_materials.h"
 #include "woodcock/scene/build_medium.h"
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/surface_bounds.h"
+#include "woodcock/scene/scene_bounds.h"
 
 namespace woodcock::scene {
 namespace {

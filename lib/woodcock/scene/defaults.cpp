@@ -12,8 +12,8 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/choose_camera.h"
-#include "woodcock/scene/light_changes.h"
-#include "woodcock/scene/outline.h"
+#include "woodcock/scene/overrides.h"
+#include "woodcock/scene/scene_bounds.h"
 #include "woodcock/scene/rounding.h"
 #include "woodcock/scene/write.h"
 

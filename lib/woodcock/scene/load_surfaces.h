@@ -7,6 +7,7 @@
 
 #include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/scene/description.h"
+#include "woodcock/surface/texture.h"
 
 namespace woodcock::scene {
 
@@ -23,5 +24,16 @@ struct LoadedSurface {
 /// with the place in the scene.
 std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
                                         std::vector<std::string>& notes);
+
+/// The image of each material, each file read once; null where it has none. Throws Error{Input}
+/// with the place in the scene on images that cannot be read, and on such as would make a surface
+/// reflect more light than it gets.
+std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
+    const SceneDescription& scene);
+
+/// The description's colour times the image. What reflects is brought down to 1 where rounding put
+/// it above.
+surface::Texture makeTexture(const TextureDescription& description,
+                             std::shared_ptr<const surface::TextureImage> image);
 
 }  // namespace woodcock::scene

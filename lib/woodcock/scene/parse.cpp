@@ -3,7 +3,6 @@
 
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/keys/sections.h"
-#include "woodcock/scene/light_changes.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/quality.h"
 

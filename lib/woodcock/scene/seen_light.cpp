@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/light_changes.h"
+#include "woodcock/scene/overrides.h"
 
 namespace woodcock::scene {
 namespace {

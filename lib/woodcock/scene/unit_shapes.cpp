@@ -77,7 +77,7 @@ mesh::SurfaceMesh diskMesh(int sectors) {
         disk.mesh.triangles.push_back(
             {0, static_cast<std::uint32_t>(1 + i), static_cast<std::uint32_t>(1 + next)});
     }
-    const auto uv = [&](std::uint32_t i) -> Vec2f {
+    const auto uv = [&](std::uint32_t i) -> mesh::Vec2f {
         const Vec3f p = disk.mesh.points[i];
         return {(1 + p.x) / 2, (1 - p.z) / 2};
     };

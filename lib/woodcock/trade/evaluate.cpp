@@ -120,7 +120,7 @@ private:
         std::vector<double> flips;
         for (const Pixels& picture : pictures) {
             if (watch_.seconds() > flipSeconds_) return point;
-            flips.push_back(mesh::flip(picture));
+            flips.push_back(flip(picture));
         }
         point.flip = meanOf(flips);
         return point;

@@ -16,8 +16,6 @@ namespace woodcock::proof {
 
 namespace {
 
-using Estimate, RgbEstimate, evenAlpha, evenRadiance, evenTransmittance;
-
 constexpr const char* evenLight = "[[light]]\ntype = \"environment\"\nradiance = [1, 2, 4]\n";
 constexpr double lightColour[]{1, 2, 4};
 

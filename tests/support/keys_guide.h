@@ -6,7 +6,7 @@
 
 #include "woodcock/scene/keys/key.h"
 
-namespace woodcock::scene {
+namespace woodcock::test {
 
 /// What is said of a table of keys, whatever it describes.
 struct KeyList {
@@ -14,7 +14,7 @@ struct KeyList {
     std::string tag;            ///< of a light or a material: its type
     std::string outer, least;   ///< see KeyTable
     std::string path;           ///< see KeyTable
-    std::vector<KeyInfo> keys;  ///< each name once
+    std::vector<scene::KeyInfo> keys;  ///< each name once
 };
 
 /// All tables of a scene file.
@@ -27,4 +27,4 @@ std::string guideTable(const KeyList& list);
 /// anew. Throws Error{Input} on an unknown ID and a table without an end.
 std::string withGuideTables(const std::string& guide);
 
-}  // namespace woodcock::scene
+}  // namespace woodcock::test

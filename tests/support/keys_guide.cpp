@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/keys/guide.h"
+#include "tests/support/keys_guide.h"
 
 #include <sstream>
 
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
-namespace woodcock::scene {
+namespace woodcock::test {
+
+using namespace scene;
+
 namespace {
 
 template <class D>
@@ -88,4 +91,4 @@ std::string withGuideTables(const std::string& guide) {
     return text;
 }
 
-}  // namespace woodcock::scene
+}  // namespace woodcock::test
