@@ -19,6 +19,9 @@
 namespace {
 
 using namespace woodcock;
+using namespace woodcock::render;
+using namespace woodcock::scene;
+using namespace woodcock::trade;
 
 struct Options {
     int spp = 64, seeds = 4, reference = 4096, width = 120;

@@ -21,6 +21,8 @@
 namespace {
 
 using namespace woodcock;
+using namespace woodcock::bake;
+using namespace woodcock::grid;
 
 template <class Work>
 double seconds(const Work& work) {

@@ -17,6 +17,9 @@
 namespace {
 
 using namespace woodcock;
+using namespace woodcock::render;
+using namespace woodcock::scene;
+using namespace woodcock::trade;
 
 constexpr const char* glassText = R"(
 [[material]]

@@ -14,6 +14,7 @@
 namespace {
 
 using namespace woodcock;
+using namespace woodcock::medium;
 
 constexpr int side = 128;
 

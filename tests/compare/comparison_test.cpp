@@ -38,7 +38,7 @@ int found(NoiseFrom from, double gain, double falseAlarms, int runs) {
     int count = 0;
     for (int i = 0; i < runs; ++i) {
         const Picture a = rendered(from, 1, random), b = rendered(from, gain, random);
-        const Comparison c = compare(both(a, b), settings);
+        const Comparison c = compare::compare(both(a, b), settings);
         EXPECT_EQ(c.images.front().channels.front().errorsKnown, from != NoiseFrom::Scatter);
         if (c.images.front().differ) ++count;
     }
@@ -77,7 +77,7 @@ TEST(FalseAlarms, StayRareWhereNoiseHasALongTail) {
         const Picture rare = picture(80, 80, {"R"}, [&](int, int) {
             return uniform(random) < 0.2 ? 5 * bright(random) : 0.0;
         });
-        if (!compare(both(exact, rare), settings).images.front().tiles.empty()) ++alarms;
+        if (!compare::compare(both(exact, rare), settings).images.front().tiles.empty()) ++alarms;
     }
     EXPECT_LE(alarms, rate * runs + 4 * std::sqrt(rate * (1 - rate) * runs));
 }
@@ -97,7 +97,7 @@ TEST(Power, ADifferenceIsFoundWhereItIs) {
         return slope(x, y) + (x >= 16 && x < 24 && y >= 8 && y < 16 ? 0.02 : 0.0);
     });
     spot.planes[1] = clean.planes[1];  // in R alone
-    const Comparison c = compare(
+    const Comparison c = compare::compare(
         both(noisy(clean, even, true, random), noisy(spot, even, true, random)), CompareSettings{});
     const ImageComparison& image = c.images.front();
     ASSERT_TRUE(image.differ);
@@ -128,7 +128,7 @@ TEST(Comparison, StandardErrorsAreThoseOfManyRuns) {
                 noisy(picture(width, height, {"R"}, [](int x, int y) { return 1.5 * slope(x, y); }),
                       uneven, known, random);
             const ChannelComparison c =
-                compare(both(a, b), CompareSettings{}).images.front().channels.front();
+                compare::compare(both(a, b), CompareSettings{}).images.front().channels.front();
             biases.add(c.bias.value), ratios.add(c.ratio);
             biasError += c.bias.error / 400, ratioError += c.ratioError / 400;
         }
@@ -145,7 +145,7 @@ TEST(Comparison, StandardErrorsAreThoseOfManyRuns) {
 
 TEST(Comparison, EqualPicturesAreTheSame) {
     const Picture p = picture(width, height, {"R", "G", "B"}, slope);
-    const ImageComparison image = compare(both(p, p), CompareSettings{}).images.front();
+    const ImageComparison image = compare::compare(both(p, p), CompareSettings{}).images.front();
     EXPECT_FALSE(image.differ);
     EXPECT_EQ(image.channels[0].ratio, 1);
     EXPECT_EQ(image.channels[0].bias.error, 0);
@@ -158,7 +158,7 @@ TEST(Comparison, ConstantsDifferByMoreThanTheirDigits) {
     const auto differ = [&](double a, double b, double resolution) {
         Picture p = flat(a);
         p.resolution = resolution;
-        return compare(both(p, flat(b)), CompareSettings{}).images.front().differ;
+        return compare::compare(both(p, flat(b)), CompareSettings{}).images.front().differ;
     };
     EXPECT_FALSE(differ(0.5, 0.5 * (1 + 3e-4), 0x1p-11));
     EXPECT_TRUE(differ(0.5, 0.5 * (1 + 6e-4), 0x1p-11));
@@ -172,7 +172,7 @@ TEST(Comparison, DepthIsMeasuredAndNotTested) {
     Picture b = a;
     for (float& v : b.planes[1].values) v = 3;
     b.planes[1].values[0] = std::numeric_limits<float>::quiet_NaN();
-    const Comparison c = compare(both(a, b), CompareSettings{});
+    const Comparison c = compare::compare(both(a, b), CompareSettings{});
     const ImageComparison& image = c.images.front();
     EXPECT_FALSE(image.differ) << image.reason;
     EXPECT_TRUE(c.notes.empty());
@@ -184,7 +184,7 @@ TEST(Comparison, DepthIsMeasuredAndNotTested) {
 
 TEST(Comparison, NoFlipWithoutColour) {
     const Picture p = picture(16, 16, {"Z"}, slope);
-    EXPECT_FALSE(compare(both(p, p), CompareSettings{}).images.front().flip.has_value());
+    EXPECT_FALSE(compare::compare(both(p, p), CompareSettings{}).images.front().flip.has_value());
 }
 
 TEST(Comparison, NonFiniteValuesAreCountedAndLeftOut) {
@@ -192,7 +192,7 @@ TEST(Comparison, NonFiniteValuesAreCountedAndLeftOut) {
     Picture b = a;
     b.planes[1].values[5 + 16 * 3] = std::numeric_limits<float>::quiet_NaN();
     b.planes[1].values[6] = std::numeric_limits<float>::infinity();
-    const Comparison c = compare(both(a, b), CompareSettings{});
+    const Comparison c = compare::compare(both(a, b), CompareSettings{});
     const ImageComparison& image = c.images.front();
     EXPECT_TRUE(image.differ);
     EXPECT_NE(image.reason.find("2 values are NaN or infinite in only one of A and B"),
@@ -214,7 +214,7 @@ TEST(Comparison, NothingFiniteIsAnError) {
     const Picture b =
         picture(8, 8, {"R"}, [](int, int) { return std::numeric_limits<double>::quiet_NaN(); });
     expectError(ErrorKind::Input, "no pixel of channel R is finite in both",
-                [&] { compare(both(a, b), CompareSettings{}); });
+                [&] { compare::compare(both(a, b), CompareSettings{}); });
 }
 
 TEST(Tiles, CoverThePictureOnce) {

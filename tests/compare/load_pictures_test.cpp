@@ -202,7 +202,8 @@ TEST_F(LoadPictures, BytesKnowTheirRounding) {
     const auto near = write("near.png", picture);
     picture.value = [](int, int, std::size_t) { return 189.0 / 255; };
     const auto next = write("next.png", picture);
-    const Comparison c = compare(load({{light, {}, {}}, {near, {}, {}}, {next, {}, {}}}), {});
+    const Comparison c =
+        compare::compare(load({{light, {}, {}}, {near, {}, {}}, {next, {}, {}}}), {});
     // The slope of sRGB's curve at 188, times half a code.
     EXPECT_NEAR(c.pictures[1].planes[0].roundings[0],
                 2.4 / 1.055 * std::pow((188.0 / 255 + 0.055) / 1.055, 1.4) * 0.5 / 255, 1e-5);

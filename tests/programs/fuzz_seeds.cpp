@@ -10,6 +10,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using namespace woodcock::proof;
 using namespace woodcock::test;
 
 void writeScenes(const fs::path& directory) {

@@ -21,6 +21,7 @@
 namespace {
 
 using namespace woodcock;
+using namespace woodcock::scene;
 
 void renderFile(const std::string& file, bool repair) {
     SceneDescription scene =
@@ -28,10 +29,10 @@ void renderFile(const std::string& file, bool repair) {
                        {repair ? "volume[0].repair=true" : "volume[0].repair=false"});
     LoadedScene loaded = loadScene(scene);
     completeScene(scene, loaded);
-    RenderSettings settings;
+    render::RenderSettings settings;
     settings.width = settings.height = 4;
     settings.endSample = 1;
-    render(buildScene(scene, std::move(loaded)), settings);
+    render::render(buildScene(scene, std::move(loaded)), settings);
 }
 
 /// Repairs values that are refused, as far as that helps.

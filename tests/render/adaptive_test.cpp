@@ -42,10 +42,10 @@ TEST(Adaptive, ThreadsDoNotShow) {
     const Scene scene = sunnyFog();
     RenderSettings s = settings(24);
     s.threads = 1;
-    const Film one = render(scene, s).film;
+    const Film one = render::render(scene, s).film;
     for (const int threads : {2, 3, 0}) {
         s.threads = threads;
-        const Film many = render(scene, s).film;
+        const Film many = render::render(scene, s).film;
         for (int y = 0; y < s.height; ++y)
             for (int x = 0; x < s.width; ++x)
                 ASSERT_EQ(std::memcmp(&one.at(x, y), &many.at(x, y), sizeof(Film::Pixel)), 0)
@@ -61,14 +61,14 @@ double workOf(const RenderCounters& c) {
 TEST(Adaptive, CostsAsMuchWorkAndPutsItWhereTheFogIs) {
     for (const int samples : {1, 2, 3, 24, 100}) {
         RenderSettings s = settings(samples);
-        const RenderResult result = render(sunnyFog(), s);
+        const RenderResult result = render::render(sunnyFog(), s);
         EXPECT_EQ(result.reason, StopReason::Complete);
         EXPECT_EQ(result.endSample, samples);
         EXPECT_EQ(totalSamples(result.film), result.counters.paths);
         EXPECT_DOUBLE_EQ(result.film.meanSamples() * 41 * 35,
                          static_cast<double>(result.counters.paths));
         s.adaptive = false;
-        const RenderResult even = render(sunnyFog(), s);
+        const RenderResult even = render::render(sunnyFog(), s);
         EXPECT_NEAR(workOf(result.counters) / workOf(even.counters), 1, samples < 24 ? 0.1 : 0.03);
         if (samples < 24) continue;
         EXPECT_EQ(result.film.at(0, 0).samples, static_cast<std::uint64_t>(samples / 4));
@@ -80,12 +80,13 @@ TEST(Adaptive, CostsAsMuchWorkAndPutsItWhereTheFogIs) {
 TEST(Adaptive, FogGetsAsManySamplesBeforeAHiddenSky) {
     const auto samplesOfFog = [](const char* visible) {
         const Film film =
-            render(sunnyFog((std::string(
-                                 "type = \"sun\"\ndirection = [1, -2, 0]\nirradiance = 3\n"
+            render::render(
+                sunnyFog(
+                    (std::string("type = \"sun\"\ndirection = [1, -2, 0]\nirradiance = 3\n"
                                  "[[light]]\ntype = \"environment\"\nradiance = 0.3\nvisible = ") +
-                             visible + "\n")
-                                .c_str()),
-                   settings(64))
+                     visible + "\n")
+                        .c_str()),
+                settings(64))
                 .film;
         Moments fog;
         for (int y = 0; y < film.height(); ++y)
@@ -105,7 +106,7 @@ TEST(Adaptive, TheMeanIsThatOfEqualSamples) {
         RenderSettings s = settings(8);
         s.adaptive = adaptive;
         for (s.seed = firstSeed; s.seed < firstSeed + 40; ++s.seed)
-            means.add(meanRadiance(render(scene, s).film, 1));
+            means.add(meanRadiance(render::render(scene, s).film, 1));
         return Estimate(means);
     };
     expectAgree(meanOf(true, 0), meanOf(false, 1000), 0.01);
@@ -115,7 +116,7 @@ TEST(Adaptive, HasTheSmallerRelativeError) {
     const Scene scene = sunnyFog();
     RenderSettings s = settings(1024);
     s.adaptive = false, s.seed = 1000;
-    const Film truth = render(scene, s).film;
+    const Film truth = render::render(scene, s).film;
     // Relative to what is seen before a background as bright as the fog, as Film::noise() is.
     double light = 0, covered = 0;
     for (int y = 0; y < s.height; ++y)
@@ -126,7 +127,7 @@ TEST(Adaptive, HasTheSmallerRelativeError) {
         Moments m;
         s.adaptive = adaptive, s.endSample = 32;
         for (s.seed = 0; s.seed < 4; ++s.seed) {
-            const Film film = render(scene, s).film;
+            const Film film = render::render(scene, s).film;
             for (int y = 0; y < s.height; ++y)
                 for (int x = 0; x < s.width; ++x) {
                     const double t = truth.radiance(x, y)[1];
@@ -143,14 +144,14 @@ TEST(Adaptive, StopsAtTheNoiseAndAtTheTimeLimit) {
     const Scene scene = sunnyFog("type = \"environment\"\n");
     RenderSettings s = settings(1 << 30);
     s.noise = 0.02;
-    const RenderResult quiet = render(scene, s);
+    const RenderResult quiet = render::render(scene, s);
     EXPECT_EQ(quiet.reason, StopReason::NoiseReached);
     EXPECT_LT(quiet.film.noise(), 0.02);
     EXPECT_GT(quiet.film.noise(), 0.01) << "and not long after it";
     EXPECT_GT(quiet.film.mostSamples(), static_cast<std::uint64_t>(quiet.endSample));
     EXPECT_EQ(totalSamples(quiet.film), quiet.counters.paths);
     s.noise = 0, s.timeLimit = 0.3;
-    const RenderResult brief = render(scene, s);
+    const RenderResult brief = render::render(scene, s);
     EXPECT_EQ(brief.reason, StopReason::TimeLimit);
     EXPECT_GE(brief.film.fewestSamples(), 1u);
 }
@@ -158,7 +159,7 @@ TEST(Adaptive, StopsAtTheNoiseAndAtTheTimeLimit) {
 TEST(Adaptive, RefusesPartsOfASampleRange) {
     RenderSettings s = settings(16);
     s.firstSample = 8;
-    expectError(ErrorKind::Usage, "8:16", [&] { render(sunnyFog(), s); });
+    expectError(ErrorKind::Usage, "8:16", [&] { render::render(sunnyFog(), s); });
 }
 
 }  // namespace

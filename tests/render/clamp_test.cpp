@@ -86,7 +86,7 @@ TEST(Clamp, GivesTheExpectationOfTheLesser) {
     settings.width = settings.height = 32, settings.endSample = 64;
     settings.maxScatterings = 0;
     settings.approximations.clamp = 1;
-    const RenderResult result = render(scene, settings);
+    const RenderResult result = render::render(scene, settings);
     const double t = std::exp(-2.0);
     expectAgrees(evenRadiance(result.film), {0.5 * t, t, 0.25 * t}, 1e-2);
     const double paths = 32 * 32 * 64;

@@ -37,7 +37,7 @@ RenderResult featuresOf(const Scene& scene, int samples = 4096) {
     s.width = s.height = 8, s.endSample = samples;
     s.maxScatterings = 0;  // the picture itself does not matter
     s.featureLayers = true;
-    return render(scene, s);
+    return render::render(scene, s);
 }
 
 /// Of all pixels, which are alike.
@@ -149,9 +149,9 @@ TEST(FeatureLayers, ThePictureIsTheSame) {
     const Scene scene = ball(5);
     RenderSettings s;
     s.width = s.height = 8, s.endSample = 8;
-    const Film without = render(scene, s).film;
+    const Film without = render::render(scene, s).film;
     s.featureLayers = true;
-    const Film with = render(scene, s).film;
+    const Film with = render::render(scene, s).film;
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {
             EXPECT_EQ(with.radiance(x, y), without.radiance(x, y));

@@ -42,7 +42,7 @@ TEST(MarchedPicture, FineStepsReflectAndTransmitAsASlabDoes) {
     const proof::Lab lab({});
     const auto answer = [&](double depth, double albedo, double g, double step, bool jackknife) {
         const Scene scene = slab(lab, depth, albedo, g);
-        return evenRadiance(render(scene, settingsOf(32, 192, step, jackknife)).film);
+        return evenRadiance(render::render(scene, settingsOf(32, 192, step, jackknife)).film);
     };
     const RgbEstimate thin = answer(1, 0.9, 0.5, 0.5, true);
     expectAgrees(thin[0], .129793, 5e-3);
@@ -60,7 +60,7 @@ TEST(MarchedPicture, EveryPixelOfAGreySlabIsTheLight) {
     const Scene scene =
         slab(lab, 3, 1, 0.5, "[[light]]\ntype = \"environment\"\nradiance = [0.5, 0.5, 0.5]\n");
     for (double step : {0.3, 1000.0}) {
-        const Film film = render(scene, settingsOf(8, 4, step)).film;
+        const Film film = render::render(scene, settingsOf(8, 4, step)).film;
         for (int y = 0; y < 8; ++y)
             for (int x = 0; x < 8; ++x) EXPECT_EQ(film.radiance(x, y)[0], 0.5f) << x << ", " << y;
     }
@@ -81,7 +81,7 @@ TEST(MarchedPicture, WithinSurfacesIsExactWhereMediaAreHomogeneous) {
         for (std::uint64_t seed = 0; seed < 24; ++seed) {
             RenderSettings settings = settingsOf(16, 16, step);
             settings.seed = seed;
-            const Film film = render(scene, settings).film;
+            const Film film = render::render(scene, settings).film;
             for (int c = 0; c < 3; ++c)
                 seeds[static_cast<std::size_t>(c)].add(meanRadiance(film, c));
         }
@@ -95,9 +95,9 @@ TEST(MarchedPicture, ThreadsLeaveNoTrace) {
     const Scene scene = slab(lab, 2, 0.9, 0.75);
     RenderSettings settings = settingsOf(24, 4, 0.7);
     settings.threads = 1;
-    const Film one = render(scene, settings).film;
+    const Film one = render::render(scene, settings).film;
     settings.threads = 4;
-    const Film four = render(scene, settings).film;
+    const Film four = render::render(scene, settings).film;
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 24; ++x) EXPECT_EQ(one.radiance(x, y), four.radiance(x, y));
 }
@@ -106,7 +106,7 @@ TEST(MarchedPicture, RefusesTooManyStepsBeforeItRenders) {
     const proof::Lab lab({});
     const Scene scene = slab(lab, 2, 0.9, 0.75);
     expectError(ErrorKind::Usage, "march_step is 1e-06 voxels",
-                [&] { render(scene, settingsOf(8, 1, 1e-6)); });
+                [&] { render::render(scene, settingsOf(8, 1, 1e-6)); });
 }
 
 }  // namespace

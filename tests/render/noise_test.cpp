@@ -29,7 +29,7 @@ Scene smoke(const std::string& sky, double height = 3, const std::string& volume
 double noiseOf(const Scene& scene, int size, int samples = 16, std::uint64_t seed = 0) {
     RenderSettings s;
     s.width = s.height = size, s.endSample = samples, s.seed = seed;
-    return render(scene, s).film.noise();
+    return render::render(scene, s).film.noise();
 }
 
 TEST(Noise, IsTheSameWithAHiddenSky) {
@@ -55,10 +55,10 @@ TEST(Noise, IsTheSameInAWideAndANarrowFrame) {
 Film independentSamples(const Scene& scene, int size, int samples, std::uint64_t firstSeed) {
     RenderSettings s;
     s.width = s.height = size, s.endSample = 1, s.seed = firstSeed;
-    Film film = render(scene, s).film;
+    Film film = render::render(scene, s).film;
     for (int i = 1; i < samples; ++i) {
         ++s.seed;
-        film.merge(render(scene, s).film);
+        film.merge(render::render(scene, s).film);
     }
     return film;
 }
@@ -126,7 +126,7 @@ TEST(Noise, EndsARenderOfNothing) {
     const Scene nothing = sceneFrom(
         "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_s = 1\n"
         "[[light]]\ntype = \"environment\"\n[camera]\neye = [0, 0, 9]\nlook_at = [0, 0, 99]\n");
-    const RenderResult result = render(nothing, s);
+    const RenderResult result = render::render(nothing, s);
     EXPECT_EQ(result.reason, StopReason::NoiseReached);
     EXPECT_EQ(result.film.noise(), 0);
 }

@@ -26,7 +26,7 @@ RgbEstimate mean(const Scene& scene, int octaves, std::optional<int> maxScatteri
         s.width = s.height = 16, s.endSample = samples, s.seed = seed;
         s.maxScatterings = maxScatterings;
         s.approximations.octaves = octaves;
-        const RgbEstimate e = evenRadiance(render(scene, s).film);
+        const RgbEstimate e = evenRadiance(render::render(scene, s).film);
         for (std::size_t c = 0; c < 3; ++c) m[c].add(e[c].mean);
     }
     return {Estimate(m[0]), Estimate(m[1]), Estimate(m[2])};
@@ -165,7 +165,7 @@ TEST(Octaves, ContradictSimilarity) {
     s.approximations.octaves = 2;
     s.approximations.similarityAfter = 3;
     expectError(ErrorKind::Usage, "octaves and similarity exclude each other",
-                [&] { render(scene, s); });
+                [&] { render::render(scene, s); });
 }
 
 }  // namespace

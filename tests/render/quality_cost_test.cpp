@@ -45,7 +45,7 @@ double workOf(const std::string& quality, const std::string& scene, int spp,
         scene + around + "quality = \"" + quality + "\"\nspp = " + std::to_string(spp),
         "scene.toml", directory);
     const Scene built = buildScene(description, loadScene(description));
-    const RenderCounters c = render(built, renderSettings(description.render)).counters;
+    const RenderCounters c = render::render(built, renderSettings(description.render)).counters;
     return static_cast<double>(c.paths + c.scatterings + c.shadowRays + c.distanceSegments +
                                c.distanceCollisions + c.shadowSegments + c.shadowCollisions +
                                c.surfaceRays);

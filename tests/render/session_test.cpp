@@ -60,13 +60,13 @@ TEST(Session, ThreadsDoNotShow) {
     const Scene scene = fog();
     RenderSettings s = settings();
     s.threads = 1;
-    const RenderResult one = render(scene, s);
+    const RenderResult one = render::render(scene, s);
     EXPECT_EQ(one.reason, StopReason::Complete);
     EXPECT_EQ(one.endSample, 8);
     EXPECT_EQ(one.counters.paths, 41u * 35u * 8u);
     for (const int threads : {2, 3, 0}) {
         s.threads = threads;
-        const RenderResult many = render(scene, s);
+        const RenderResult many = render::render(scene, s);
         expectSameBits(one.film, many.film);
         EXPECT_EQ(one.counters.distanceCollisions, many.counters.distanceCollisions);
     }
@@ -75,11 +75,11 @@ TEST(Session, ThreadsDoNotShow) {
 TEST(Session, CropsShowTheSamePixels) {
     const Scene scene = fog();
     RenderSettings s = settings();
-    const RenderResult whole = render(scene, s);
+    const RenderResult whole = render::render(scene, s);
     for (const Film::Window crop :
          {Film::Window{0, 0, 1, 1}, {13, 5, 40, 18}, {16, 16, 32, 32}, {40, 0, 41, 35}}) {
         s.crop = crop;
-        const RenderResult part = render(scene, s);
+        const RenderResult part = render::render(scene, s);
         EXPECT_EQ(part.film.crop(), crop);
         expectSameBits(part.film, whole.film);
     }
@@ -88,11 +88,11 @@ TEST(Session, CropsShowTheSamePixels) {
 TEST(Session, SampleRangesMerge) {
     const Scene scene = fog();
     RenderSettings s = settings(41, 35, 22);
-    const RenderResult whole = render(scene, s);
+    const RenderResult whole = render::render(scene, s);
     s.endSample = 9;
-    RenderResult merged = render(scene, s);
+    RenderResult merged = render::render(scene, s);
     s.firstSample = 9, s.endSample = 22;
-    merged.film.merge(render(scene, s).film);
+    merged.film.merge(render::render(scene, s).film);
     for (int y = 0; y < 35; ++y)
         for (int x = 0; x < 41; ++x) {
             EXPECT_EQ(merged.film.at(x, y).samples, 22u);
@@ -113,7 +113,7 @@ TEST(Session, SeedsAreIndependent) {
         RenderSettings s = settings(48, 48, 16);
         s.seed = seed;
         s.crop = Film::Window{16, 16, 32, 32};  // all fog
-        return render(scene, s).film;
+        return render::render(scene, s).film;
     };
     const Film a = picture(1), b = picture(2), c = picture(1ull << 63);
     int middle = 0, same = 0;
@@ -134,7 +134,7 @@ TEST(Session, NothingIsNotFinite) {
           "sigma_s = [1e12, 1, 1e-12]\n", "sigma_a = [1e12, 1, 0]\nsigma_s = [1, 1e-12, 1]\n"}) {
         RenderSettings s = settings(16, 16, 4);
         s.maxScatterings = 100;
-        const RenderResult result = render(fog(sigma), s);
+        const RenderResult result = render::render(fog(sigma), s);
         EXPECT_EQ(result.film.nonFiniteCount(), 0u) << sigma;
     }
 }
@@ -142,7 +142,7 @@ TEST(Session, NothingIsNotFinite) {
 TEST(Session, StopsAtTheTimeLimit) {
     RenderSettings s = settings(64, 64, 1 << 30);
     s.timeLimit = 0.2;
-    const RenderResult result = render(fog(), s);
+    const RenderResult result = render::render(fog(), s);
     EXPECT_EQ(result.reason, StopReason::TimeLimit);
     EXPECT_GE(result.endSample, 1);
     EXPECT_LT(result.endSample, 1 << 30);
@@ -159,7 +159,7 @@ TEST(Session, StopsAtTheTimeLimitWhatHasNoEnd) {
         "[[light]]\ntype = \"environment\"\n[camera]\neye = [0, 0, 0]\nlook_at = [0, 0, 1]\n");
     RenderSettings s = settings(64, 64, 1);
     s.timeLimit = 0.2;
-    const RenderResult result = render(scene, s);
+    const RenderResult result = render::render(scene, s);
     EXPECT_EQ(result.reason, StopReason::TimeLimit);
     EXPECT_EQ(result.endSample, 0);
     EXPECT_GT(result.film.pixelsWithoutSamples(), 0U);
@@ -169,12 +169,12 @@ TEST(Session, StopsAtTheTimeLimitWhatHasNoEnd) {
 TEST(Session, StopsAtTheNoise) {
     RenderSettings s = settings(32, 32, 1 << 30);
     s.noise = 0.05;
-    const RenderResult result = render(fog(), s);
+    const RenderResult result = render::render(fog(), s);
     EXPECT_EQ(result.reason, StopReason::NoiseReached);
     EXPECT_LT(result.film.noise(), 0.05);
     EXPECT_GT(result.film.noise(), 0.02);  // and not long after it
     s.noise = 1e-9, s.endSample = 16;
-    EXPECT_EQ(render(fog(), s).reason, StopReason::Complete);
+    EXPECT_EQ(render::render(fog(), s).reason, StopReason::Complete);
 }
 
 /// What an interrupted render leaves is the beginning of the whole one, in every pixel.
@@ -182,8 +182,8 @@ TEST(Session, InterruptionKeepsWholeSamples) {
     const Scene scene = fog();
     RenderSettings s = settings(80, 64, 1 << 30);
     int calls = 0;
-    const RenderResult stopped =
-        render(scene, s, [&](const RenderProgress& p) { return ++calls < 3 || p.samples < 2; });
+    const RenderResult stopped = render::render(
+        scene, s, [&](const RenderProgress& p) { return ++calls < 3 || p.samples < 2; });
     EXPECT_EQ(stopped.reason, StopReason::Interrupted);
     ASSERT_GE(stopped.endSample, 2);
     // Tiles that were ready when the stop came may hold one pass more, all their pixels alike.
@@ -198,7 +198,7 @@ TEST(Session, InterruptionKeepsWholeSamples) {
     for (const auto& [samples, windows] : tiles) {
         s.crop = windows.front();
         s.endSample = static_cast<int>(samples);
-        expectSameBits(render(scene, s).film, stopped.film);
+        expectSameBits(render::render(scene, s).film, stopped.film);
         for (const Film::Window& w : windows)
             for (int y = w.y0; y < w.y1; ++y)
                 for (int x = w.x0; x < w.x1; ++x) EXPECT_EQ(stopped.film.at(x, y).samples, samples);
@@ -208,7 +208,7 @@ TEST(Session, InterruptionKeepsWholeSamples) {
 TEST(Session, TellsItsProgress) {
     std::vector<RenderProgress> told;
     RenderSettings s = settings(64, 64, 64);
-    render(fog(), s, [&](const RenderProgress& p) { return told.push_back(p), true; });
+    render::render(fog(), s, [&](const RenderProgress& p) { return told.push_back(p), true; });
     ASSERT_FALSE(told.empty());
     for (std::size_t i = 1; i < told.size(); ++i) {
         EXPECT_GE(told[i].fraction, told[i - 1].fraction);
@@ -223,13 +223,13 @@ TEST(Session, RefusesWhatIsEmpty) {
     const Scene scene = fog();
     RenderSettings s = settings();
     s.width = 0;
-    expectError(ErrorKind::Usage, "0 x 35", [&] { render(scene, s); });
+    expectError(ErrorKind::Usage, "0 x 35", [&] { render::render(scene, s); });
     s = settings();
     s.firstSample = 8;
-    expectError(ErrorKind::Usage, "8:8", [&] { render(scene, s); });
+    expectError(ErrorKind::Usage, "8:8", [&] { render::render(scene, s); });
     s = settings();
     s.crop = Film::Window{10, 10, 42, 20};
-    expectError(ErrorKind::Usage, "10,10,42,20", [&] { render(scene, s); });
+    expectError(ErrorKind::Usage, "10,10,42,20", [&] { render::render(scene, s); });
 }
 
 }  // namespace

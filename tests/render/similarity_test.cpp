@@ -47,7 +47,7 @@ RenderResult draw(const Scene& scene, std::optional<int> after, RenderSettings s
     s.width = 24, s.height = 16, s.endSample = 8;
     s.depthLayers = true;
     s.approximations.similarityAfter = after;
-    return render(scene, s);
+    return render::render(scene, s);
 }
 
 void expectSameBits(const Film& a, const Film& b) {
@@ -130,7 +130,7 @@ TEST_P(SimilarSlab, FromTheCameraOnIsTheReducedOneExactly) {
     RenderSettings settings;
     settings.width = settings.height = 32, settings.endSample = row.samples;
     settings.approximations.similarityAfter = 0;
-    const RgbEstimate seen = evenRadiance(render(scene, settings).film);
+    const RgbEstimate seen = evenRadiance(render::render(scene, settings).film);
     const double scattering = row.albedo * (1 - row.g), absorption = 1 - row.albedo;
     const double extinction = scattering + absorption;
     const oracle::Face expected = answer(row.depth * extinction, 1 - absorption / extinction, 0);
@@ -148,10 +148,10 @@ TEST(Similarity, IsNotMarchedThroughAlbedoGrids) {
     RenderSettings settings;
     settings.width = settings.height = 2, settings.endSample = 1;
     settings.approximations.similarityAfter = 0;
-    EXPECT_NO_THROW(render(scene, settings));
+    EXPECT_NO_THROW(render::render(scene, settings));
     settings.approximations.marchStep = 1;
     expectError(ErrorKind::Usage, "march_step cannot be used together with similarity",
-                [&] { render(scene, settings); });
+                [&] { render::render(scene, settings); });
 }
 
 /// What similarity costs a thick conservative slab is little, by tables alone.
@@ -174,7 +174,7 @@ TEST(SimilarSlab, IsBetterTheLaterItComes) {
     RenderSettings settings;
     settings.width = settings.height = 32, settings.endSample = 96;
     settings.approximations.similarityAfter = 16;
-    const Estimate late = evenRadiance(render(scene, settings).film)[0];
+    const Estimate late = evenRadiance(render::render(scene, settings).film)[0];
     EXPECT_LT(late.error, 0.005 * truth);
     const double atOnce = answer(depth * (1 - g), 1, 0).reflectance[0];
     EXPECT_LT(std::abs(late.mean - truth) + 4 * late.error, std::abs(atOnce - truth));

@@ -32,7 +32,7 @@ RgbEstimate ground(const std::string& sun, bool transparent, int samples) {
     settings.width = settings.height = 16;
     settings.endSample = samples;
     settings.approximations.transparentShadows = transparent;
-    return evenRadiance(render(scene, settings).film);
+    return evenRadiance(render::render(scene, settings).film);
 }
 
 TEST(TransparentShadows, GoStraightThroughBothFaces) {

@@ -48,7 +48,8 @@ TEST(ExampleScenes, RenderWhereTheyNeedNoFile) {
         settings.width = 32;
         settings.height = 27;
         settings.endSample = 4;
-        const RenderResult result = render(buildScene(description, std::move(loaded)), settings);
+        const RenderResult result =
+            render::render(buildScene(description, std::move(loaded)), settings);
         EXPECT_EQ(result.film.nonFiniteCount(), 0u);
         EXPECT_GT(result.film.alpha(16, 13), 0.2f) << file;
         // A ground reaches into the corner.

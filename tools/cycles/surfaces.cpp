@@ -108,7 +108,7 @@ void refuseReplacement(const scene::SceneDescription& scene, const scene::Loaded
         return all;
     };
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (overlap(bounds, mesh::boundsOf(i)))
+        if (overlap(bounds, boundsOf(i)))
             throw cyclesRefusal(place, "a surface that replaces volume[{}] inside it", i);
 }
 

@@ -261,7 +261,7 @@ public:
 
         loadStart_ = std::chrono::steady_clock::now();
         load();
-        if (options_.rendersImages()) render::render(outputs);
+        if (options_.rendersImages()) render(outputs);
     }
 
 private:
