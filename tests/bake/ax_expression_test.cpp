@@ -382,7 +382,7 @@ TEST_F(AxExpressionTest, TextAndWhatHasNoDefinedValueIsRefused) {
     expectRefused("@density = atof(\"1\");", "1:17: text has no use here");
     expectRefused("if (@density > 0.5) return; @density = hash(\"abc\");", "1:45: text has no use");
     expectRefused("s@name = 1;", "1:1: text has no use here");
-    expectRefused("@density = 1 << 32;", "1:12: bits may be shifted by a number from 0 to 31");
+    expectRefused("@density = 1 << 32;", "1:12: bits may be shifted by a constant from 0 to 31");
     expectRefused("int a = 1; a >>= getcoordx();", "1:12: bits may be shifted");
     std::string nested;
     for (int i = 0; i < 40; ++i) nested += "for (;;) ";

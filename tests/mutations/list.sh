@@ -111,8 +111,9 @@ defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of
 
 defect "all octaves come through the first one's medium" 'Octaves.*' "" \
     lib/woodcock/render/batch_tracer_approximate_media.h \
-    'return {static_cast<std::uint8_t>(1 + i), octave::total(octaves), octave::phase(i)};' \
-    'return {1, octave::total(octaves), octave::phase(i)};'
+    'return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves),
+            medium::octave::phase(i)};' \
+    'return {1, medium::octave::total(octaves), medium::octave::phase(i)};'
 
 defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
     $media \

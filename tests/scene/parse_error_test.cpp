@@ -105,7 +105,7 @@ TEST(ParseErrors, OfVolumes) {
         "sigma_a and "
         "sigma_s say what scale and albedo say (sigma_t = scale x density, sigma_s = albedo x "
         "sigma_t)");
-    EXPECT_EQ(volumeMistake("albedo_grid = \"Cd\"\nsigma_a = 1").substr(0, 56),
+    EXPECT_EQ(volumeMistake("albedo_grid = \"Cd\"\nsigma_a = 1").substr(0, 71),
               "scene.toml:4:11: volume[0].sigma_a cannot be used together with albedo_");
     EXPECT_EQ(volumeMistake("scale = -1"),
               "scene.toml:3:9: volume[0].scale is -1; it must not be negative");
@@ -137,7 +137,7 @@ TEST(ParseErrors, OfBoxes) {
     EXPECT_EQ(mistakeIn(box + "scale = 1\ndensity = \"d\""),
               "scene.toml:4:11: volume[0].density needs a file: a box holds constant coefficients "
               "and no grids");
-    EXPECT_EQ(mistakeIn(box + "file = \"a.vdb\"\nscale = 1").substr(0, 65),
+    EXPECT_EQ(mistakeIn(box + "file = \"a.vdb\"\nscale = 1").substr(0, 80),
               "scene.toml:2:7: volume[0].box cannot be used together with file; give one of the");
     EXPECT_EQ(mistakeIn("[[volume]]\nbox = { min = [0, 0, 0], max = [1, 0, 1] }\nscale = 1"),
               "scene.toml:2:36: volume[0].box.max[1] is 0; it must exceed min[1], which is 0");
@@ -164,7 +164,7 @@ TEST(ParseErrors, OfTransforms) {
         "scene.toml:3:10: volume[0].matrix has 3 elements; expected four rows of four numbers");
     EXPECT_EQ(volumeMistake("matrix = [[1, 0, 0, inf], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
               "scene.toml:3:21: volume[0].matrix[0][3] is inf; it must be finite");
-    EXPECT_EQ(volumeMistake("transform = {}\nmatrix = []").substr(0, 58),
+    EXPECT_EQ(volumeMistake("transform = {}\nmatrix = []").substr(0, 73),
               "scene.toml:3:13: volume[0].transform cannot be used together with matrix;");
 }
 

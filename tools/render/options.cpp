@@ -170,8 +170,8 @@ void RenderOptions::addTo(CLI::App& command) {
            "\"volume[0].file=smoke.${FRAME}.vdb\" -o \"smoke.${FRAME}.png\"; done");
     refuse(
         command, "--denoise",
-        "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for (README, "
-        "For denoisers)");
+        "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for "
+        "(tools/render/README.md, For denoisers)");
 }
 
 SceneInput RenderOptions::sceneInput() const {
