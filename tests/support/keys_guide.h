@@ -10,10 +10,10 @@ namespace woodcock::test {
 
 /// What is said of a table of keys, whatever it describes.
 struct KeyList {
-    std::string id;             ///< "volume.blackbody"
-    std::string tag;            ///< of a light or a material: its type
-    std::string outer, least;   ///< see KeyTable
-    std::string path;           ///< see KeyTable
+    std::string id;                    ///< "volume.blackbody"
+    std::string tag;                   ///< of a light or a material: its type
+    std::string outer, least;          ///< see KeyTable
+    std::string path;                  ///< see KeyTable
     std::vector<scene::KeyInfo> keys;  ///< each name once
 };
 

@@ -467,7 +467,7 @@ TEST_F(Convert, ColumnsOfPointsAreSaidAndChosen) {
     for (const char* said : {"column 4 is not used", "--columns x,y,z,radius"})
         EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
     expectDone("a.xyz", "b.vdb", {"--voxel", "0.5", "--columns", "x,y,z,radius"});
-    expectRefused(2, "--columns is for tables of points", "a.raw", "c.vdb",
+    expectRefused(2, "--columns is for these formats: ply and points", "a.raw", "c.vdb",
                   {"--dims", "12,10,9", "--type", "f32", "--columns", "x,y,z"});
 }
 

@@ -168,10 +168,9 @@ void RenderOptions::addTo(CLI::App& command) {
            "one call draws one frame. Save a scene by --write-scene shot.toml, and loop: for FRAME "
            "in 0001 0002 0003; do woodcock render shot.toml --set "
            "\"volume[0].file=smoke.${FRAME}.vdb\" -o \"smoke.${FRAME}.png\"; done");
-    refuse(
-        command, "--denoise",
-        "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for "
-        "(tools/render/README.md, For denoisers)");
+    refuse(command, "--denoise",
+           "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for "
+           "(tools/render/README.md, For denoisers)");
 }
 
 SceneInput RenderOptions::sceneInput() const {

@@ -58,12 +58,12 @@ void checkInputOptions(const Format& from, const ConvertOptions& options) {
     if (!takes.layout && (options.dims || options.type || options.channels || options.bigEndian ||
                           options.headerBytes))
         throw usageError(
-            "--dims, --type, --channels, --endian and --header are for raw files; this one is {} "
+            "--dims, --type, --channels, --endian and --header are for raw files; the input is {} "
             "(--from raw reads it as numbers)",
             from.what);
     const auto refuse = [&](const char* option, bool given, bool InputOptions::*taken) {
         if (given && !(takes.*taken))
-            throw usageError("{} is for {}; this one is {}", option,
+            throw usageError("{} is for these formats: {}; the input is {}", option,
                              namesWhere([&](const Format& f) { return f.takes.*taken; }),
                              from.what);
     };

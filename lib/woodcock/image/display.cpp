@@ -23,7 +23,7 @@ namespace OCIO = OCIO_NAMESPACE;
 namespace woodcock {
 /// data/ocio/woodcock.ocio, compiled in.
 extern const std::string_view shippedOcioConfig;
-}
+}  // namespace woodcock
 
 namespace woodcock::image {
 

@@ -13,8 +13,8 @@
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/choose_camera.h"
 #include "woodcock/scene/overrides.h"
-#include "woodcock/scene/scene_bounds.h"
 #include "woodcock/scene/rounding.h"
+#include "woodcock/scene/scene_bounds.h"
 #include "woodcock/scene/write.h"
 
 namespace woodcock::scene {

@@ -202,7 +202,8 @@ void checkRender(const TomlTable& table, R& r) {
     if (const auto v = table.find("march_estimate"); v && !(a.marchStep > 0))
         throw v->error("needs march_step: tracking takes no steps");
     if (const auto v = table.find("octaves"); v && a.octaves > 0 && a.similarityAfter)
-        throw v->error("cannot be used together with similarity_after: octaves have no paths that go on");
+        throw v->error(
+            "cannot be used together with similarity_after: octaves have no paths that go on");
 }
 
 }  // namespace
