@@ -47,8 +47,8 @@ Key<C> matrixKey() {
     Key<C> key;
     key.info = {.name = "matrix",
                 .doc =
-                    "instead of these: world from camera, which looks along -z with +y up; no "
-                    "shear; its scale is ignored",
+                    "instead of these three: world from camera, which looks along -z with +y up. "
+                    "It must not shear. Its scale is ignored",
                 .type = matrix().type,
                 .fallback = "none",
                 .comment = "world from camera, which looks along -z",
@@ -100,8 +100,8 @@ std::vector<Key<C>> lensKeys() {
 std::vector<Key<C>> placeKeys() {
     return {
         key({.name = "shift",
-             .doc = "heights of the picture: moves the film, which then shows what lies there, "
-                    "without turning the camera (and keeps verticals upright)",
+             .doc = "moves the film by so many heights of the picture. The camera does not turn, "
+                    "so verticals stay upright",
              .comment = "of the film, in heights of the picture: right, up"},
             &C::shift,
             [] {
@@ -114,11 +114,11 @@ std::vector<Key<C>> placeKeys() {
                 return shift;
             }()),
         key({.name = "orbit",
-             .doc = "degrees by which the camera is turned to its right, about the up axis, around "
-                    "what it looks at (a `matrix`: around the middle of the scene); lights stay. A "
-                    "camera that is *chosen* keeps one distance for all angles then, from which "
-                    "every side fits. `render --orbit DEGREES` says the same. What is saved is the "
-                    "turned camera",
+             .doc = "turns the camera to its right by so many degrees, about the up axis, around "
+                    "what it looks at (with a `matrix`: around the middle of the scene). Lights "
+                    "stay. A camera that is *chosen* then keeps one distance for all angles, from "
+                    "which every side fits. `render --orbit DEGREES` does the same. A scene that "
+                    "is saved has the turned camera",
              .comment = "degrees to its right, around what it sees"},
             &C::orbit, number({-1e6, 1e6})),
         poseKey({.name = "eye",
@@ -130,7 +130,7 @@ std::vector<Key<C>> placeKeys() {
                  .fallback = "*chosen* to frame the volumes and surfaces"},
                 &LookAt::target, &PartialPose::target),
         poseKey({.name = "up",
-                 .doc = "direction that is upwards in the picture",
+                 .doc = "the direction that is upwards in the picture",
                  .fallback = "`[0, 1, 0]`; where eye or look_at is chosen for volumes that Blender "
                              "wrote, `[0, 0, 1]`"},
                 &LookAt::up, &PartialPose::up),

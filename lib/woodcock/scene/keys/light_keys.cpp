@@ -31,12 +31,13 @@ Key<Sun> placeKey(KeyInfo info, M SunPlace::*member, Value<M> value) {
 }
 
 Key<Sun> direction() {
-    Key<Sun> k = key({.name = "direction",
-                      .doc = "the way its light travels; or, instead of it, the next three",
-                      .fallback = "that or `elevation` must be given",
-                      .comment = "the way its light travels",
-                      .always = true},
-                     &Sun::direction, vector());
+    Key<Sun> k = key(
+        {.name = "direction",
+         .doc = "the direction in which its light travels. The next three keys may stand instead",
+         .fallback = "that or `elevation` must be given",
+         .comment = "the way its light travels",
+         .always = true},
+        &Sun::direction, vector());
     k.write = [write = k.write](const Sun& sun, const SceneWriter& out) {
         return sun.place ? std::nullopt : write(sun, out);
     };
@@ -47,28 +48,30 @@ std::vector<Key<Sun>> sunKeys() {
     return {
         direction(),
         placeKey({.name = "elevation",
-                  .doc = "degrees above the horizon, of where it stands",
+                  .doc = "where it stands, in degrees above the horizon",
                   .fallback = "none",
                   .comment = "degrees above the horizon",
                   .always = true},
                  &SunPlace::elevation, number({-90, 90})),
         placeKey({.name = "azimuth",
-                  .doc = "degrees clockwise from above: 0 towards -z (`up = \"z\"`: +y), 90 "
-                         "towards +x",
+                  .doc = "where it stands, in degrees clockwise as seen from above: 0 is towards "
+                         "-z (with `up = \"z\"`: +y), 90 towards +x",
                   .fallback = "0",
                   .comment = "degrees, clockwise from above",
                   .always = true},
                  &SunPlace::azimuth, number()),
-        placeKey({.name = "up", .doc = "for `elevation` and `azimuth`", .fallback = "\"y\""},
+        placeKey({.name = "up",
+                  .doc = "the axis that is upwards, for `elevation` and `azimuth`",
+                  .fallback = "\"y\""},
                  &SunPlace::up, upAxis()),
-        key({.name = "irradiance", .doc = "on a surface facing it", .always = true},
+        key({.name = "irradiance", .doc = "on a surface that faces it", .always = true},
             &Sun::irradiance, colour(notNegative)),
         key({.name = "angular_diameter",
-             .doc = "degrees; 0: parallel rays; the sun's is 0.53",
+             .doc = "in degrees. 0 gives parallel rays; the real sun's is 0.53",
              .comment = "degrees"},
             &Sun::angularDiameter, number({0, 90})),
         key({.name = "visible",
-             .doc = "to the camera; needs an `angular_diameter`",
+             .doc = "whether the camera sees it; needs an `angular_diameter`",
              .beside = "elevation = 40\nangular_diameter = 1"},
             &Sun::visible, flag()),
     };
@@ -110,7 +113,11 @@ void checkSphere(const TomlTable& table, Sphere& sphere) {
 
 template <class Light>
 Key<Light> position(Vec3d Light::*member) {
-    return key({.name = "position", .example = "[0, 2, 0]", .required = true, .always = true},
+    return key({.name = "position",
+                .doc = "in world space",
+                .example = "[0, 2, 0]",
+                .required = true,
+                .always = true},
                member, vector());
 }
 
@@ -176,11 +183,17 @@ const KeyTable<Sphere>& keysOf() {
         .tag = "sphere",
         .exclusions = {{"power", "radiance", "power = 4 pi^2 radius^2 x radiance"}},
         .keys = {position(&Sphere::position),
-                 key({.name = "radius", .example = "0.1", .required = true, .always = true},
+                 key({.name = "radius",
+                      .doc = "in world units",
+                      .example = "0.1",
+                      .required = true,
+                      .always = true},
                      &Sphere::radius, number(positive)),
-                 key({.name = "radiance", .always = true}, &Sphere::radiance, colour(notNegative)),
+                 key({.name = "radiance", .doc = "of its surface", .always = true},
+                     &Sphere::radiance, colour(notNegative)),
                  power<Sphere>("instead of `radiance`: 4 pi^2 radius^2 radiance"),
-                 key({.name = "visible", .doc = "to the camera"}, &Sphere::visible, flag())},
+                 key({.name = "visible", .doc = "whether the camera sees it"}, &Sphere::visible,
+                     flag())},
         .check = checkSphere,
         .outer = outer,
         .least = "position = [1, 1, 1]\nradius = 2",
@@ -194,18 +207,23 @@ const KeyTable<Environment>& keysOf() {
         .id = "light.environment",
         .where = "a [[light]] of type environment",
         .tag = "environment",
-        .keys = {key({.name = "radiance", .always = true}, &Environment::radiance,
-                     colour(notNegative)),
+        .keys = {key({.name = "radiance",
+                      .doc = "of all directions; with an `image`, what multiplies it",
+                      .always = true},
+                     &Environment::radiance, colour(notNegative)),
                  key({.name = "image",
-                      .doc = "a lat-long image that `radiance` multiplies; its centre is towards "
-                             "-z and its top +y, with `up = \"z\"` towards +y and +z"},
+                      .doc = "a lat-long image, multiplied by `radiance`. Its centre lies towards "
+                             "-z and its top towards +y; with `up = \"z\"`, towards +y and +z"},
                      &Environment::image, path()),
                  key({.name = "rotation",
-                      .doc = "degrees about the up axis, counter-clockwise from above",
+                      .doc = "of the image about the up axis, in degrees, counter-clockwise as "
+                             "seen from above",
                       .comment = "degrees"},
                      &Environment::rotation, number()),
-                 key({.name = "up"}, &Environment::up, upAxis()),
-                 key({.name = "visible", .doc = "to the camera"}, &Environment::visible, flag())},
+                 key({.name = "up", .doc = "the axis that is upwards, for `image`"},
+                     &Environment::up, upAxis()),
+                 key({.name = "visible", .doc = "whether the camera sees it"},
+                     &Environment::visible, flag())},
         .outer = outer,
         .path = "light[0]"};
     return table;

@@ -36,7 +36,8 @@ Value<Texture> texture(NumberRange range) {
 template <class M>
 Key<M> roughness(double M::*member) {
     return key({.name = "roughness",
-                .doc = "0: polished; GGX of alpha = roughness^2. No light is lost between facets"},
+                .doc = "0 is polished; above it is GGX with alpha = roughness^2. No light is lost "
+                       "between facets"},
                member, number(zeroToOne));
 }
 
@@ -58,7 +59,7 @@ Key<Conductor> refraction(KeyInfo info, Rgb std::pair<Rgb, Rgb>::*part, NumberRa
 
 Key<Conductor> conductorColour() {
     Key<Conductor> k = key({.name = "colour",
-                            .doc = "its reflectance face on; or, instead of it, `eta` and `k`",
+                            .doc = "its reflectance face on. `eta` and `k` may stand instead",
                             .always = true},
                            &Conductor::colour, texture(zeroToOne));
     k.write = [write = k.write](const Conductor& m, const SceneWriter& out) {
@@ -105,12 +106,13 @@ const KeyTable<Texture>& keysOf() {
     static const KeyTable<Texture> table{
         .id = "texture",
         .keys = {key({.name = "image",
-                      .doc = "see \"Files in and out\"",
+                      .doc = "an image; see \"Files in and out\"",
                       .example = "\"wood.png\"",
                       .required = true},
                      &Texture::image, path()),
                  key({.name = "colour_space",
-                      .doc = "of the OpenColorIO config, or `\"data\"` (numbers as they are)",
+                      .doc = "a colour space of the OpenColorIO config, or `\"data\"` (numbers as "
+                             "they are)",
                       .fallback = "integers are ordinary sRGB pictures, floats scene-linear"},
                      &Texture::colourSpace, text()),
                  key({.name = "times", .doc = "multiplies the image"}, &Texture::colour,
@@ -127,7 +129,8 @@ const KeyTable<Diffuse>& keysOf() {
         .id = "material.diffuse",
         .where = "a [[material]] of type diffuse",
         .tag = "diffuse",
-        .keys = {key({.name = "colour", .always = true}, &Diffuse::colour, texture(zeroToOne))},
+        .keys = {key({.name = "colour", .doc = "its reflectance", .always = true}, &Diffuse::colour,
+                     texture(zeroToOne))},
         .outer = outer,
         .path = "material[0]"};
     return table;
@@ -188,9 +191,9 @@ const KeyTable<Emissive>& keysOf() {
         .id = "material.emissive",
         .where = "a [[material]] of type emissive",
         .tag = "emissive",
-        .keys = {key({.name = "radiance", .always = true}, &Emissive::radiance,
-                     texture(notNegative)),
-                 key({.name = "both_sides", .doc = "`false`: from the outside alone"},
+        .keys = {key({.name = "radiance", .doc = "what it emits", .always = true},
+                     &Emissive::radiance, texture(notNegative)),
+                 key({.name = "both_sides", .doc = "`false`: it emits on the outside alone"},
                      &Emissive::bothSides, flag())},
         .outer = outer,
         .path = "material[0]"};
@@ -217,8 +220,8 @@ const KeyTable<Mix>& keysOf() {
         .tag = "mix",
         .keys = {part("first", "\"paint\"", &Mix::first), part("second", "\"rust\"", &Mix::second),
                  key({.name = "weight",
-                      .doc = "the share of the second. Images of weights are data unless "
-                             "`colour_space` says else",
+                      .doc = "the share of the second. Images of weights are data, unless "
+                             "`colour_space` says otherwise",
                       .always = true},
                      &Mix::weight, texture(zeroToOne))},
         .outer = parts + "[[material]]\nname = \"m\"\n",
@@ -231,7 +234,11 @@ template <>
 const KeyTable<MaterialDescription>& keysOf() {
     static const KeyTable<MaterialDescription> table{
         .id = "material",
-        .keys = {key({.name = "name", .example = "\"glass\"", .required = true, .always = true},
+        .keys = {key({.name = "name",
+                      .doc = "what surfaces and mixes call it",
+                      .example = "\"glass\"",
+                      .required = true,
+                      .always = true},
                      &MaterialDescription::name, text())},
         .outer = "[[surface]]\nsphere = {}\n[[material]]\ntype = \"diffuse\"\n",
         .least = "name = \"m\"",

@@ -26,18 +26,19 @@ std::vector<Key<I>> interiorKeys() {
             colour(notNegative)),
         key({.name = "sigma_s", .doc = "scattering per world unit", .always = true}, &I::sigmaS,
             colour(notNegative)),
-        instead("scale", "instead of both: sigma_t", colour(notNegative).type, "2", "scale = 1"),
+        instead("scale", "instead of `sigma_a` and `sigma_s`: sigma_t", colour(notNegative).type,
+                "2", "scale = 1"),
         instead("albedo", "beside `scale`: sigma_s = albedo x scale", colour(zeroToOne).type, "0.5",
                 "scale = 1"),
         instead("colour",
-                "instead of `sigma_a`: light that goes `distance` far is dyed so, sigma_a = "
+                "instead of `sigma_a`: what white light has become after `distance`. sigma_a = "
                 "-ln(colour) / distance",
                 colour(zeroToOne).type, "[0.1, 0.2, 0.3]", dyed),
-        instead("distance", "beside `colour`", number(positive).type, "2", dyed),
+        instead("distance", "beside `colour`, in world units", number(positive).type, "2", dyed),
         key({.name = "g", .doc = "mean cosine of scattering"}, &I::g, meanCosine()),
         key({.name = "emission",
-             .doc = "radiance per world unit (within glass of index n: from outside it looks n^2 "
-                    "times darker)"},
+             .doc = "radiance per world unit. Within glass of index n it looks n^2 times darker "
+                    "from outside"},
             &I::emission, colour(notNegative)),
     };
 }
@@ -113,9 +114,17 @@ const KeyTable<Box3d>& keysOf() {
     };
     static const KeyTable<Box3d> table{
         .id = "box",
-        .keys = {key({.name = "min", .example = "[0, 0, 0]", .required = true, .always = true},
+        .keys = {key({.name = "min",
+                      .doc = "the corner with the least coordinates",
+                      .example = "[0, 0, 0]",
+                      .required = true,
+                      .always = true},
                      &Box3d::lower, vector()),
-                 key({.name = "max", .example = "[1, 1, 1]", .required = true, .always = true},
+                 key({.name = "max",
+                      .doc = "the corner with the greatest coordinates",
+                      .example = "[1, 1, 1]",
+                      .required = true,
+                      .always = true},
                      &Box3d::upper, vector())},
         .check = check,
         .outer = "[[volume]]\nsigma_a = 1\n[volume.box]\n",

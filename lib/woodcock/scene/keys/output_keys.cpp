@@ -62,9 +62,9 @@ std::vector<Key<O>> outputKeys() {
     const std::string own = "the config's own";
     std::vector<Key<O>> keys{
         key({.name = "files",
-             .doc = "images to write, by extension: `.exr`, or a picture: `.png`, `.jpg`, `.tif` "
-                    "(16 bits), `.webp`; `-o` replaces it. Folders that are missing are refused, "
-                    "or made by `--mkdir`",
+             .doc = "images to write. The extension is the format: `.exr`, or a picture: `.png`, "
+                    "`.jpg`, `.tif` (16 bits), `.webp`. `-o` replaces the list. Missing folders "
+                    "are refused, unless `--mkdir` makes them",
              .fallback = "none"},
             &O::files, files()),
         key({.name = "layers",
@@ -75,17 +75,19 @@ std::vector<Key<O>> outputKeys() {
                     "\"Errors\") and `\"variance\"` (its square)",
              .fallback = "none"},
             &O::layers, layers()),
-        key({.name = "half", .doc = "EXR colour in half"}, &O::half, flag()),
+        key({.name = "half", .doc = "the colour of EXR files is in half precision"}, &O::half,
+            flag()),
         key({.name = "display", .doc = "OpenColorIO name, for pictures", .fallback = own},
             &O::display, text()),
         key({.name = "view", .doc = "OpenColorIO name, for pictures", .fallback = own}, &O::view,
             text()),
         key({.name = "look",
-             .doc = "OpenColorIO name, for pictures; `\"none\"` is none at all",
+             .doc = "OpenColorIO name, for pictures. `\"none\"` takes no look, not even the view's "
+                    "own",
              .fallback = own},
             &O::look, text()),
         key({.name = "exposure",
-             .doc = "stops, before the display transform; pictures only",
+             .doc = "in stops, before the display transform. For pictures only",
              .comment = "stops"},
             &O::exposure, number({-100, 100})),
     };
@@ -111,7 +113,7 @@ const KeyTable<SceneDescription>& keysOf() {
         .id = "scene",
         .where = "the scene",
         .keys = {key({.name = "ocio",
-                      .doc = "of an OpenColorIO config, for pictures, that is all outputs but EXR",
+                      .doc = "an OpenColorIO config, for pictures: all outputs but EXR",
                       .fallback = "`$OCIO`, then the one that comes with the program",
                       .inDigest = false},
                      &SceneDescription::ocio, path())},

@@ -63,14 +63,13 @@ Key<R> resolution() {
 
 /// It says something of marching alone.
 Key<R> marchEstimate() {
-    Key<R> k =
-        key({.name = "march_estimate",
-             .doc = "how marched optical depths become transmittance, by two look-ups a step or by "
-                    "one; needs `march_step`",
-             .beside = "march_step = 0.5",
-             .choice = true},
-            &R::approximations, &A::jackknife,
-            choice<bool>("estimate", {{true, "jackknife"}, {false, "exponential"}}));
+    Key<R> k = key({.name = "march_estimate",
+                    .doc = "how marched optical depths become transmittance: by two look-ups a "
+                           "step, or by one. It needs `march_step`",
+                    .beside = "march_step = 0.5",
+                    .choice = true},
+                   &R::approximations, &A::jackknife,
+                   choice<bool>("estimate", {{true, "jackknife"}, {false, "exponential"}}));
     k.write = [write = k.write](const R& r, const SceneWriter& out) {
         return r.approximations.marchStep != 0 ? write(r, out) : std::nullopt;
     };
@@ -80,7 +79,8 @@ Key<R> marchEstimate() {
 /// Voxels of reduced precision.
 Key<R> storageKey() {
     Key<R> k = key({.name = "storage",
-                    .doc = "of volumes that say nothing themselves; see \"Fields\"",
+                    .doc = "for volumes that have no `storage` of their own. `\"half\"`, "
+                           "`\"fixed16\"` and `\"fixed8\"` are biased; see \"Fields\"",
                     .choice = true},
                    &R::storage, storage());
     k.biased = [](const R& r) { return isReducedPrecision(r.storage); };
@@ -92,12 +92,16 @@ std::vector<Key<R>> amountKeys() {
     return {
         resolution(),
         key({.name = "spp",
-             .doc = "samples per pixel; an adaptive render shares the work of as many out",
+             .doc = "samples per pixel. An adaptive render does the same work, but with another "
+                    "number in each pixel",
              .comment = "samples per pixel",
              .always = true,
              .inDigest = false},
             &R::spp, integer(1)),
-        key({.name = "seed", .inDigest = false}, &R::seed, seed()),
+        key({.name = "seed",
+             .doc = "of the random numbers. Another seed gives other noise",
+             .inDigest = false},
+            &R::seed, seed()),
         otherWay<R>({.name = "quality",
                      .doc = "a set of choices, see \"Qualities\"",
                      .type = choiceOf<Quality>("quality", qualityNames).type,
@@ -105,13 +109,16 @@ std::vector<Key<R>> amountKeys() {
                      .example = "\"draft\"",
                      .choice = true}),
         biasedWhenSaid(key({.name = "max_scatterings",
-                            .doc = "longer paths are cut, which darkens the picture",
+                            .doc = "biased. Paths that scatter more often in media are cut, which "
+                                   "darkens the picture",
                             .method = true},
                            &R::maxScatterings, integer(0))),
-        biasedWhenSaid(key({.name = "max_bounces",
-                            .doc = "off surfaces: longer paths are cut, which darkens the picture",
-                            .method = true},
-                           &R::maxBounces, integer(0))),
+        biasedWhenSaid(key(
+            {.name = "max_bounces",
+             .doc =
+                 "biased. Paths that meet surfaces more often are cut, which darkens the picture",
+             .method = true},
+            &R::maxBounces, integer(0))),
     };
 }
 
@@ -142,28 +149,30 @@ std::vector<Key<R>> approximationKeys() {
                                    "octaves\"",
                             .choice = true},
                            &R::approximations, &A::octaves, integer(0, 16))),
-        biasedWhenSaid(key({.name = "clamp",
-                            .doc = "biased. The largest radiance (of the brightest channel) that "
-                                   "one path may bring; brighter ones are dimmed in their colour. "
-                                   "How many were is logged and in `--stats`. What falls on shadow "
-                                   "catchers is not clamped. 0: any",
-                            .choice = true},
-                           &R::approximations, &A::clamp, number(notNegative))),
+        biasedWhenSaid(key(
+            {.name = "clamp",
+             .doc =
+                 "biased. The largest radiance that one path may bring, in its brightest channel. "
+                 "Brighter paths are dimmed and keep their colour. Their number is in the log and "
+                 "in `--stats`. What falls on shadow catchers is not clamped. 0: no limit",
+             .choice = true},
+            &R::approximations, &A::clamp, number(notNegative))),
         storageKey(),
-        biasedWhenSaid(key({.name = "lookup",
-                            .doc = "`\"nearest\"` is biased: the voxel next to a point; see "
-                                   "\"Fields\"",
-                            .choice = true},
-                           &R::lookup,
-                           choice<grid::Lookup>("lookup", {{grid::Lookup::Trilinear, "trilinear"},
-                                                           {grid::Lookup::Nearest, "nearest"}}))),
-        biasedWhenSaid(key({.name = "level_of_detail",
-                            .doc = "biased. Grids are coarsened by powers of two as long as their "
-                                   "voxels, where they are next to the camera, are at most so many "
-                                   "pixels wide; 0: never. See \"Fields\"",
-                            .comment = "pixels",
-                            .choice = true},
-                           &R::levelOfDetail, number({0, 1000}))),
+        biasedWhenSaid(key(
+            {.name = "lookup",
+             .doc =
+                 "`\"nearest\"` is biased: it takes the voxel nearest to a point; see \"Fields\"",
+             .choice = true},
+            &R::lookup,
+            choice<grid::Lookup>("lookup", {{grid::Lookup::Trilinear, "trilinear"},
+                                            {grid::Lookup::Nearest, "nearest"}}))),
+        biasedWhenSaid(key(
+            {.name = "level_of_detail",
+             .doc = "biased. Grids are coarsened by powers of two, as long as the voxels nearest "
+                    "to the camera are at most so many pixels wide. 0: never. See \"Fields\"",
+             .comment = "pixels",
+             .choice = true},
+            &R::levelOfDetail, number({0, 1000}))),
     };
 }
 
@@ -177,21 +186,20 @@ std::vector<Key<R>> effortKeys() {
              .choice = true},
             &R::adaptive, flag()),
         key({.name = "time_limit",
-             .doc =
-                 "seconds, or a text such as `\"90s\"`, `\"2m\"`, `\"1.5h\"`; 0: none. The first "
-                 "sample of all pixels may take twice as long; pixels that still have none are "
-                 "said, and are black with alpha 0",
+             .doc = "in seconds, or a text such as `\"90s\"`, `\"2m\"`, `\"1.5h\"`. 0: none. The "
+                    "first sample of all pixels may take twice as long. Pixels that still have no "
+                    "sample are black with alpha 0, and the log says how many they are",
              .comment = "seconds",
              .inDigest = false},
             &R::timeLimit, numberOrText(notNegative, parseDuration)),
         key({.name = "noise",
-             .doc = "stop when the noise is below; or a text such as `\"1%\"`; 0: never. See "
-                    "\"Errors\"",
+             .doc = "the render stops when the noise is below this number, or below a text such as "
+                    "`\"1%\"`. 0: never. See \"Errors\"",
              .inDigest = false},
             &R::noise, numberOrText(zeroToOne, parseFraction)),
         key({.name = "majorant_scale",
-             .doc = "loosens the bounds of tracking; costs time and changes no mean: for "
-                    "experiments",
+             .doc = "loosens the bounds of tracking, for experiments. It costs time and changes no "
+                    "mean",
              .method = true},
             &R::majorantScale, number({1, 1000})),
     };

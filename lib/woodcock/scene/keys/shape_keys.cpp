@@ -44,8 +44,8 @@ Key<S> facets() {
     Key<S> key;
     key.info = {.name = "facets",
                 .doc =
-                    "a convex body as a cutter of gems says it: rings `{ angle, count, "
-                    "distance, turn }` of facets around y",
+                    "a convex body, described as gem cutters do: rings `{ angle, count, distance, "
+                    "turn }` of facets around y",
                 .type = "list",
                 .fallback = "none",
                 .example =
@@ -122,18 +122,18 @@ std::vector<Key<S>> shapeKeys() {
                                .beside = "sphere = {}"}),
         box(),
         shapeKey<DiskShape>({.name = "disk",
-                             .doc = "in y = 0, facing +y; encloses nothing",
+                             .doc = "in the plane y = 0, facing +y. It encloses nothing",
                              .type = "`{ radius = 1 }`",
                              .example = "{ radius = 2 }",
                              .beside = "disk = {}"}),
         shapeKey<PlaneShape>({.name = "plane",
-                              .doc = "in y = 0 about the origin, facing +y; `{}`: infinite, and "
-                                     "what is below is inside",
+                              .doc = "in the plane y = 0 about the origin, facing +y. `{}` is "
+                                     "infinite, and all below it is inside",
                               .type = "`{ size = [width, depth] }`",
                               .example = "{ size = [2, 0.1] }",
                               .beside = "plane = {}"}),
         shapeKey<LatheShape>({.name = "lathe",
-                              .doc = "turned about y",
+                              .doc = "a profile that is turned about y",
                               .type = "`{ profile = [[radius, height], ...], segments = 96 }`",
                               .example = "{ profile = [[0, 0], [1, 0.1], [0, 2]], segments = 7 }",
                               .beside = "lathe = { profile = [[0, 0], [1, 1]] }"}),
@@ -145,8 +145,11 @@ template <>
 const KeyTable<SphereShape>& keysOf() {
     static const KeyTable<SphereShape> table{
         .id = "surface.sphere",
-        .keys = {key({.name = "centre", .always = true}, &SphereShape::centre, vector()),
-                 key({.name = "radius", .always = true}, &SphereShape::radius, number(positive))},
+        .keys =
+            {key({.name = "centre", .doc = "in object space, before `transform`", .always = true},
+                 &SphereShape::centre, vector()),
+             key({.name = "radius", .doc = "in object space, before `transform`", .always = true},
+                 &SphereShape::radius, number(positive))},
         .outer = outerOf("sphere"),
         .path = "surface[0].sphere"};
     return table;
@@ -156,7 +159,9 @@ template <>
 const KeyTable<DiskShape>& keysOf() {
     static const KeyTable<DiskShape> table{
         .id = "surface.disk",
-        .keys = {key({.name = "radius", .always = true}, &DiskShape::radius, number(positive))},
+        .keys = {key(
+            {.name = "radius", .doc = "in object space, before `transform`", .always = true},
+            &DiskShape::radius, number(positive))},
         .outer = outerOf("disk"),
         .path = "surface[0].disk"};
     return table;
@@ -166,7 +171,7 @@ template <>
 const KeyTable<PlaneShape>& keysOf() {
     static const KeyTable<PlaneShape> table{
         .id = "surface.plane",
-        .keys = {key({.name = "size", .doc = "along x and z", .fallback = "infinite"},
+        .keys = {key({.name = "size", .doc = "its sides along x and z", .fallback = "infinite"},
                      &PlaneShape::size, numberPair("[width, depth]", positive))},
         .outer = outerOf("plane"),
         .path = "surface[0].plane"};
@@ -178,14 +183,14 @@ const KeyTable<LatheShape>& keysOf() {
     static const KeyTable<LatheShape> table{
         .id = "surface.lathe",
         .keys = {key({.name = "profile",
-                      .doc = "the way along it has the outside on its right (so upwards where the "
-                             "inside is at the axis); it is closed where it starts and ends on "
-                             "the axis or where it began",
+                      .doc = "its points in order, with the outside on the right: so upwards, "
+                             "where the inside is at the axis. The body is closed if both ends lie "
+                             "on the axis, or if the profile ends where it begins",
                       .example = "[[0, 0], [1, 0], [1, 2], [0, 2]]",
                       .required = true,
                       .always = true},
                      &LatheShape::profile, profile()),
-                 key({.name = "segments", .doc = "around the axis", .always = true},
+                 key({.name = "segments", .doc = "how many, around the axis", .always = true},
                      &LatheShape::segments, integer(3, mostSegments))},
         .outer = outerOf("lathe"),
         .least = "profile = [[0, 0], [1, 1]]",
@@ -198,13 +203,13 @@ const KeyTable<mesh::FacetRing>& keysOf() {
     static const KeyTable<mesh::FacetRing> table{
         .id = "surface.facets",
         .keys = {key({.name = "angle",
-                      .doc = "degrees from +y of the outward normal: 0 a table, 90 the girdle, "
-                             "180 a culet",
+                      .doc = "of the outward normal from +y, in degrees: 0 is a table, 90 the "
+                             "girdle, 180 a culet",
                       .example = "34.5",
                       .required = true,
                       .always = true},
                      &mesh::FacetRing::angle, number({0, 180})),
-                 key({.name = "count", .doc = "of facets, evenly around y", .always = true},
+                 key({.name = "count", .doc = "how many facets, evenly around y", .always = true},
                      &mesh::FacetRing::count, integer(1, mostFacets)),
                  key({.name = "distance",
                       .doc = "of their planes from the origin",
@@ -213,7 +218,7 @@ const KeyTable<mesh::FacetRing>& keysOf() {
                       .always = true},
                      &mesh::FacetRing::distance, number(positive)),
                  key({.name = "turn",
-                      .doc = "degrees of the first normal, from +z towards +x",
+                      .doc = "of the first normal from +z towards +x, in degrees",
                       .always = true},
                      &mesh::FacetRing::turn, number())},
         .outer = "[[surface]]\n[[surface.facets]]\n",

@@ -27,9 +27,9 @@ Key<S> smooth() {
     Key<S> key;
     key.info = {.name = "smooth",
                 .doc =
-                    "for files and lathes: an angle in degrees, up to which neighbouring "
-                    "triangles look like one smooth surface; `\"flat\"`; `\"file\"`: the "
-                    "normals of the file",
+                    "for files and lathes. An angle in degrees: neighbouring triangles that differ "
+                    "by less look like one smooth surface. `\"flat\"` shows each triangle. "
+                    "`\"file\"` takes the normals of the file",
                 .type = "number, 0..180, or a word",
                 .fallback = "`\"file\"`; 60 for lathes and level sets",
                 .example = "33.3",
@@ -65,10 +65,10 @@ std::optional<Written> writeInstances(const S& surface, const SceneWriter& out) 
 
 Key<S> instances() {
     return {{.name = "instances",
-             .doc = "where it stands, each before `transform`: transforms (`{ translate, rotate, "
-                    "scale }`) and matrices, or the name of a text file with a line for each: "
-                    "`x y z`, `x y z scale`, `x y z scale rx ry rz` or the 12 numbers of a "
-                    "matrix's upper three rows; `#` begins a comment",
+             .doc = "where copies of it stand, each placed before `transform`. A list of "
+                    "transforms (`{ translate, rotate, scale }`) and matrices, or the name of a "
+                    "text file with a line for each: `x y z`, `x y z scale`, `x y z scale rx ry "
+                    "rz`, or the 12 numbers of a matrix's upper three rows. `#` begins a comment",
              .type = "list or path",
              .fallback = "once",
              .example = "[{ rotate = [0, 33, 0] }, { scale = 2 }]"},
@@ -79,9 +79,9 @@ Key<S> instances() {
 std::vector<Key<S>> contentKeys() {
     return {
         key({.name = "medium",
-             .doc = "what it holds: `{ sigma_a, sigma_s, g }`; or `{ scale, albedo, g }`; or `{ "
-                    "colour, distance }`, with `sigma_s` and `g` if wanted. With any of them or "
-                    "alone, `emission`",
+             .doc = "what it holds: `{ sigma_a, sigma_s, g }`, or `{ scale, albedo, g }`, or `{ "
+                    "colour, distance }`, to which you may add `sigma_s` and `g`. `emission` goes "
+                    "with any of them, or alone",
              .fallback = "vacuum",
              .comment = "1/unit",
              .example = "{ sigma_a = 1, sigma_s = [1, 2, 3], g = 0.1 }",
@@ -89,7 +89,7 @@ std::vector<Key<S>> contentKeys() {
                        "type = \"dielectric\""},
             &S::interior, nested<InteriorDescription>()),
         key({.name = "priority",
-             .doc = "where several surfaces hold something, or lie in one place, the highest wins"},
+             .doc = "the highest wins where several surfaces hold something, or lie in one place"},
             &S::priority, integer(-mostPriority, mostPriority)),
     };
 }
@@ -97,15 +97,15 @@ std::vector<Key<S>> contentKeys() {
 std::vector<Key<S>> compositingKeys() {
     return {
         key({.name = "holdout",
-             .doc = "the camera sees a hole in its place, alpha 0, and nothing of what is behind"},
+             .doc = "the camera sees a hole in its place, with alpha 0, and nothing of what is "
+                    "behind"},
             &S::holdout, flag()),
-        key({.name = "shadow_catcher",
-             .doc = "of it, the camera sees nothing but the shadows that fall on it"},
+        key({.name = "shadow_catcher", .doc = "the camera sees only the shadows that fall on it"},
             &S::shadowCatcher, flag()),
-        key({.name = "matte", .doc = "the camera sees it black, alpha 1"}, &S::matte, flag()),
+        key({.name = "matte", .doc = "the camera sees it black, with alpha 1"}, &S::matte, flag()),
         key({.name = "camera_visible",
-             .doc = "`false`: the camera does not see it; its light and its shadow remain. No two "
-                    "of these four go together"},
+             .doc = "`false`: the camera does not see it, but its light and its shadow remain. A "
+                    "surface takes one of these four keys at most"},
             &S::cameraVisible, flag()),
     };
 }

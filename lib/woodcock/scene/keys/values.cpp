@@ -128,9 +128,10 @@ const KeyTable<Transform>& keysOf() {
         .where = "",
         .tag = "",
         .exclusions = {},
-        .keys = {key({.name = "translate"}, &Transform::translate, vector()),
-                 key({.name = "rotate"}, &Transform::rotate, vector()),
-                 key({.name = "scale"}, &Transform::scale,
+        .keys = {key({.name = "translate", .doc = "world units"}, &Transform::translate, vector()),
+                 key({.name = "rotate", .doc = "degrees about x, y and z"}, &Transform::rotate,
+                     vector()),
+                 key({.name = "scale", .doc = "a factor, or one for each axis"}, &Transform::scale,
                      Value<Vec3d>{
                          "number, or `[x, y, z]`",
                          {"2"},

@@ -85,7 +85,7 @@ std::vector<Key<D>> placementKeys(Affine3d D::*member, std::string what, const s
         d.*member = readTransform(v, what);
     };
     return {transform, key({.name = "matrix",
-                            .doc = "instead of `transform`; the last is `[0, 0, 0, 1]`",
+                            .doc = "instead of `transform`. The last row is `[0, 0, 0, 1]`",
                             .fallback = "identity"},
                            member, matrix())};
 }

@@ -71,8 +71,8 @@ Key<V> boxCoefficient(std::string name, Rgb Homogeneous::*member) {
 Key<V> box() {
     return keyOfKind<Homogeneous>(
         {.name = "box",
-         .doc = "instead of a file: filled evenly with `sigma_a`, `sigma_s` (colours, per world "
-                "unit) or `scale` and `albedo`, and `emission` (a colour)",
+         .doc = "instead of a file: a box that is filled evenly. It takes `sigma_a` and `sigma_s` "
+                "(colours, per world unit) or `scale` and `albedo`, and `emission` (a colour)",
          .type = "`{ min = [x, y, z], max = [x, y, z] }`",
          .fallback = "none",
          .beside = "box = { min = [0, 0, 0], max = [1, 1, 1] }\nsigma_a = 1",
@@ -84,9 +84,9 @@ std::vector<Key<V>> densityKeys() {
     return {
         keyOfKind<Density>(
             {.name = "density",
-             .doc = "name of a scalar grid, or of a vec3 one, whose three numbers are the "
-                    "densities of red, green and blue; where several share a name, `name[0]` is "
-                    "the first, `name[1]` the second",
+             .doc = "name of a scalar grid, or of a vec3 grid, whose three numbers are the "
+                    "densities of red, green and blue. Where several grids share a name, `name[0]` "
+                    "is the first and `name[1]` the second",
              .fallback =
                  "*chosen*: `density` or `smoke` in any case, or the finest of its levels "
                  "of detail (`density_level_0`), else the only scalar grid that may be one"},
@@ -116,13 +116,13 @@ std::vector<Key<V>> coefficientKeys() {
                     box()},
         densityKeys(),
         std::vector{absorption(),
-                    separateKey("sigma_s", "the same of scattering", &Separate::sigmaS),
+                    separateKey("sigma_s", "the same for scattering", &Separate::sigmaS),
                     boxCoefficient("sigma_a", &Homogeneous::sigmaA),
                     boxCoefficient("sigma_s", &Homogeneous::sigmaS),
                     uncommentedForGrids(
                         key({.name = "emission",
                              .doc = "radiance per world unit of length. A colour multiplies the "
-                                    "density grid. It needs nothing that absorbs",
+                                    "density grid. The volume need not absorb",
                              .comment = "x density, radiance per unit"},
                             &V::emission, gridCoefficient()),
                         "radiance per unit"),
@@ -138,26 +138,27 @@ std::vector<Key<V>> coefficientKeys() {
 std::vector<Key<V>> fieldKeys() {
     return {
         key({.name = "inside",
-             .doc = "name of a `[[surface]]` that it fills, and outside of which it does not "
-                    "exist; the surface stands in one place and lets light in (see below)",
+             .doc = "name of a `[[surface]]` that it fills. Outside of it the volume does not "
+                    "exist. The surface must stand in one place and let light in (see below)",
              .fallback = "none: it is outside of all surfaces",
              .example = "\"ball\"",
              .beside = "file = \"a.vdb\"\n[[surface]]\nname = \"ball\"\nsphere = {}\n"
                        "material = \"air\"\n[[material]]\nname = \"air\"\ntype = \"interface\""},
             &V::inside, text()),
         key({.name = "storage",
-             .doc = "how voxels are kept in memory (`\"auto\"`: half where that is exact), see "
+             .doc = "how voxels are kept in memory. `\"auto\"` is half where that is exact, and "
+                    "float elsewhere. `\"half\"`, `\"fixed16\"` and `\"fixed8\"` are biased; see "
                     "\"Fields\""},
             &V::storage, storage()),
         key({.name = "background",
-             .doc = "where a grid's background is not 0: `\"clip\"` ends the medium one voxel "
-                    "around the grid's active ones, `\"endless\"` fills all of space with the "
-                    "background, see below",
+             .doc = "for a grid whose background is not 0. `\"clip\"` ends the medium one voxel "
+                    "around the grid's active voxels. `\"endless\"` fills all of space with the "
+                    "background; see below",
              .fallback = "`\"clip\"`; `\"endless\"` with `inside`"},
             &V::background, choiceOf<Background>("background", backgroundNames)),
         key({.name = "repair",
-             .doc = "NaN, infinite and negative voxels become 0, albedos above 1 become 1, with a "
-                    "note; otherwise they are errors"},
+             .doc = "NaN, infinite and negative voxels become 0, and albedos above 1 become 1, "
+                    "with a note. Otherwise they are errors"},
             &V::repair, flag()),
     };
 }
@@ -173,7 +174,7 @@ std::vector<Key<V>> volumeKeys() {
                         &V::g, meanCosine())},
         placementKeys(&V::worldFromObject, "volume",
                       "`{ translate, rotate, scale }`, after the grid's own transform. sigma stays "
-                      "per *world* unit: a volume made larger is denser to look through"),
+                      "per *world* unit, so a volume made larger is denser to look through"),
         fieldKeys());
 }
 
