@@ -307,7 +307,7 @@ TEST(MeshLight, PowerAndCentre) {
     EXPECT_NEAR(length(MeshLight(square).centre() - Vec3d{1, 1, 0}), 0, 1e-15);
     for (Triangle& t : square) t.bothSides = true;
     EXPECT_NEAR(MeshLight(square).power(), 8 * 5 * pi, 1e-12);
-    // From afar the promise is the irradiance: area / distance^2, mean over channels
+    // From afar the importance is the irradiance: area / distance^2, mean over channels
     EXPECT_NEAR(MeshLight(square).importance({1, 1, 1000}) / (4 * 8 / 3.0 * 1e-6), 1, 0.01);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps and discs, against quadrature and against each other.
+// Local lights and discs, against quadrature and against each other.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ TEST(SphereLight, IsSeenThroughTheFog) {
     expectAgrees(evenRadiance(renderScene(scene, {8, 8, 16, 0, 0}).film), {t, 2 * t, 3 * t}, 1e-4);
 }
 
-/// Several lamps of both kinds at once: the choice among them changes no mean.
+/// Several local lights of both kinds at once: the choice among them changes no mean.
 TEST(LocalLights, Add) {
     const std::string a = point({0.5, 0.5, 0}, 5), b = sphere({-1, 0, 1}, 0.3, 20),
                       c = point({0, 4, 0}, 300),

@@ -121,7 +121,7 @@ TEST(Octaves, AreLitByAConstantSky) {
     expectAgrees(mean(scene, octaves, {}, 64, 1), {expected, expected, expected}, 5e-3);
 }
 
-/// Near a lamp the event and the equiangular point share the light.
+/// Near a local light the event and the equiangular point share the light.
 TEST(Octaves, AroundALampByQuadrature) {
     constexpr int octaves = 3;
     constexpr double sigmaA = 0.3, sigmaS = 0.7, sigmaT = sigmaA + sigmaS, power = 4 * pi;

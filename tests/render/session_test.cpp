@@ -16,7 +16,7 @@ using namespace render;
 
 namespace {
 
-/// Fog with a lamp in it, a sun and a sky: everything that draws random numbers.
+/// Fog with a local light in it, a sun and a sky: everything that draws random numbers.
 Scene fog(const char* sigma = "sigma_a = 0.1\nsigma_s = [1, 2, 0.5]\n") {
     return sceneFrom(std::string("[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\n") +
                      sigma +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slabs of voxels through the whole program; tests/proof/slabs.cpp goes through tables of them.
+// Slabs of voxels through the whole program. lib/woodcock/proof/checks/slabs.cpp goes through
+// tables of them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Two rectangles, the second a mirror image: a mixture of a lamp that shines to one side and a
-/// screen that shines to both, all by images. And a plain lamp far away.
+/// Two rectangles, the second a mirror image: a mixture of a material that emits to one side
+/// and one that emits to both, all by images. And a plain emissive surface far away.
 Scene lampsAndScreens() {
     SceneDescription description;
     description.camera.pose = LookAt{{0, 0, 5}, {}};

@@ -60,7 +60,7 @@ SceneDescription readScene(const TomlTable& table, const std::string& name,
     return scene;
 }
 
-/// Overrides of lights that are still to be chosen; they are tried on stand-ins, for the mistakes.
+/// Tries overrides of lights that are still to be chosen on placeholders, to find mistakes in them.
 void checkLightChanges(const SceneDescription& scene) {
     if (scene.lightChanges.empty()) return;
     if (anySurfaceEmits(scene))
