@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Proves that the sources build without tests/: no other source includes a file of it, and a copy of
-# the tree without it configures, with every file at hand that its build needs.
-# usage: without_tests.sh SCRATCH_FOLDER
+# Shows that nothing outside tests/ needs it: no other source includes a file of it, and a copy of the
+# tree without it configures, with every file at hand that its build needs. It compiles nothing.
+#   tests/without_tests.sh SCRATCH_FOLDER
 set -euo pipefail
 scratch=$(realpath -m "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -21,4 +21,4 @@ grep -qF "$scratch/source/tools/main.cpp" "$scratch/inputs.log"
 grep -F "$scratch/source/" "$scratch/inputs.log" | while read -r file; do
     [[ -e $file && $file != "$scratch/source/tests/"* ]] || { echo "The build needs $file."; exit 1; }
 done
-echo "$(grep -cE "^$scratch/source/.*\.cpp$" "$scratch/inputs.log") sources compile without tests/."
+echo "$(grep -cE "^$scratch/source/.*\.cpp$" "$scratch/inputs.log") sources need no file of tests/."

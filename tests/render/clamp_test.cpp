@@ -16,7 +16,7 @@ namespace {
 const std::string fog = "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\n";
 
 /// Bright samples are rare here, and coloured.
-Scene lampInFog() {
+Scene localLightInFog() {
     return sceneFrom(fog +
                      "sigma_a = 0.1\nsigma_s = [1, 2, 0.5]\ng = 0.5\n"
                      "[[light]]\ntype = \"sphere\"\nposition = [-0.5, 0.2, 0]\nradius = 0.1\n"
@@ -45,7 +45,7 @@ Samples trace(const Scene& scene, double clamp) {
 
 TEST(Clamp, ScalesWhatIsBrighterAndLeavesTheRest) {
     const float most = 0.5f;
-    const Scene scene = lampInFog();
+    const Scene scene = localLightInFog();
     const Samples free = trace(scene, 0), clamped = trace(scene, most);
     std::uint64_t brighter = 0;
     for (std::size_t i = 0; i < free.results.size(); ++i) {
@@ -68,7 +68,7 @@ TEST(Clamp, ScalesWhatIsBrighterAndLeavesTheRest) {
 }
 
 TEST(Clamp, BeyondAllSamplesChangesNothing) {
-    const Scene scene = lampInFog();
+    const Scene scene = localLightInFog();
     const Samples free = trace(scene, 0), wide = trace(scene, 1e6);
     for (std::size_t i = 0; i < free.results.size(); ++i)
         EXPECT_EQ(free.results[i].film.radiance, wide.results[i].film.radiance);

@@ -70,7 +70,7 @@ TEST(ErrorLayer, IsHonestOfADenseCloud) {
         {.width = 16, .height = 16, .samples = many / 4, .seed = 1000, .maxScatterings = 20});
 }
 
-TEST(ErrorLayer, IsHonestOfALampInFog) {
+TEST(ErrorLayer, IsHonestOfALocalLightInFog) {
     expectHonest(sceneFrom("[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\n"
                            "sigma_a = 0.1\nsigma_s = 1\n"
                            "[[light]]\ntype = \"point\"\nposition = [0.3, 0.4, 0]\n"

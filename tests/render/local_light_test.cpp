@@ -54,13 +54,13 @@ RgbEstimate once(const std::string& scene, double x, double y, int samples) {
 /// A wide sphere is a cloud of points: single scattering by quadrature over the directions that hit
 /// it, which next-event estimation and scattering find in shares.
 TEST(SphereLight, OfAnySizeByQuadrature) {
-    const Vec3d lamp{1.5, 0, 0};
+    const Vec3d lightAt{1.5, 0, 0};
     const double radius = 0.8, radiance = 3;
     for (const double g : {0.0, 0.9, -0.6}) {
         // Seen from p on the line x = y = 0, the sphere fills a cone around its centre.
         const auto scattered = [&](double z) {
-            const Vec3d p{0, 0, z}, axis = normalize(lamp - p);
-            const double distance = length(lamp - p), across = axis.x;  // of the view, -z
+            const Vec3d p{0, 0, z}, axis = normalize(lightAt - p);
+            const double distance = length(lightAt - p), across = axis.x;  // of the view, -z
             const double cosine = std::sqrt(1 - radius * radius / (distance * distance));
             return integrate(
                 [&](double c) {
@@ -90,9 +90,9 @@ TEST(SphereLight, OfAnySizeByQuadrature) {
 }
 
 TEST(SphereLight, IsSeenThroughTheFog) {
-    const std::string lamp =
+    const std::string light =
         "[[light]]\ntype = \"sphere\"\nposition = [0, 0, 1]\nradius = 0.25\nradiance = [1, 2, 3]\n";
-    const Scene scene = sceneFrom(fog(0.5) + lamp + pencilCamera({0.1, 0, 10}, {0, 0, -1}));
+    const Scene scene = sceneFrom(fog(0.5) + light + pencilCamera({0.1, 0, 10}, {0, 0, -1}));
     const double t = std::exp(-sigmaT * (1 - std::sqrt(0.25 * 0.25 - 0.01)));
     expectAgrees(evenRadiance(renderScene(scene, {8, 8, 16, 0, 0}).film), {t, 2 * t, 3 * t}, 1e-4);
 }

@@ -122,7 +122,7 @@ TEST(Octaves, AreLitByAConstantSky) {
 }
 
 /// Near a local light the event and the equiangular point share the light.
-TEST(Octaves, AroundALampByQuadrature) {
+TEST(Octaves, AroundALocalLightByQuadrature) {
     constexpr int octaves = 3;
     constexpr double sigmaA = 0.3, sigmaS = 0.7, sigmaT = sigmaA + sigmaS, power = 4 * pi;
     const Vec3d lamp{0.5, 0, 0.3};

@@ -103,13 +103,13 @@ TEST(Precision, CamerasThatAreTooFarAway) {
                   fmt::format("the camera is at [0, 0, {:g}]", eye));
 }
 
-TEST(Precision, LampsThatAreTooFarAway) {
-    const auto lamp = [](double at) {
+TEST(Precision, LocalLightsThatAreTooFarAway) {
+    const auto lightAt = [](double at) {
         return fmt::format("[[light]]\ntype = \"point\"\nposition = [0, {}, 0]\nintensity = 1\n",
                            at);
     };
-    expectNone(warnings(box(1, 1) + lamp(1e10) + camera(5)));
-    expectOne(warnings(box(1, 1) + lamp(1e30) + camera(5)), "only 1e-60 of its light arrives");
+    expectNone(warnings(box(1, 1) + lightAt(1e10) + camera(5)));
+    expectOne(warnings(box(1, 1) + lightAt(1e30) + camera(5)), "only 1e-60 of its light arrives");
 }
 
 TEST(Precision, SunsThatAreTooNarrow) {

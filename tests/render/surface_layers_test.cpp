@@ -123,9 +123,9 @@ TEST(SurfaceLayers, ShadowCatcherKeepsTheShadowAlone) {
 
 /// What glows before the catcher is no light on it.
 TEST(SurfaceLayers, ShadowCatcherLeavesWhatStandsInFront) {
-    const std::string lamp =
+    const std::string light =
         "[[light]]\ntype = \"sphere\"\nposition = [3, 3, 0]\nradius = 0.1\nradiance = 5\n";
-    const Film f = film(sun + grey + ground("shadow_catcher = true") + lamp);
+    const Film f = film(sun + grey + ground("shadow_catcher = true") + light);
     EXPECT_NEAR(f.radiance(1, 1)[1], 5, 1e-5);
     EXPECT_NEAR(f.alpha(1, 1), 0, 1e-5);
 }

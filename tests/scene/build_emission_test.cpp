@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Two rectangles, the second a mirror image: a mixture of a material that emits to one side
 /// and one that emits to both, all by images. And a plain emissive surface far away.
-Scene lampsAndScreens() {
+Scene emittersAndScreens() {
     SceneDescription description;
     description.camera.pose = LookAt{{0, 0, 5}, {}};
     description.materials = {{"lamp", EmissiveDescription{{{2, 1, 0.5}}, false}},
@@ -47,7 +47,7 @@ Scene lampsAndScreens() {
 }
 
 TEST(BuildEmission, SamplesSeeWhatRaysHit) {
-    const Scene scene = lampsAndScreens();
+    const Scene scene = emittersAndScreens();
     const SurfaceSet& surfaces = *scene.surfaces;
     const MeshLight& light = *scene.lights.mesh();
     ASSERT_EQ(light.triangles().size(), 6u);

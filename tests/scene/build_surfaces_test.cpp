@@ -41,7 +41,7 @@ BuiltScene build(const std::string& text, const std::filesystem::path& base = ".
 std::string loadMistake(const std::string& text, const std::filesystem::path& base = ".") {
     return buildMistake(materials + text, base);
 }
-const MeshLight* lampOf(const Scene& scene) {
+const MeshLight* emitterOf(const Scene& scene) {
     for (const Light& light : scene.lights.lights())
         if (const auto* mesh = std::get_if<MeshLight>(&light)) return mesh;
     return nullptr;
@@ -144,17 +144,17 @@ TEST(BuildSurfaces, BelowAnInfinitePlaneTheMediumReachesFar) {
 
 TEST(BuildSurfaces, EmittersHaveTheAreaOfTheirShapes) {
     const BuiltScene sphere = build("[[surface]]\nsphere = { radius = 2 }\nmaterial = \"lamp\"");
-    ASSERT_NE(lampOf(sphere.scene), nullptr);
-    EXPECT_NEAR(areaOf(lampOf(sphere.scene)->triangles()), 4 * pi * 4, 1e-4);
-    for (const auto& t : lampOf(sphere.scene)->triangles()) {
+    ASSERT_NE(emitterOf(sphere.scene), nullptr);
+    EXPECT_NEAR(areaOf(emitterOf(sphere.scene)->triangles()), 4 * pi * 4, 1e-4);
+    for (const auto& t : emitterOf(sphere.scene)->triangles()) {
         EXPECT_EQ(t.radiance, Rgb(3, 2, 1));
         const Vec3d normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
         EXPECT_GT(dot(normal, t.corner[0]), 0);
         for (const Vec3d& p : t.corner) EXPECT_NEAR(length(p), 2, 2e-3);
     }
     const BuiltScene disk = build("[[surface]]\ndisk = { radius = 3 }\nmaterial = \"lamp\"");
-    EXPECT_NEAR(areaOf(lampOf(disk.scene)->triangles()), pi * 9, 1e-4);
-    for (const auto& t : lampOf(disk.scene)->triangles())
+    EXPECT_NEAR(areaOf(emitterOf(disk.scene)->triangles()), pi * 9, 1e-4);
+    for (const auto& t : emitterOf(disk.scene)->triangles())
         EXPECT_GT(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]).y, 0);
 }
 
@@ -166,7 +166,7 @@ TEST(BuildSurfaces, EmittersAreCountedByInstance) {
         "[[surface]]\nplane = { size = [1, 1] }\nmaterial = \"lamp\"");
     const SurfaceSet& set = *built.scene.surfaces;
     EXPECT_EQ(set.firstEmitter, (std::vector<std::uint32_t>{SurfaceObject::dark, 0, 12, 24}));
-    const auto triangles = lampOf(built.scene)->triangles();
+    const auto triangles = emitterOf(built.scene)->triangles();
     ASSERT_EQ(triangles.size(), 26u);
     EXPECT_NEAR(areaOf(triangles.subspan(12, 12)), 24, 1e-6);
     // Outwards of the mirrored box as well, and where rays find the same triangle.
@@ -262,7 +262,7 @@ TEST(BuildSurfaces, EmissionOfATextureIsItsMeanOverEachTriangle) {
     const BuiltScene built = build(textured("type = \"emissive\"\n"
                                             "radiance = { image = \"two.ppm\", times = 8 }"),
                                    dir.path());
-    const auto triangles = lampOf(built.scene)->triangles();
+    const auto triangles = emitterOf(built.scene)->triangles();
     ASSERT_EQ(triangles.size(), 2u);
     // Both together are the whole image, half of which is red.
     EXPECT_NEAR(triangles[0].radiance[0] + triangles[1].radiance[0], 8, 0.2);
@@ -273,7 +273,7 @@ TEST(BuildSurfaces, MixturesEmitTheirShare) {
     const BuiltScene built = build(
         "[[surface]]\nsphere = {}\nmaterial = \"m\"\n[[material]]\nname = \"m\"\n"
         "type = \"mix\"\nfirst = \"lamp\"\nsecond = \"air\"\nweight = 0.25");
-    EXPECT_EQ(lampOf(built.scene)->triangles()[0].radiance, Rgb(2.25f, 1.5f, 0.75f));
+    EXPECT_EQ(emitterOf(built.scene)->triangles()[0].radiance, Rgb(2.25f, 1.5f, 0.75f));
 }
 
 TEST(BuildSurfaces, AVolumeFillsOneInstance) {

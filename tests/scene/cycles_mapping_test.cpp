@@ -82,7 +82,7 @@ TEST(CyclesMapping, OneBounceLessThanScatterings) {
     EXPECT_EQ(cyclesBounces(std::nullopt), 1024);
 }
 
-TEST(CyclesMapping, Lamps) {
+TEST(CyclesMapping, Lights) {
     const CyclesColour point = cyclesPoint({1, 2, 0.5f});
     EXPECT_NEAR(point.strength, 8 * pi, 1e-5);
     expectNear(point.colour, {0.5f, 1, 0.25f});

@@ -42,7 +42,7 @@ constexpr const char* sun = R"(
 type = "sun"
 direction = [0, -1, -0.3]
 )";
-constexpr const char* farLamp = R"(
+constexpr const char* farLight = R"(
 [[light]]
 type = "point"
 position = [0, 30, 0]
@@ -76,8 +76,8 @@ TEST(NeedsCost, PretendedNeedsDrawTheSamePicture) {
     expectSamePicture(std::string(haze) + environment, Need::Scattering);
 }
 
-TEST(NeedsCost, LampsFarAwayMayBeSampledAsNearOnes) {
-    expectSamePicture(std::string(fog) + farLamp, Need::LocalLights);
+TEST(NeedsCost, LocalLightsFarAwayMayBeSampledAsNearOnes) {
+    expectSamePicture(std::string(fog) + farLight, Need::LocalLights);
 }
 
 TEST(NeedsCost, WhatIsNeededIsNotCompared) {

@@ -26,7 +26,7 @@ struct Goal {
         return seconds ? trade::bestAt(models, *seconds) : trade::fastestTo(models, error);
     }
     /// Of a model: "relMSE 1.2e-04 in 54 s".
-    std::string promise(const trade::TradeModel& model) const {
+    std::string expected(const trade::TradeModel& model) const {
         if (seconds) {
             const auto e = model.errorAt(*seconds);
             return e ? fmt::format("relMSE {:.2g} in {}", e->value, formatDuration(*seconds))
@@ -102,9 +102,11 @@ bool chooseQuality(scene::SceneDescription& scene, const RenderOptions& options,
         chosen = result->candidates[winner->best].candidate;
         if (limit <= 0) allowed = std::sqrt(share * (goal.error - model.biasError()));
         spdlog::info(
-            "'{}' promises {}, '{}' {} (bias counted with two standard errors; measured in {})",
-            chosen.name, goal.promise(model), result->candidates.front().candidate.name,
-            goal.promise(models.front()), formatDuration(result->seconds));
+            "'{}' is expected to reach {}, '{}' {} (bias counted with two standard errors; "
+            "measured "
+            "in {})",
+            chosen.name, goal.expected(model), result->candidates.front().candidate.name,
+            goal.expected(models.front()), formatDuration(result->seconds));
     } else {
         spdlog::info("there was no time to measure what choices bring here: quality 'final'");
     }
