@@ -118,8 +118,8 @@ TEST(SurfaceErrors, OfShapes) {
               "scene.toml:9:13: surface[0].level_set needs a file: it names a grid of a VDB file");
     EXPECT_EQ(
         surfaceMistake("disk = {}\nsmooth = 30"),
-        "scene.toml:9:10: surface[0].smooth is for surfaces of a file or a lathe; this one is "
-        "as smooth as it is");
+        "scene.toml:9:10: surface[0].smooth is for surfaces of a file or a lathe; the normals "
+        "of other shapes are exact");
     EXPECT_EQ(surfaceMistake("lathe = { profile = [[0, 0], [1, 1]] }\nsmooth = \"file\""),
               "scene.toml:9:10: surface[0].smooth is \"file\", but the surface is a lathe");
     EXPECT_EQ(surfaceMistake("disk = {}\ntransform = { scale = [1, 0, 1] }"),

@@ -15,7 +15,8 @@ constexpr int mostPriority = 1'000'000;
 std::optional<double> readSmooth(const TomlValue& value, const S& surface) {
     const bool file = std::holds_alternative<MeshShape>(surface.shape);
     if (!file && !std::holds_alternative<LatheShape>(surface.shape))
-        throw value.error("is for surfaces of a file or a lathe; this one is as smooth as it is");
+        throw value.error(
+            "is for surfaces of a file or a lathe; the normals of other shapes are exact");
     if (!value.isText()) return value.number({0, 180});
     const std::array<std::string, 2> words{"flat", "file"};
     if (value.choice("smoothing", words) == 0) return 0;
