@@ -13,8 +13,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -18,8 +18,6 @@ namespace woodcock::test {
 
 using namespace bake;
 using namespace grid;
-using namespace proof;
-
 namespace {
 
 template <class Grid = openvdb::FloatGrid>

@@ -7,7 +7,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,10 +76,10 @@ TEST(FrameNames, ASeriesIsWhatStandsAroundTheNumber) {
 }
 
 TEST(FrameNames, APatternFindsItsFiles) {
-    const proof::TempDir dir;
+    const TempDir dir;
     for (const char* name :
          {"a.0010.vdb", "a.0002.vdb", "a.x.vdb", "a..vdb", "b.0003.vdb", "a.0004.png", "a.-01.vdb"})
-        proof::writeText(dir / name, "");
+        writeText(dir / name, "");
     for (const char* pattern : {"a.####.vdb", "a.%04d.vdb", "a.$F4.vdb", "a.*.vdb"})
         EXPECT_EQ(seriesOfPattern((dir / pattern).string()).numbers, (Names{"-01", "0002", "0010"}))
             << pattern;

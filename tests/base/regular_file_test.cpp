@@ -9,7 +9,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
 namespace {
 
 std::string opening(const std::filesystem::path& file) {
@@ -17,7 +16,7 @@ std::string opening(const std::filesystem::path& file) {
 }
 
 TEST(RegularFile, OthersAreRefusedAtOnce) {
-    const proof::TempDir dir;
+    const TempDir dir;
     ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
     std::filesystem::create_symlink("/dev/zero", dir / "zero");
     const auto expected = [&](const char* name, const char* reason) {
@@ -31,8 +30,8 @@ TEST(RegularFile, OthersAreRefusedAtOnce) {
 }
 
 TEST(RegularFile, ReadsWhatIsThere) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "a", "0123456789");
+    const TempDir dir;
+    writeText(dir / "a", "0123456789");
     const RegularFile file(dir / "a", "table");
     EXPECT_EQ(file.size(), 10u);
     EXPECT_EQ(file.read(2, 3), "234");

@@ -12,7 +12,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
 namespace {
 
 std::string keyOf(std::size_t parts) {
@@ -54,9 +53,9 @@ TEST(TomlNesting, ValuesHaveAnEndToo) {
 }
 
 TEST(TomlReader, APipeIsReadAndEndlessOnesAreNot) {
-    const proof::TempDir dir;
+    const TempDir dir;
     ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
-    std::thread writer([&] { proof::writeText(dir / "pipe", "a = 1"); });
+    std::thread writer([&] { writeText(dir / "pipe", "a = 1"); });
     EXPECT_EQ(readTomlFile(dir / "pipe", "recipe"), "a = 1");
     writer.join();
     expectError(ErrorKind::Input, "recipe '/dev/zero' is larger than 4 MB",

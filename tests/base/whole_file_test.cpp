@@ -20,7 +20,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,16 +47,16 @@ auto filesIn(const fs::path& directory) {
 }
 
 TEST(WholeFile, WritesAndReplaces) {
-    const proof::TempDir dir;
+    const TempDir dir;
     const std::vector<unsigned char> bytes{'a', 0, 255};
-    proof::writeText(dir / "a.bin", "something longer that was there before");
+    writeText(dir / "a.bin", "something longer that was there before");
     writeWholeFile(dir / "a.bin", bytes);
-    EXPECT_EQ(proof::readText(dir / "a.bin"), std::string(bytes.begin(), bytes.end()));
+    EXPECT_EQ(readText(dir / "a.bin"), std::string(bytes.begin(), bytes.end()));
     EXPECT_EQ(filesIn(dir.path()), 1);
 }
 
 TEST(WholeFile, AFullDiskLeavesNothing) {
-    const proof::TempDir dir;
+    const TempDir dir;
     // More than a buffer, so that writing fails; less than one, so that closing does.
     for (const size_t size : {1u << 20, 2000u}) {
         const std::vector<unsigned char> bytes(size, 7);
@@ -72,15 +71,15 @@ TEST(WholeFile, AFullDiskLeavesNothing) {
 }
 
 TEST(WholeFile, AFailureKeepsTheFormerFile) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "a.bin", "former");
+    const TempDir dir;
+    writeText(dir / "a.bin", "former");
     EXPECT_THROW(
         {
             const FileSizeLimit limit(1000);
             writeWholeFile(dir / "a.bin", std::vector<unsigned char>(5000));
         },
         Error);
-    EXPECT_EQ(proof::readText(dir / "a.bin"), "former");
+    EXPECT_EQ(readText(dir / "a.bin"), "former");
     EXPECT_EQ(filesIn(dir.path()), 1);
 }
 
@@ -89,8 +88,8 @@ std::string check(const fs::path& file) {
 }
 
 TEST(WholeFile, ChecksThePlaceBeforehand) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "file", "");
+    const TempDir dir;
+    writeText(dir / "file", "");
     EXPECT_EQ(check(dir / "a.exr"), "no error");
     EXPECT_EQ(filesIn(dir.path()), 1);
     EXPECT_NE(check(dir.path()).find("it is a directory"), std::string::npos);
@@ -100,7 +99,7 @@ TEST(WholeFile, ChecksThePlaceBeforehand) {
 
 TEST(WholeFile, ChecksPermissionBeforehand) {
     if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
-    const proof::TempDir dir;
+    const TempDir dir;
     fs::permissions(dir.path(), fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_NE(check(dir / "a.exr").find("Permission denied"), std::string::npos);
     fs::permissions(dir.path(), fs::perms::owner_all);
@@ -113,22 +112,22 @@ struct stat statusOf(const fs::path& file) {
 }
 
 TEST(WholeFile, KeepsPermissionsAndOwner) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "a", "former");
+    const TempDir dir;
+    writeText(dir / "a", "former");
     fs::permissions(dir / "a", fs::perms(0660));
     if (geteuid() == 0) {
         ASSERT_EQ(chown((dir / "a").c_str(), 1234, 2345), 0);
     }
     const struct stat before = statusOf(dir / "a");
     writeWholeFile(dir / "a", "new");
-    EXPECT_EQ(proof::readText(dir / "a"), "new");
+    EXPECT_EQ(readText(dir / "a"), "new");
     EXPECT_EQ(statusOf(dir / "a").st_mode & 07777, 0660u);
     EXPECT_EQ(statusOf(dir / "a").st_uid, before.st_uid);
     EXPECT_EQ(statusOf(dir / "a").st_gid, before.st_gid);
 }
 
 TEST(WholeFile, NewFilesHaveTheUsersPermissions) {
-    const proof::TempDir dir;
+    const TempDir dir;
     const mode_t before = umask(027);
     writeWholeFile(dir / "a", "new");
     umask(before);
@@ -136,9 +135,9 @@ TEST(WholeFile, NewFilesHaveTheUsersPermissions) {
 }
 
 TEST(WholeFile, ASymbolicLinkStays) {
-    const proof::TempDir dir;
+    const TempDir dir;
     fs::create_directory(dir / "far");
-    proof::writeText(dir / "far/target", "former");
+    writeText(dir / "far/target", "former");
     fs::create_symlink("far/target", dir / "near");
     fs::create_symlink("near", dir / "link");
     fs::create_symlink("far/new", dir / "dangling");
@@ -148,18 +147,18 @@ TEST(WholeFile, ASymbolicLinkStays) {
         EXPECT_TRUE(fs::is_symlink(dir / name));
     }
     EXPECT_TRUE(fs::is_symlink(dir / "near"));
-    EXPECT_EQ(proof::readText(dir / "far/target"), "link");
-    EXPECT_EQ(proof::readText(dir / "far/new"), "dangling");
+    EXPECT_EQ(readText(dir / "far/target"), "link");
+    EXPECT_EQ(readText(dir / "far/new"), "dangling");
     fs::create_symlink("circle", dir / "circle");
     EXPECT_NE(check(dir / "circle").find("symbolic links"), std::string::npos);
 }
 
 TEST(WholeFile, WritesIntoAPipe) {
-    const proof::TempDir dir;
+    const TempDir dir;
     ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
     const std::string text(300000, 'x');  // more than a pipe holds
     std::string got;
-    std::thread reader([&] { got = proof::readText(dir / "pipe"); });
+    std::thread reader([&] { got = readText(dir / "pipe"); });
     checkWritable(dir / "pipe");
     writeWholeFile(dir / "pipe", text);
     reader.join();
@@ -169,7 +168,7 @@ TEST(WholeFile, WritesIntoAPipe) {
 }
 
 TEST(WholeFile, WritesIntoADevice) {
-    const proof::TempDir dir;
+    const TempDir dir;
     const fs::path null = dir / "null", full = dir / "full";
     // Devices of this test's own: whoever replaces one must not get the system's.
     if (mknod(null.c_str(), S_IFCHR | 0666, makedev(1, 3)) != 0 ||
@@ -181,7 +180,7 @@ TEST(WholeFile, WritesIntoADevice) {
     for (const fs::path& device : {null, full}) checkWritable(device);
     writeWholeFile(null, "gone");
     FileInTheMaking making(null);
-    proof::writeText(making.temporary(), "gone as well");
+    writeText(making.temporary(), "gone as well");
     making.commit();
     EXPECT_EQ(messageOf(ErrorKind::Failure, [&] { writeWholeFile(full, "no room"); }),
               fmt::format("cannot write '{}': No space left on device", full.string()));
@@ -191,13 +190,13 @@ TEST(WholeFile, WritesIntoADevice) {
 }
 
 TEST(WholeFile, WritesIntoAnOpenDescriptor) {
-    const proof::TempDir dir;
+    const TempDir dir;
     const int descriptor = open((dir / "log").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     ASSERT_EQ(write(descriptor, "head\n", 5), 5);
     const fs::path name = fmt::format("/dev/fd/{}", descriptor);
     checkWritable(name);
     writeWholeFile(name, "body");
-    EXPECT_EQ(proof::readText(dir / "log"), "head\nbody");
+    EXPECT_EQ(readText(dir / "log"), "head\nbody");
     struct stat open {};
     fstat(descriptor, &open);
     EXPECT_EQ(statusOf(dir / "log").st_ino, open.st_ino);
@@ -210,14 +209,14 @@ TEST(WholeFile, WritesIntoAnOpenDescriptor) {
 
 TEST(WholeFile, AWriteProtectedFileIsNoPlaceToWrite) {
     if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
-    const proof::TempDir dir;
-    proof::writeText(dir / "a", "former");
+    const TempDir dir;
+    writeText(dir / "a", "former");
     fs::permissions(dir / "a", fs::perms(0444));
     EXPECT_NE(check(dir / "a").find("it is write-protected"), std::string::npos);
 }
 
 TEST(WholeFile, ClearsUpAfterKilledRunsAlone) {
-    const proof::TempDir dir;
+    const TempDir dir;
     const pid_t killed = fork();
     if (killed == 0) {
         const TemporaryFile left(dir.path(), 0600);
@@ -231,7 +230,7 @@ TEST(WholeFile, ClearsUpAfterKilledRunsAlone) {
 
     const TemporaryFile living(dir.path(), 0600);
     for (const char* others : {".woodcock-0123456789abcdef.part", ".a.exr.0123abcd.part", "b.part"})
-        proof::writeText(dir / others, "somebody else's");
+        writeText(dir / others, "somebody else's");
     // As a link it would lead the clearing elsewhere.
     const std::string name = left.filename().string();
     fs::create_symlink("b.part",
@@ -243,8 +242,8 @@ TEST(WholeFile, ClearsUpAfterKilledRunsAlone) {
 }
 
 TEST(WholeFile, NothingThatIsReadIsWrittenOver) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "in.vdb", "in");
+    const TempDir dir;
+    writeText(dir / "in.vdb", "in");
     fs::create_symlink("in.vdb", dir / "link.vdb");
     fs::create_hard_link(dir / "in.vdb", dir / "hard.vdb");
     const auto said = [&](std::vector<fs::path> written) {

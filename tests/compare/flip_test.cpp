@@ -8,13 +8,11 @@
 #include <numeric>
 
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace compare;
-using namespace proof;
-
 namespace {
 
 constexpr int width = 120, height = 90;

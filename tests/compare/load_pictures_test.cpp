@@ -8,15 +8,13 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/write_image.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/compare/comparison.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace compare;
 using namespace image;
-using namespace proof;
-
 namespace {
 
 class LoadPictures : public testing::Test {

@@ -7,18 +7,16 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace convert;
 using namespace grid;
-using namespace proof;
-
 namespace {
 
 using openvdb::Coord;

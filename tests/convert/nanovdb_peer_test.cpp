@@ -13,19 +13,17 @@
 #include "tests/support/expect_error.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/convert/formats/nanovdb.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/nanovdb/file.h"
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace convert;
 using namespace grid;
-using namespace proof;
-
 namespace {
 
 using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;

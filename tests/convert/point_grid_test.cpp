@@ -7,16 +7,14 @@
 
 #include "tests/support/expect_error.h"
 #include "woodcock/base/random.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/convert/point_grid_read.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace convert;
 using namespace grid;
-using namespace proof;
-
 namespace {
 
 namespace points = openvdb::points;

@@ -6,17 +6,15 @@
 
 #include "tests/support/expect_error.h"
 #include "woodcock/base/random.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/convert/points_to_density.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace convert;
 using namespace grid;
-using namespace proof;
-
 namespace {
 
 const openvdb::FloatGrid& only(const VdbGrids& grids) {

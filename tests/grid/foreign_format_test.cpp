@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/grid/vdb/file.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace grid;
-using namespace proof;
-
 namespace {
 
 using namespace std::string_literals;

@@ -16,8 +16,6 @@
 namespace woodcock::test {
 
 using namespace image;
-using namespace proof;
-
 namespace {
 
 /// IEC 61966-2-1.
@@ -118,12 +116,12 @@ protected:
     ConfigWithTables() {
         std::filesystem::create_directory(dir_ / "tables");
         // Doubles below 0.5, white above.
-        proof::writeText(dir_ / "tables/filmic.spi1d",
-                         "Version 1\nFrom 0 1\nLength 3\nComponents 1\n{\n0\n1\n1\n}\n");
+        writeText(dir_ / "tables/filmic.spi1d",
+                  "Version 1\nFrom 0 1\nLength 3\nComponents 1\n{\n0\n1\n1\n}\n");
     }
 
     std::filesystem::path write(const std::string& version, const std::string& extraView = "") {
-        proof::writeText(
+        writeText(
             dir_ / "config.ocio",
             fmt::format(R"(ocio_profile_version: {}
 
@@ -173,7 +171,7 @@ looks:
     }
 
     const EnvironmentVariable none_{"OCIO", std::nullopt};
-    const proof::TempDir dir_;
+    const TempDir dir_;
 };
 
 TEST_F(ConfigWithTables, FindsItsFilesAndLooks) {
@@ -220,7 +218,7 @@ TEST_F(ConfigWithTables, ErrorsNameTheConfigAndTheReason) {
               "cannot read the OpenColorIO config '/nowhere/config.ocio': there is no such file");
     EXPECT_NE(message(write("3.0")).find("is of version 3.0; this build's OpenColorIO"),
               std::string::npos);
-    proof::writeText(dir_ / "no.ocio", "ocio_profile_version: 2\nroles: [\n");
+    writeText(dir_ / "no.ocio", "ocio_profile_version: 2\nroles: [\n");
     EXPECT_NE(message(dir_ / "no.ocio").find("no.ocio' cannot be used: "), std::string::npos);
 
     const EnvironmentVariable variable("OCIO", "/nowhere/config.ocio");
@@ -245,17 +243,17 @@ class HostileConfig : public testing::Test {
 protected:
     std::string refusal(const std::string& spaces, const std::string& looks = "",
                         const std::string& views = "") const {
-        proof::writeText(dir_ / "c.ocio",
-                         "ocio_profile_version: 2\nenvironment: {}\n"
-                         "search_path: .\nroles: {default: lin, scene_linear: lin}\n"
-                         "file_rules:\n  - !<Rule> {name: Default, colorspace: lin}\n"
-                         "displays:\n  sRGB:\n    - !<View> {name: A, colorspace: "
-                         "lin}\n" +
-                             views + "looks:\n" + looks +
-                             "  - !<Look> {name: plain, process_space: lin}\n"
-                             "colorspaces:\n  - !<ColorSpace> {name: lin}\n"
-                             "  - !<ColorSpace> {name: log}\n" +
-                             spaces);
+        writeText(dir_ / "c.ocio",
+                  "ocio_profile_version: 2\nenvironment: {}\n"
+                  "search_path: .\nroles: {default: lin, scene_linear: lin}\n"
+                  "file_rules:\n  - !<Rule> {name: Default, colorspace: lin}\n"
+                  "displays:\n  sRGB:\n    - !<View> {name: A, colorspace: "
+                  "lin}\n" +
+                      views + "looks:\n" + looks +
+                      "  - !<Look> {name: plain, process_space: lin}\n"
+                      "colorspaces:\n  - !<ColorSpace> {name: lin}\n"
+                      "  - !<ColorSpace> {name: log}\n" +
+                      spaces);
         return messageOf(ErrorKind::Input, [&] {
             const ColorConfig config(dir_ / "c.ocio");
             config.displayTransform({});
@@ -266,7 +264,7 @@ protected:
                            transform);
     }
     const EnvironmentVariable none_{"OCIO", std::nullopt};
-    const proof::TempDir dir_;
+    const TempDir dir_;
 };
 
 TEST_F(HostileConfig, CirclesAreRefused) {
@@ -344,21 +342,21 @@ TEST_F(HostileConfig, TablesAreRegularFiles) {
               std::string::npos);
     EXPECT_NE(refusal(space("t", "!<FileTransform> {src: zero.cube}")).find("it is a device"),
               std::string::npos);
-    proof::writeText(dir_ / "a.ctf",
-                     "<ProcessList version=\"2\" id=\"a\"><Reference path=\"pipe.cube\" "
-                     "inBitDepth=\"32f\" outBitDepth=\"32f\"/></ProcessList>");
+    writeText(dir_ / "a.ctf",
+              "<ProcessList version=\"2\" id=\"a\"><Reference path=\"pipe.cube\" "
+              "inBitDepth=\"32f\" outBitDepth=\"32f\"/></ProcessList>");
     EXPECT_NE(refusal(space("t", "!<FileTransform> {src: a.ctf}")).find("it is a pipe"),
               std::string::npos);
 }
 
 TEST_F(HostileConfig, NumbersBeyondAllBoundsAreRefusedInWords) {
     for (const std::string version : {"9223372036854775807", "99999999999999999999.5"}) {
-        proof::writeText(dir_ / "v.ocio", "ocio_profile_version: " + version + "\n");
+        writeText(dir_ / "v.ocio", "ocio_profile_version: " + version + "\n");
         expectError(ErrorKind::Input, "v.ocio' is of version ",
                     [&] { ColorConfig config(dir_ / "v.ocio"); });
     }
     // A million digits took all of the stack.
-    proof::writeText(dir_ / "v.ocio", "ocio_profile_version: " + std::string(1000000, '1') + "\n");
+    writeText(dir_ / "v.ocio", "ocio_profile_version: " + std::string(1000000, '1') + "\n");
     expectError(ErrorKind::Input, "v.ocio' is of version ",
                 [&] { ColorConfig config(dir_ / "v.ocio"); });
 }

@@ -16,8 +16,6 @@
 namespace woodcock::test {
 
 using namespace image;
-using namespace proof;
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -40,7 +40,7 @@ protected:
     }
 
     const EnvironmentVariable none_{"OCIO", std::nullopt};
-    const proof::TempDir dir_;
+    const TempDir dir_;
     Film film_;
     OutputSettings settings_;
 };

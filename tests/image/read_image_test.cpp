@@ -23,7 +23,7 @@ std::string refusalOf(const std::filesystem::path& file) {
 
 class ReadImage : public testing::Test {
 protected:
-    proof::TempDir dir_;
+    TempDir dir_;
 };
 
 TEST_F(ReadImage, KeepsFloatsAndOrder) {
@@ -66,17 +66,17 @@ TEST_F(ReadImage, NamesTheFileThatCannotBeRead) {
               "cannot read image '/nowhere/sky.exr': there is no such file");
     EXPECT_NE(refusalOf(dir_.path()).find("it is a directory"), std::string::npos);
 
-    proof::writeText(dir_ / "text.exr", "this is no image");
+    writeText(dir_ / "text.exr", "this is no image");
     EXPECT_NE(refusalOf(dir_ / "text.exr").find("text.exr"), std::string::npos);
 
     proof::writeFloats(dir_ / "whole.exr", 64, 64, 3, std::vector<float>(64 * 64 * 3, 0.3f));
-    const std::string bytes = proof::readText(dir_ / "whole.exr");
-    proof::writeText(dir_ / "cut.exr", bytes.substr(0, bytes.size() / 2));
+    const std::string bytes = readText(dir_ / "whole.exr");
+    writeText(dir_ / "cut.exr", bytes.substr(0, bytes.size() / 2));
     EXPECT_NE(refusalOf(dir_ / "cut.exr").find("cut.exr"), std::string::npos);
 }
 
 TEST_F(ReadImage, RefusesSizesBeyondTheFile) {
-    proof::writeText(dir_ / "vast.ppm", "P6 2000000 2000000 255\n");
+    writeText(dir_ / "vast.ppm", "P6 2000000 2000000 255\n");
     const std::string message = refusalOf(dir_ / "vast.ppm");
     EXPECT_NE(message.find("its header says 2000000 x 2000000 pixels"), std::string::npos)
         << message;

@@ -10,13 +10,11 @@
 #include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/write_image.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace image;
-using namespace proof;
-
 namespace {
 
 std::vector<std::string> names(const LayeredImage& image) {

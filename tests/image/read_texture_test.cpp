@@ -34,7 +34,7 @@ protected:
     }
 
     const ColorConfig config_;
-    proof::TempDir dir_;
+    TempDir dir_;
 };
 
 TEST_F(ReadTexture, TakesIntegersForPicturesAndFloatsForLight) {
@@ -76,15 +76,15 @@ TEST_F(ReadTexture, NamesWhatItDoesNotKnow) {
 }
 
 TEST_F(ReadTexture, AsksForTheSpaceWhereTheConfigHasNone) {
-    proof::writeText(dir_ / "config.ocio",
-                     "ocio_profile_version: 2\n"
-                     "roles: {default: plain, scene_linear: plain}\n"
-                     "file_rules: [!<Rule> {name: Default, colorspace: default}]\n"
-                     "displays:\n"
-                     "  screen:\n"
-                     "    - !<View> {name: as it is, colorspace: plain}\n"
-                     "colorspaces:\n"
-                     "  - !<ColorSpace> {name: plain}\n");
+    writeText(dir_ / "config.ocio",
+              "ocio_profile_version: 2\n"
+              "roles: {default: plain, scene_linear: plain}\n"
+              "file_rules: [!<Rule> {name: Default, colorspace: default}]\n"
+              "displays:\n"
+              "  screen:\n"
+              "    - !<View> {name: as it is, colorspace: plain}\n"
+              "colorspaces:\n"
+              "  - !<ColorSpace> {name: plain}\n");
     const ColorConfig config(dir_ / "config.ocio");
     proof::writeFloats(dir_ / "a.png", 1, 1, 3, {0, 1, 0});
     expectError(ErrorKind::Input, "name the texture's colour space",

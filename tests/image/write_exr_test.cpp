@@ -33,7 +33,7 @@ protected:
         return proof::readBack(dir_ / "a.exr");
     }
 
-    proof::TempDir dir_;
+    TempDir dir_;
     Film film_;
     RenderMetadata metadata_{16, 80, 0xfedcba9876543210u, 12.5, "digest", "woodcock render a"};
 };

@@ -13,10 +13,10 @@
 
 namespace woodcock::test {
 
-using namespace grid;
-using namespace medium;
 using namespace proof;
 
+using namespace grid;
+using namespace medium;
 namespace {
 
 /// The renderer's medium with nearest look-ups.

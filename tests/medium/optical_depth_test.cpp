@@ -6,9 +6,9 @@
 
 namespace woodcock::test {
 
-using namespace medium;
 using namespace proof;
 
+using namespace medium;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -7,10 +7,10 @@
 
 namespace woodcock::test {
 
-using namespace grid;
-using namespace medium;
 using namespace proof;
 
+using namespace grid;
+using namespace medium;
 namespace {
 
 std::vector<Segment> segments(const MediumPart& part, const TestRay& ray) {

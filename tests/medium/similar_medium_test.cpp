@@ -10,9 +10,9 @@
 
 namespace woodcock::test {
 
-using namespace medium;
 using namespace proof;
 
+using namespace medium;
 namespace {
 
 /// Overlapping coloured parts, of which one has an albedo grid and scatters forwards: its

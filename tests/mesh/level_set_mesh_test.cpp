@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/mesh/surface_mesh.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {

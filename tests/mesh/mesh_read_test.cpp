@@ -10,14 +10,12 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/mesh_volume.h"
 #include "woodcock/base/random.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/mesh/triangle_mesh.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace mesh;
-using namespace proof;
-
 namespace {
 
 #define NEEDS_ASSIMP() \

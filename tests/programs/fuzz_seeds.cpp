@@ -10,7 +10,7 @@
 namespace {
 
 namespace fs = std::filesystem;
-using namespace woodcock::proof;
+using namespace woodcock;
 using namespace woodcock::test;
 
 void writeScenes(const fs::path& directory) {

@@ -2,7 +2,7 @@
 // Qualities are named in the order of what they cost, counted and not timed.
 #include <gtest/gtest.h>
 
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"

@@ -8,9 +8,9 @@
 #include "tests/scene/built_scene.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/proof/support/render_scene.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/write.h"
 

@@ -6,7 +6,7 @@
 #include "tests/scene/built_scene.h"
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"
@@ -15,7 +15,6 @@ namespace woodcock::test {
 
 using namespace light;
 using namespace medium;
-using namespace proof;
 using namespace render;
 using namespace scene;
 using namespace surface;

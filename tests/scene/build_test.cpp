@@ -202,7 +202,7 @@ void writeSky(const std::filesystem::path& file) {
             const float rgb[3] = {centre ? 1.0f : 0.0f, 0.0f, top ? 1.0f : 0.0f};
             bytes.append(reinterpret_cast<const char*>(rgb), sizeof rgb);
         }
-    proof::writeText(file, bytes);
+    writeText(file, bytes);
 }
 
 TEST(BuildScene, EnvironmentImagesTurnAboutTheUpAxis) {

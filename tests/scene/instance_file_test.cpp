@@ -4,18 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "woodcock/base/error.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace scene;
-using namespace proof;
-
 namespace {
 
 std::vector<Affine3d> read(const std::string& text) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "places.txt", text);
+    const TempDir dir;
+    writeText(dir / "places.txt", text);
     return readInstanceFile(dir / "places.txt");
 }
 /// Without the directory.

@@ -11,7 +11,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
 using namespace scene;
 
 namespace {

@@ -8,8 +8,8 @@
 
 #include "tests/support/expect_estimate.h"
 #include "woodcock/base/random.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/proof/support/render_scene.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/parse.h"

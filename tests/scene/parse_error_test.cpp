@@ -11,8 +11,6 @@
 namespace woodcock::test {
 
 using namespace scene;
-using namespace proof;
-
 namespace {
 
 std::string volumeMistake(const std::string& lines) {
@@ -355,7 +353,7 @@ TEST(ParseErrors, OfMalformedOverridesAreTheUsersWords) {
 }
 
 TEST(ParseErrors, OfFiles) {
-    const proof::TempDir dir;
+    const TempDir dir;
     const auto mistake = [](const std::filesystem::path& file) -> std::string {
         try {
             parseScene(file);
@@ -368,10 +366,10 @@ TEST(ParseErrors, OfFiles) {
     EXPECT_EQ(mistake(dir / "no.toml"),
               "scene file '" + (dir / "no.toml").string() + "' does not exist");
     EXPECT_EQ(mistake(dir.path()), "scene file '" + dir.path().string() + "' is a directory");
-    proof::writeText(dir / "big.toml", std::string((4 << 20) + 1, '#'));
+    writeText(dir / "big.toml", std::string((4 << 20) + 1, '#'));
     EXPECT_EQ(mistake(dir / "big.toml"), "scene file '" + (dir / "big.toml").string() +
                                              "' is larger than 4 MB: is it a scene file?");
-    proof::writeText(dir / "bad.toml", "[[volume]]\nfile = \"a.vdb\"\n\n  g = 2");
+    writeText(dir / "bad.toml", "[[volume]]\nfile = \"a.vdb\"\n\n  g = 2");
     EXPECT_EQ(mistake(dir / "bad.toml"),
               (dir / "bad.toml").string() +
                   ":4:7: volume[0].g is 2; it must lie strictly between -1 and 1");

@@ -13,8 +13,6 @@ namespace woodcock::test {
 using namespace grid;
 using namespace render;
 using namespace scene;
-using namespace proof;
-
 namespace {
 
 SceneDescription parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -275,8 +273,8 @@ TEST(Parse, PathsAreRelativeToTheSceneAndExpanded) {
 }
 
 TEST(Parse, ReadsFiles) {
-    const proof::TempDir dir;
-    proof::writeText(dir / "scene.toml", "[[volume]]\nfile = \"a.vdb\"");
+    const TempDir dir;
+    writeText(dir / "scene.toml", "[[volume]]\nfile = \"a.vdb\"");
     const SceneDescription scene = parseScene(dir / "scene.toml");
     EXPECT_EQ(scene.volumes.at(0).file, dir / "a.vdb");
     EXPECT_EQ(scene.places.at("volume[0].file"), (dir / "scene.toml").string() + ":2:8");

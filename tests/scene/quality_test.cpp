@@ -12,7 +12,6 @@
 namespace woodcock::test {
 
 using namespace grid;
-using namespace proof;
 using namespace scene;
 
 namespace {

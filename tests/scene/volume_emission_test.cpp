@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/medium/blackbody.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/load.h"

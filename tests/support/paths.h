@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
 

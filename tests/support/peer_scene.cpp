@@ -9,7 +9,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
 using namespace render;
 using namespace scene;
 

@@ -13,8 +13,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
-
 namespace {
 
 /// In the child: becomes the program, or ends with 127.

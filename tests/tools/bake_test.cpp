@@ -21,8 +21,6 @@ namespace woodcock::test {
 using namespace bake;
 using namespace grid;
 using namespace image;
-using namespace proof;
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -10,8 +10,6 @@
 
 namespace woodcock::test {
 
-using namespace proof;
-
 namespace {
 
 double reference(int x, int y, std::size_t channel) {

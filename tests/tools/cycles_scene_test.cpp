@@ -7,7 +7,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/tools/fog_scene.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/parse.h"

@@ -7,11 +7,10 @@
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tools/trade/report_html.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
 
-using namespace proof;
 using namespace trade;
 
 namespace {

@@ -5,11 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_program.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
-
-using namespace proof;
 
 namespace {
 

@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
 
-using namespace proof;
 using namespace scene;
 using namespace trade;
 

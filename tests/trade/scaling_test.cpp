@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/trade/lookup_rate.h"
 #include "woodcock/trade/scaling_cloud.h"
 #include "woodcock/trade/scaling_runs.h"
@@ -12,7 +12,6 @@
 namespace woodcock::test {
 
 using namespace grid;
-using namespace proof;
 using namespace trade;
 
 namespace {

@@ -10,9 +10,9 @@
 
 #include "tools/bake/preview.h"
 #include "tools/common/interrupt.h"
-#include "tools/common/scratch_directory.h"
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/display.h"
 #include "woodcock/image/encode_image.h"
@@ -79,7 +79,7 @@ void checkSheet(const std::filesystem::path& picture) {
 
 bool writeSheet(const std::filesystem::path& picture, const SheetSettings& settings,
                 ProgressStyle style) {
-    const ScratchDirectory scratch;
+    const TempDir scratch;
     const std::filesystem::path volume = scratch.path() / "preset.vdb";
     Sheet sheet(bake::presets().size());
     WorkProgress progress(style, "sheet");

@@ -14,9 +14,9 @@
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/common/report_options.h"
-#include "tools/common/scratch_directory.h"
 #include "tools/compare/against_cycles.h"
 #include "tools/compare/report.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/base/whole_file.h"
 
 namespace woodcock::tool {
@@ -225,7 +225,7 @@ ExitCode run(const CompareWords& words, const std::string& commandLine) {
         o.sources = renderBoth(both, o.report, commandLine, style);
         return runCompare(o);
     }
-    const ScratchDirectory scratch;
+    const TempDir scratch;
     o.sources = renderBoth(both, scratch.path(), commandLine, style);
     return runCompare(o);
 }

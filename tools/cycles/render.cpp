@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/common/child_process.h"
-#include "tools/common/scratch_directory.h"
 #include "tools/cycles/blender.h"
 #include "tools/cycles/surfaces.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/write_exr.h"
@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void writeScripts(const ScratchDirectory& directory) {
+void writeScripts(const TempDir& directory) {
     const std::pair<const char*, std::string_view> scripts[] = {
         {"render_in_cycles.py", blenderRenderInCycles}, {"cycles_nodes.py", blenderCyclesNodes},
         {"cycles_volumes.py", blenderCyclesVolumes},    {"cycles_lights.py", blenderCyclesLights},
@@ -103,7 +103,7 @@ CyclesResult renderWithCycles(const scene::SceneDescription& scene,
     const Blender blender = findBlender(options.blender, options.shouldStop);
     spdlog::debug("{} is {}", blender.program, blender.version);
 
-    const ScratchDirectory directory;
+    const TempDir directory;
     writeScripts(directory);
     writeWholeFile(directory / "scene.json", text);
     writeCyclesMeshes(directory.string(), scene, loaded);

@@ -7,9 +7,9 @@
 #include "tools/common/json_text.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
-#include "tools/common/scratch_directory.h"
 #include "tools/trade/parts.h"
 #include "tools/trade/report_html.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/trade/scaling.h"
 
 namespace woodcock::tool {
@@ -85,7 +85,7 @@ std::string scalingCsv(const trade::ScalingReport& report) {
 
 void runScaling(double budget, const std::filesystem::path& report, const ReportOptions& reports) {
     prepareReport(report, {"scaling.json", "scaling.csv", "scaling.html"});
-    const ScratchDirectory scratch;
+    const TempDir scratch;
     const trade::ScalingReport found = trade::measureScaling(
         {.budget = budget, .scratch = scratch.path(), .onProgress = [](auto& what) {
              spdlog::info("{}", what);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 /// Checks of the renderer against theory. The unit tests run them, and users can run them on their
 /// own machine and build (`woodcock verify`).

@@ -8,13 +8,11 @@
 #include <limits>
 
 #include "tests/support/expect_error.h"
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace convert;
-using namespace proof;
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/convert/formats/dense_formats.h"
 #include "woodcock/proof/support/read_back.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 

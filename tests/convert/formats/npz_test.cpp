@@ -3,14 +3,12 @@
 #include <zlib.h>
 
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/convert/formats/dense_formats.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::test {
 
 using namespace convert;
-using namespace proof;
-
 namespace {
 
 struct Entry {

@@ -3,10 +3,10 @@
 
 #include "tests/support/damage_vdb.h"
 #include "tests/support/expect_error.h"
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/grid/vdb/openvdb_grids.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
 #include "woodcock/grid/vdb/read_grids.h"
-#include "woodcock/proof/support/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 
 namespace woodcock::test {

@@ -44,8 +44,10 @@ render::Scene withParts(const render::Scene& scene,
 }
 
 namespace {
+
 bool adaptiveSamples = false;
-}
+
+}  // namespace
 
 void sampleAdaptively(bool adaptive) { adaptiveSamples = adaptive; }
 

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "woodcock/base/temp_dir.h"
 #include "woodcock/grid/vdb/openvdb_trees.h"
-#include "woodcock/proof/support/temp_dir.h"
 
 namespace woodcock::proof {
 

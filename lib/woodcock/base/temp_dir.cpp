@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/proof/support/temp_dir.h"
+#include "woodcock/base/temp_dir.h"
 
 #include <stdlib.h>
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
+#include <system_error>
 
-namespace woodcock::proof {
+#include "woodcock/base/error.h"
+
+namespace woodcock {
 
 TempDir::TempDir() {
     std::string name = (std::filesystem::temp_directory_path() / "woodcock-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary directory: " + name);
+    if (!mkdtemp(name.data()))
+        throw failure("cannot make the directory '{}': {}", name,
+                      std::generic_category().message(errno));
     path_ = name;
 }
 
@@ -22,14 +27,14 @@ TempDir::~TempDir() {
 
 std::string readText(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw std::runtime_error("cannot read " + file.string());
+    if (!in) throw failure("cannot read '{}'", file.string());
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void writeText(const std::filesystem::path& file, const std::string& text) {
     std::ofstream out(file, std::ios::binary);
     if (!out.write(text.data(), static_cast<std::streamsize>(text.size())).flush())
-        throw std::runtime_error("cannot write " + file.string());
+        throw failure("cannot write '{}'", file.string());
 }
 
-}  // namespace woodcock::proof
+}  // namespace woodcock
