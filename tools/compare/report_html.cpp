@@ -11,13 +11,11 @@
 #include "woodcock/base/error.h"
 #include "woodcock/compare/pack.h"
 
+namespace woodcock::tool {
+
 // Of page/, see CMakeLists.txt.
-namespace woodcock {
 extern const std::string_view comparePageStyle, comparePageImages, comparePageViewer,
     comparePageControls, comparePageTables;
-}  // namespace woodcock
-
-namespace woodcock::tool {
 
 using Json = nlohmann::ordered_json;
 

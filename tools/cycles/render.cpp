@@ -18,12 +18,10 @@
 #include "woodcock/image/write_exr.h"
 #include "woodcock/scene/write.h"
 
-namespace woodcock {
+namespace woodcock::tool {
+
 extern const std::string_view blenderRenderInCycles, blenderCyclesNodes, blenderCyclesVolumes,
     blenderCyclesLights, blenderCyclesSurfaces, blenderMapping;
-}
-
-namespace woodcock::tool {
 
 namespace {
 

@@ -3,12 +3,10 @@
 
 #include <fmt/core.h>
 
-// Of this folder, see CMakeLists.txt.
-namespace woodcock {
-extern const std::string_view pageFrame, pageStyle, pageCommon;
-}  // namespace woodcock
-
 namespace woodcock::tool {
+
+// Of this folder, see CMakeLists.txt.
+extern const std::string_view pageFrame, pageStyle, pageCommon;
 
 namespace {
 

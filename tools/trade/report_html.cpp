@@ -6,15 +6,13 @@
 #include "tools/pages/page.h"
 #include "tools/trade/report_html.h"
 
+namespace woodcock::tool {
+
 // Of ../pages and page/, see their CMakeLists.txt.
-namespace woodcock {
 extern const std::string_view pageChart, pageChartRows, pageChartStyle;
 extern const std::string_view tradePageStyle, tradePageModel, tradePageWords, tradePageChoose,
     tradePagePlots, tradePageTables, tradePageCrops, tradePageStart;
 extern const std::string_view scalingPageScript, needsPageScript;
-}  // namespace woodcock
-
-namespace woodcock::tool {
 
 namespace {
 

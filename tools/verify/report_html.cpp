@@ -4,12 +4,10 @@
 #include "tools/pages/page.h"
 #include "tools/verify/report.h"
 
-// Of page/, see CMakeLists.txt.
-namespace woodcock {
-extern const std::string_view verifyPageStyle, verifyPageCases, verifyPagePlots, verifyPageStart;
-}  // namespace woodcock
-
 namespace woodcock::tool {
+
+// Of page/, see CMakeLists.txt.
+extern const std::string_view verifyPageStyle, verifyPageCases, verifyPagePlots, verifyPageStart;
 
 std::string reportHtml(const VerifyReport& report) {
     return makePage({"woodcock verify",

@@ -20,12 +20,10 @@
 
 namespace OCIO = OCIO_NAMESPACE;
 
-namespace woodcock {
+namespace woodcock::image {
+
 /// data/ocio/woodcock.ocio, compiled in.
 extern const std::string_view shippedOcioConfig;
-}  // namespace woodcock
-
-namespace woodcock::image {
 
 struct DisplayTransform::Processor {
     OCIO::ConstCPUProcessorRcPtr cpu;
