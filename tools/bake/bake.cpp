@@ -179,7 +179,7 @@ std::optional<nlohmann::ordered_json> bakeFrame(const bake::RecipeText& text,
     const bake::BakeSettings how = settingsFor(recipe, options);
     std::optional<bake::Bake> bake;
     {
-        WorkProgress progress(style, "bake");
+        ProgressBar progress(style, "bake");
         bake = bake::bakeRecipe(recipe, how, [&](double done) {
             progress.update(done);
             return !interrupted();

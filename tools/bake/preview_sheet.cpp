@@ -82,7 +82,7 @@ bool writeSheet(const std::filesystem::path& picture, const SheetSettings& setti
     const TempDir scratch;
     const std::filesystem::path volume = scratch.path() / "preset.vdb";
     Sheet sheet(bake::presets().size());
-    WorkProgress progress(style, "sheet");
+    ProgressBar progress(style, "sheet");
     std::vector<std::string> names;
     for (const auto& [name, text] : bake::presets()) {
         const auto index = static_cast<int>(names.size());

@@ -99,11 +99,11 @@ render::RenderResult renderWithProgress(const render::Scene& scene,
     return result;
 }
 
-WorkProgress::~WorkProgress() {
+void ProgressBar::clear() const {
     if (style_ == ProgressStyle::Bar) printProgress("\r\x1b[K");
 }
 
-void WorkProgress::update(double fraction) {
+void ProgressBar::update(double fraction, std::string_view doing) {
     const auto now = std::chrono::steady_clock::now();
     constexpr std::chrono::milliseconds pause(200);
     if (now - shown_ < pause) return;
@@ -119,8 +119,8 @@ void WorkProgress::update(double fraction) {
                    {"seconds_left", left}});
         return;
     }
-    printProgress("\r{} {} {:3.0f} %, {} left\x1b[K", name_, bar(fraction), 100 * fraction,
-                  formatDuration(left));
+    printProgress("\r{} {} {:3.0f} %, {} left{}{}\x1b[K", name_, bar(fraction), 100 * fraction,
+                  formatDuration(left), doing.empty() ? "" : ": ", doing);
 }
 
 std::string noiseText(double noise) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 #include "woodcock/render/session.h"
 
@@ -19,15 +20,17 @@ render::RenderResult renderWithProgress(const render::Scene& scene,
                                         ProgressStyle style);
 
 /// Shows how other work goes on, on stderr, no more often than can be read.
-class WorkProgress {
+class ProgressBar {
 public:
     /// `name` is the event's in JSON: {"event": "bake", "fraction": 0.5, ...}.
-    WorkProgress(ProgressStyle style, std::string name) : style_(style), name_(std::move(name)) {}
-    ~WorkProgress();  ///< wipes the bar
-    WorkProgress(const WorkProgress&) = delete;
-    WorkProgress& operator=(const WorkProgress&) = delete;
+    ProgressBar(ProgressStyle style, std::string name) : style_(style), name_(std::move(name)) {}
+    ~ProgressBar() { clear(); }
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
 
-    void update(double fraction);
+    /// `doing`: what is being done, behind the bar.
+    void update(double fraction, std::string_view doing = {});
+    void clear() const;  ///< wipes the bar
 
 private:
     ProgressStyle style_;

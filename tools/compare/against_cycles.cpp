@@ -64,7 +64,7 @@ CyclesResult renderTheirs(const scene::SceneDescription& description,
     cycles.image = file;
     cycles.commandLine = commandLine;
     cycles.shouldStop = interrupted;
-    WorkProgress progress(style, "cycles");
+    ProgressBar progress(style, "cycles");
     cycles.onProgress = [&](double fraction) { progress.update(fraction); };
     CyclesResult result = renderWithCycles(description, loaded, cycles);
     if (result.stopped) stop();

@@ -213,7 +213,7 @@ public:
 private:
     ProgressStyle style_;
     std::string stage_;
-    std::optional<WorkProgress> now_;
+    std::optional<ProgressBar> now_;
 };
 
 /// What was read and written.

@@ -75,7 +75,7 @@ void run(const Options& options, const std::string& commandLine) {
     cycles.shouldStop = interrupted;
     CyclesResult result;
     {
-        WorkProgress progress(style, "cycles");
+        ProgressBar progress(style, "cycles");
         cycles.onProgress = [&](double fraction) { progress.update(fraction); };
         result = renderWithCycles(scene, loaded, cycles);
     }

@@ -60,7 +60,7 @@ void report(const FileInfo& file, bool quiet) {
 }
 
 void runInfo(const InfoOptions& options) {
-    WorkProgress progress(options.reports.start(), "info");
+    ProgressBar progress(options.reports.start(), "info");
     const bool json = options.reports.json;
     std::vector<FileInfo> files;
     for (const std::filesystem::path& path : options.files) {

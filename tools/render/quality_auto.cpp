@@ -57,7 +57,7 @@ trade::ParseScene parser(const RenderOptions& options) {
 /// Absent where interrupted; nothing in it where the budget was too small.
 std::optional<trade::TradeResult> measure(const scene::SceneDescription& scene,
                                           const RenderOptions& options, double budget) {
-    WorkProgress progress(
+    ProgressBar progress(
         options.reports.quiet ? ProgressStyle::None : progressStyle(options.reports.progress),
         "choose");
     trade::TradeSettings settings;

@@ -54,7 +54,7 @@ std::optional<trade::TradeResult> measure(const TradeOptions& o,
         input.overrides.insert(input.overrides.end(), more.begin(), more.end());
         return parseInput(input);
     };
-    WorkProgress progress(style, "trade");
+    ProgressBar progress(style, "trade");
     trade::TradeSettings settings;
     settings.budget = o.budget.value_or(defaultBudget);
     settings.threads = o.threads.value_or(0);

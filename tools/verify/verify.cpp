@@ -13,6 +13,7 @@
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
+#include "tools/common/progress.h"
 #include "tools/common/report_options.h"
 #include "tools/verify/purpose.h"
 #include "tools/verify/report.h"
@@ -64,43 +65,14 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A line on stderr. Checks differ too much for a good guess of the time that is left; the mean of
-/// those done is better than none.
-class VerifyProgress {
-public:
-    VerifyProgress(std::size_t checks, ProgressStyle style)
-        : checks_(checks), style_(style), events_(style, "verify") {}
-    void show(std::size_t done, const std::string& check) {
-        if (style_ != ProgressStyle::Bar)
-            return events_.update(static_cast<double>(done) / static_cast<double>(checks_));
-        const double seconds = secondsSince(start_);
-        std::string left;
-        if (done > 0)
-            left = ", " +
-                   formatDuration(seconds * static_cast<double>(checks_ - done) /
-                                  static_cast<double>(done)) +
-                   " left";
-        printProgress("\r{} of {} checks, {}{}: {}\x1b[K", done, checks_, formatDuration(seconds),
-                      left, check);
-    }
-    void clear() const {
-        if (style_ == ProgressStyle::Bar) printProgress("\r\x1b[K");
-    }
-
-private:
-    std::size_t checks_;
-    ProgressStyle style_;
-    WorkProgress events_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 void runChecks(const std::vector<proof::Check>& list, bool print, ProgressStyle style,
                VerifyReport& report) {
-    VerifyProgress progress(list.size(), style);
+    ProgressBar progress(style, "verify");
     for (const proof::Check& check : list) {
         const std::size_t done = report.times.size();
         report.options.stop = [&] {
-            progress.show(done, check.name);
+            progress.update(static_cast<double>(done) / static_cast<double>(list.size()),
+                            check.name);
             return interrupted();
         };
         if (report.options.stop()) break;
