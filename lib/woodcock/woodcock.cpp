@@ -22,9 +22,6 @@
 #include "woodcock/scene/write.h"
 
 namespace woodcock {
-namespace {
-
-namespace fs = std::filesystem;
 
 /// A volume from memory. In the scene's text it stands under the name of a file that is not there.
 struct ArrayVolume {
@@ -32,6 +29,10 @@ struct ArrayVolume {
     Affine3d worldFromIndex;
     std::string section;  // [[volume]] of it
 };
+
+namespace {
+
+namespace fs = std::filesystem;
 
 std::string arrayName(std::size_t index) { return fmt::format("array-in-memory-{}", index); }
 
