@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "tools/trade/report_answers.h"
 #include "tools/trade/report_html.h"
 #include "woodcock/base/temp_dir.h"
 
@@ -22,23 +26,83 @@ json exampleReports() {
     return json::parse(readText(sourceDir() / "tests/tools/trade_pages.json"));
 }
 
-/// The models that the example's candidates are told to have.
-std::vector<TradeModel> exampleModels(const json& report) {
-    std::vector<TradeModel> models;
+/// What the example's report says of its candidates, and the models that they are told to have.
+TradeResult exampleResult(const json& report) {
+    TradeResult result;
     for (const json& c : report.at("candidates")) {
-        TradeModel& model = models.emplace_back();
+        CandidateResult& candidate = result.candidates.emplace_back();
+        TradeModel& model = candidate.model;
+        model.biased = c.at("biased");
         if (c.at("costs").empty()) continue;
+        candidate.loadSeconds = c.at("load_seconds");
+        for (const json& p : c.at("points"))
+            candidate.points.push_back({p.at("samples"), p.at("seconds"), {}, {}});
         model.secondsPerSample = c.at("seconds_per_sample").at("value");
         model.costs = c.at("costs").get<std::vector<double>>();
-        if (!c.at("biased").get<bool>()) continue;
+        if (!model.biased) continue;
         const double bias = c.at("rms_bias").at("value"), error = c.at("rms_bias").at("se");
         model.squaredBias = {bias * bias, 2 * bias * error + error * error};
     }
-    return models;
+    for (const json& r : report.at("equal_time")) result.equalTime.push_back({r.at("seconds"), {}});
+    for (const json& r : report.at("equal_error"))
+        result.equalError.push_back({r.at("relmse"), {}});
+    return result;
+}
+
+json exampleAnswers(const json& report) {
+    return tool::answersJson(exampleResult(report), report.at("budget"));
 }
 
 std::string exampleTradePage(const json& report) {
-    return tool::tradePage(report, exampleModels(report));
+    return tool::tradePage(report, exampleAnswers(report));
+}
+
+/// What the models say of one question: who is the best, who is tied, whom to take with how many
+/// samples, and all that can, best first.
+json expectedAnswer(const TradeResult& result, const std::string& kind, double target,
+                    Counted counted, Among among) {
+    const std::vector<TradeModel> models = result.models(counted);
+    const bool inTime = kind == "time";
+    json answer{{"kind", kind},
+                {"target", target},
+                {"loading", counted == Counted::LoadingToo},
+                {"unbiased", among == Among::Unbiased},
+                {"best", nullptr}};
+    const auto winner = inTime ? bestAt(models, target, among) : fastestTo(models, target, among);
+    if (!winner) return answer;
+    std::vector<std::pair<double, std::size_t>> values;
+    for (std::size_t i = 0; i < models.size(); ++i)
+        if (among == Among::All || !models[i].biased)
+            if (const auto v = inTime ? models[i].errorAt(target) : models[i].secondsTo(target))
+                values.push_back({v->value, i});
+    std::ranges::sort(values);
+    json& order = answer["order"] = json::array();
+    for (const auto& [value, i] : values) order.push_back(i);
+    const TradeModel& taken = models[winner->recommended];
+    answer["best"] = winner->best;
+    answer["tied"] = winner->tied;
+    answer["recommended"] = winner->recommended;
+    answer["samples"] = inTime ? taken.samplesIn(target) : *taken.samplesTo(target);
+    return answer;
+}
+
+/// Of two digits, as the page answers.
+double twoDigits(double v) { return std::stod(fmt::format("{:.2g}", v)); }
+
+/// For the script to compare with what the page shows.
+json expectedAnswers(const json& report) {
+    const TradeResult result = exampleResult(report);
+    std::vector<double> times{0.05, 0.3, 1, 10, 100, 1e5}, errors{1e-1, 1e-2, 3e-3, 1e-3, 1e-9};
+    for (int i = 0; i < 24; ++i) times.push_back(twoDigits(0.5 * std::pow(40, i / 23.0)));
+    json all = json::array();
+    for (const Counted counted : {Counted::Rendering, Counted::LoadingToo})
+        for (const Among among : {Among::All, Among::Unbiased}) {
+            for (const double t : times)
+                all.push_back(expectedAnswer(result, "time", t, counted, among));
+            for (const double e : errors)
+                all.push_back(expectedAnswer(result, "error", e, counted, among));
+        }
+    return all;
 }
 
 struct MadePage {
@@ -89,10 +153,48 @@ TEST(TradePages, HoldWhatJsonCannotSay) {
     EXPECT_EQ(held.at("scene"), "not UTF-8: \xef\xbf\xbd, and @DATA@");
 }
 
-// In a real browser; what is done there, and what is expected, stands in the script.
+// What is known of each target: the models' own numbers, to the digits that are written.
+TEST(TradePages, HoldTheModelsAnswers) {
+    const json report = exampleReports().at("trade");
+    const TradeResult result = exampleResult(report);
+    const json answers = exampleAnswers(report);
+    for (const std::string kind : {"time", "error"})
+        for (const Counted counted : {Counted::Rendering, Counted::LoadingToo}) {
+            const std::vector<TradeModel> models = result.models(counted);
+            const json& all = answers.at(kind);
+            const auto targets = all.at("targets").get<std::vector<double>>();
+            const json& weighed =
+                all.at(counted == Counted::Rendering ? "rendering" : "with_loading");
+            for (std::size_t t = 0; t < targets.size(); ++t) {
+                SCOPED_TRACE(fmt::format("{} {}", kind, targets[t]));
+                for (const auto& [name, among] :
+                     {std::pair{"all", Among::All}, std::pair{"unbiased", Among::Unbiased}}) {
+                    const json expected = expectedAnswer(result, kind, targets[t], counted, among);
+                    for (const char* key : {"best", "tied", "recommended", "samples"})
+                        EXPECT_EQ(weighed.at(name).at(key).at(t), expected.value(key, json()));
+                }
+                for (std::size_t i = 0; i < models.size(); ++i) {
+                    const auto v = kind == "time" ? models[i].errorAt(targets[t])
+                                                  : models[i].secondsTo(targets[t]);
+                    const json &value = weighed.at("value").at(i).at(t),
+                               &error = weighed.at("se").at(i).at(t);
+                    ASSERT_EQ(value.is_number(), v.has_value());
+                    if (!v) continue;
+                    EXPECT_NEAR(value.get<double>(), v->value, 1e-4 * v->value);
+                    EXPECT_NEAR(error.get<double>(), v->se, 0.06 * v->se);
+                }
+            }
+        }
+    EXPECT_TRUE(answers.at("cost").back().is_null()) << "it was not measured";
+    EXPECT_EQ(answers.at("cost").at(0), result.candidates[0].model.cost());
+}
+
+// In a real browser; what is done there, and what is expected, stands in the script. Which
+// candidate each answer names is the models' word.
 TEST(TradePages, WorkInABrowser) {
     const TempDir dir;
     for (const auto& [name, page, report] : examplePages()) writeText(dir / (name + ".html"), page);
+    writeText(dir / "answers.json", expectedAnswers(exampleReports().at("trade")).dump());
     const ProgramResult used =
         runProgram({"python3", (sourceDir() / "tests/programs/trade_page.py").string(),
                     (sourceDir() / "tests/tools/trade_pages.json").string(), dir.path().string()},

@@ -71,7 +71,7 @@ TEST(EvaluateTrade, RecommendsTheUnbiasedAmongEquals) {
     ASSERT_FALSE(result.equalTime.empty());
     for (const TradeReading& reading : result.equalTime)
         if (reading.target > 1.5) {
-            EXPECT_EQ(reading.recommended, 0u) << reading.target;
+            EXPECT_EQ(reading.winner.recommended, 0u) << reading.target;
         }
     EXPECT_TRUE(result.candidates[1].onFront);
     EXPECT_EQ(result.front.front().candidate, 1u);

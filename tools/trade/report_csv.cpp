@@ -24,8 +24,8 @@ std::string tradeCsv(const TradeReport& report) {
         "memory,load_seconds,command\n";
     for (const trade::CandidateResult& c : report.result.candidates)
         for (const trade::TradePoint& p : c.points) {
-            text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},", field(c.candidate.name), c.biased,
-                                p.samples, p.seconds, p.relMse.value, p.relMse.se);
+            text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},", field(c.candidate.name),
+                                c.model.biased, p.samples, p.seconds, p.relMse.value, p.relMse.se);
             text += p.flip ? fmt::format("{:.6g},{:.6g},", p.flip->value, p.flip->se) : ",,";
             for (const trade::Measured& m : {c.secondsPerSample, c.variance, c.bias, c.squaredBias})
                 text += fmt::format("{:.6g},{:.6g},", m.value, m.se);

@@ -10,44 +10,16 @@ namespace woodcock::tool {
 
 // Of ../pages and page/, see their CMakeLists.txt.
 extern const std::string_view pageChart, pageChartRows, pageChartStyle;
-extern const std::string_view tradePageStyle, tradePageModel, tradePageWords, tradePageChoose,
+extern const std::string_view tradePageStyle, tradePageAnswers, tradePageWords, tradePageChoose,
     tradePagePlots, tradePageTables, tradePageCrops, tradePageStart;
 extern const std::string_view scalingPageScript, needsPageScript;
 
-namespace {
-
-nlohmann::json numbers(const trade::Measured& m) { return {{"value", m.value}, {"se", m.se}}; }
-
-/// The numbers that the page needs for any time and any error: for each candidate what its bias is,
-/// what its noise is times the time, and how well the latter's difference from each other
-/// candidate's is known.
-nlohmann::json modelsJson(const std::vector<trade::TradeModel>& models) {
-    nlohmann::json candidates = nlohmann::json::array();
-    for (const trade::TradeModel& model : models) {
-        if (model.costs.empty()) {
-            candidates.push_back(nullptr);
-            continue;
-        }
-        nlohmann::json differences = nlohmann::json::array();
-        for (const trade::TradeModel& other : models)
-            differences.push_back(trade::noiseDifferenceError(model, other));
-        candidates.push_back({{"seconds_per_sample", model.secondsPerSample},
-                              {"bias", numbers({model.biasError(), model.squaredBias.se})},
-                              {"noise", numbers(model.noise())},
-                              {"noise_difference_se", std::move(differences)}});
-    }
-    return {{"tie_width", trade::tieWidth}, {"candidates", std::move(candidates)}};
-}
-
-}  // namespace
-
-std::string tradePage(const nlohmann::json& report, const std::vector<trade::TradeModel>& models) {
-    return makePage(
-        {"woodcock trade",
-         {pageChartStyle, tradePageStyle},
-         {{"report", jsonText(report, -1)}, {"models", jsonText(modelsJson(models), -1)}},
-         {pageChart, pageChartRows, tradePageModel, tradePageWords, tradePageChoose, tradePagePlots,
-          tradePageTables, tradePageCrops, tradePageStart}});
+std::string tradePage(const nlohmann::json& report, const nlohmann::json& answers) {
+    return makePage({"woodcock trade",
+                     {pageChartStyle, tradePageStyle},
+                     {{"report", jsonText(report, -1)}, {"answers", jsonText(answers, -1)}},
+                     {pageChart, pageChartRows, tradePageAnswers, tradePageWords, tradePageChoose,
+                      tradePagePlots, tradePageTables, tradePageCrops, tradePageStart}});
 }
 
 std::string scalingPage(const nlohmann::json& report) {

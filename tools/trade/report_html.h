@@ -3,16 +3,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
-
-#include "woodcock/trade/model.h"
 
 namespace woodcock::tool {
 
 // The self-contained pages of what `woodcock trade` measures, from the JSON that it writes.
 
-/// `models`: one for each of the report's candidates; no costs where it was not measured.
-std::string tradePage(const nlohmann::json& report, const std::vector<trade::TradeModel>& models);
+/// `answers`: of answersJson().
+std::string tradePage(const nlohmann::json& report, const nlohmann::json& answers);
 std::string scalingPage(const nlohmann::json& report);  ///< of `trade --scaling`
 std::string needsPage(const nlohmann::json& report);    ///< of `trade --needs`
 

@@ -37,7 +37,7 @@ Json candidateJson(const TradeReport& report, const trade::CandidateResult& c) {
     Json points = Json::array();
     for (const trade::TradePoint& p : c.points) points.push_back(pointJson(p));
     Json j{{"name", c.candidate.name},
-           {"biased", c.biased},
+           {"biased", c.model.biased},
            {"quality", nullptr},
            {"choices", c.candidate.choices},
            {"command", report.command.of(c.candidate)},
@@ -91,7 +91,7 @@ Json errorJson(const trade::TradeResult& result, const trade::TradeReading& read
         Json row{
             {"candidate", i}, {"samples", nullptr}, {"seconds", nullptr}, {"seconds_se", nullptr}};
         if (const auto seconds = model.secondsTo(reading.target)) {
-            row["samples"] = std::ceil(seconds->value / model.secondsPerSample);
+            row["samples"] = *model.samplesTo(reading.target);
             row["seconds"] = seconds->value, row["seconds_se"] = seconds->se;
         }
         rows.push_back(std::move(row));
@@ -106,21 +106,20 @@ Json recommendations(const TradeReport& report) {
     Json all = Json::array();
     const trade::TradeResult& result = report.result;
     for (const trade::TradeReading& r : result.equalTime) {
-        const trade::CandidateResult& c = result.candidates[r.recommended];
+        const trade::CandidateResult& c = result.candidates[r.winner.recommended];
         all.push_back({{"kind", "time"},
                        {"target", r.target},
-                       {"candidate", r.recommended},
+                       {"candidate", r.winner.recommended},
                        {"samples", c.model.samplesIn(r.target)},
                        {"expected_relmse", c.model.errorAt(r.target)->value},
                        {"command", report.command.ofSeconds(c.candidate, r.target)}});
     }
     for (const trade::TradeReading& r : result.equalError) {
-        const trade::CandidateResult& c = result.candidates[r.recommended];
-        const double samples =
-            std::ceil(c.model.secondsTo(r.target)->value / c.model.secondsPerSample);
+        const trade::CandidateResult& c = result.candidates[r.winner.recommended];
+        const double samples = *c.model.samplesTo(r.target);
         all.push_back({{"kind", "error"},
                        {"target", r.target},
-                       {"candidate", r.recommended},
+                       {"candidate", r.winner.recommended},
                        {"samples", samples},
                        {"expected_relmse", r.target},
                        {"command", report.command.ofSamples(c.candidate, samples)}});

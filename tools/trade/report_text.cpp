@@ -45,7 +45,7 @@ std::string candidateLine(const trade::CandidateResult& c) {
         "{} {:>9.3g} {:>6.1f} {:>14} {:>7.2f} {:>5.2f} {:>8.1e} {:>6} {:>6}\n",
         padded((c.onFront ? "* " : "  ") + c.candidate.name, nameWidth), c.secondsPerSample.value,
         100 * c.secondsPerSample.se / c.secondsPerSample.value, withError(c.variance),
-        100 * c.bias.value, 100 * c.bias.se, c.biased && c.biasResolved() ? bias : 0.0,
+        100 * c.bias.value, 100 * c.bias.se, c.model.biased && c.biasResolved() ? bias : 0.0,
         last.flip ? fmt::format("{:.3f}", last.flip->value) : "-", megabytes(c.bytes));
 }
 
@@ -91,11 +91,11 @@ std::string wrapped(const std::string& text) {
 std::string readingLine(const std::string& target, const trade::TradeResult& result,
                         const trade::TradeReading& reading, double samples,
                         const trade::Measured& number) {
-    const std::string line = fmt::format("{:>10}  {} {:>9.0f} {:>14}  ", target,
-                                         padded(nameOf(result, reading.recommended), nameWidth),
-                                         samples, withError(number));
+    const std::string line = fmt::format(
+        "{:>10}  {} {:>9.0f} {:>14}  ", target,
+        padded(nameOf(result, reading.winner.recommended), nameWidth), samples, withError(number));
     std::vector<std::size_t> others = reading.winner.tied;
-    std::replace(others.begin(), others.end(), reading.recommended, reading.winner.best);
+    std::replace(others.begin(), others.end(), reading.winner.recommended, reading.winner.best);
     return line + tiedText(result, others, lineWidth - line.size()) + "\n";
 }
 
@@ -106,7 +106,7 @@ std::string readingsText(const TradeReport& report) {
         text += fmt::format("\n{:>10}  {} {:>9} {:>14}\n", "in", padded("take", nameWidth),
                             "samples", "relMSE");
     for (const trade::TradeReading& r : result.equalTime) {
-        const trade::TradeModel& model = result.candidates[r.recommended].model;
+        const trade::TradeModel& model = result.candidates[r.winner.recommended].model;
         text += readingLine(formatDuration(r.target), result, r, model.samplesIn(r.target),
                             *model.errorAt(r.target));
     }
@@ -114,10 +114,9 @@ std::string readingsText(const TradeReport& report) {
         text += fmt::format("\n{:>10}  {} {:>9} {:>14}\n", "to relMSE", padded("take", nameWidth),
                             "samples", "seconds");
     for (const trade::TradeReading& r : result.equalError) {
-        const trade::TradeModel& model = result.candidates[r.recommended].model;
-        const trade::Measured seconds = *model.secondsTo(r.target);
-        text += readingLine(fmt::format("{:.0e}", r.target), result, r,
-                            std::ceil(seconds.value / model.secondsPerSample), seconds);
+        const trade::TradeModel& model = result.candidates[r.winner.recommended].model;
+        text += readingLine(fmt::format("{:.0e}", r.target), result, r, *model.samplesTo(r.target),
+                            *model.secondsTo(r.target));
     }
     return text;
 }
@@ -137,9 +136,10 @@ std::string tradeText(const TradeReport& report) {
     for (const std::string& note : result.notes) text += wrapped("note: " + note);
     text += "\n";
     for (const trade::TradeReading& reading : result.equalTime)
-        text += fmt::format("{}: {}\n", formatDuration(reading.target),
-                            report.command.ofSeconds(
-                                result.candidates[reading.recommended].candidate, reading.target));
+        text += fmt::format(
+            "{}: {}\n", formatDuration(reading.target),
+            report.command.ofSeconds(result.candidates[reading.winner.recommended].candidate,
+                                     reading.target));
     return text;
 }
 

@@ -19,6 +19,7 @@
 #include "tools/trade/parts.h"
 #include "tools/trade/pictures.h"
 #include "tools/trade/report.h"
+#include "tools/trade/report_answers.h"
 #include "tools/trade/report_html.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/scene/write.h"
@@ -67,13 +68,6 @@ std::optional<trade::TradeResult> measure(const TradeOptions& o,
     return trade::runTrade(complete, parse, given, settings);
 }
 
-std::vector<trade::TradeModel> modelsOf(const trade::TradeResult& result) {
-    std::vector<trade::TradeModel> models;
-    for (const trade::CandidateResult& candidate : result.candidates)
-        models.push_back(candidate.model);
-    return models;
-}
-
 const std::vector<std::string> reportFiles{"trade.json", "trade.csv", "trade.html"};
 
 /// What was asked, and what was found.
@@ -113,10 +107,10 @@ void weighCandidates(const TradeOptions& o, const std::string& commandLine, Prog
     else if (o.reports.printsText())
         printText(tradeText(report));
     if (o.report.empty()) return;
-    writeReport(o.report,
-                {{reportFiles[0], jsonText(json, 1) + "\n"},
-                 {reportFiles[1], tradeCsv(report)},
-                 {reportFiles[2], tradePage(tradeJson(report, true), modelsOf(report.result))}});
+    writeReport(o.report, {{reportFiles[0], jsonText(json, 1) + "\n"},
+                           {reportFiles[1], tradeCsv(report)},
+                           {reportFiles[2], tradePage(tradeJson(report, true),
+                                                      answersJson(report.result, report.budget))}});
 }
 
 /// Throws Error{Usage} where an option speaks of what is not asked for.

@@ -84,7 +84,6 @@ private:
     CandidateResult evaluate(const OfCandidate& m) const {
         CandidateResult r;
         r.candidate = m.candidate;
-        r.biased = m.biased;
         r.loadSeconds = m.loadSeconds;
         r.bytes = m.bytes;
         const std::size_t last = m.seeds.front().size() - 1;
@@ -105,7 +104,8 @@ private:
         }
         r.variance = meanOf(variances);
         r.model.secondsPerSample = r.secondsPerSample.value;
-        if (r.biased) r.model.squaredBias = r.squaredBias;
+        r.model.biased = m.biased;
+        if (m.biased) r.model.squaredBias = r.squaredBias;
         for (std::size_t stage = 0; stage <= last; ++stage) r.points.push_back(point(m, stage));
         return r;
     }
@@ -159,28 +159,13 @@ private:
     double scale_ = 1;
 };
 
-/// The winner, or where unbiased candidates are tied with it, the best of these.
-std::size_t recommend(const TradeResult& result, const Winner& winner, double seconds) {
-    if (!result.candidates[winner.best].biased) return winner.best;
-    std::size_t chosen = winner.best;
-    for (const std::size_t i : winner.tied) {
-        if (result.candidates[i].biased) continue;
-        const bool first = result.candidates[chosen].biased;
-        if (first ||
-            errorDifference(result.candidates[i].model, result.candidates[chosen].model, seconds)
-                    .value < 0)
-            chosen = i;
-    }
-    return chosen;
-}
-
 void readTimes(TradeResult& result) {
     const std::vector<TradeModel> models = result.models();
     const TradeModel& plain = models.front();
     for (const double seconds : readableTimes) {
         if (plain.samplesIn(seconds) < fewestSamples) continue;
         if (const auto winner = bestAt(models, seconds))
-            result.equalTime.push_back({seconds, *winner, recommend(result, *winner, seconds)});
+            result.equalTime.push_back({seconds, *winner});
         if (result.equalTime.size() == mostReadings) return;
     }
 }
@@ -193,7 +178,7 @@ void readErrors(TradeResult& result) {
         const TradeModel& best = models[winner->best];
         const double seconds = best.secondsTo(error)->value;
         if (best.samplesIn(seconds) < fewestSamples || seconds > longestReading) continue;
-        result.equalError.push_back({error, *winner, recommend(result, *winner, seconds)});
+        result.equalError.push_back({error, *winner});
         if (result.equalError.size() == mostReadings) return;
     }
 }
@@ -225,7 +210,7 @@ void noteTies(TradeResult& result) {
                 formatDuration(r.target)));
     std::vector<std::size_t> unresolved;
     for (std::size_t i = 0; i < result.candidates.size(); ++i)
-        if (result.candidates[i].biased && !result.candidates[i].biasResolved())
+        if (result.candidates[i].model.biased && !result.candidates[i].biasResolved())
             unresolved.push_back(i);
     if (!unresolved.empty())
         result.notes.push_back(
@@ -242,9 +227,12 @@ void TradeMeasurements::dropRound(int k) {
     reference.resize(std::min(reference.size(), rounds));
 }
 
-std::vector<TradeModel> TradeResult::models() const {
+std::vector<TradeModel> TradeResult::models(Counted counted) const {
     std::vector<TradeModel> all;
-    for (const CandidateResult& c : candidates) all.push_back(c.model);
+    for (const CandidateResult& c : candidates) {
+        all.push_back(c.model);
+        if (counted == Counted::LoadingToo) all.back().loadSeconds = c.loadSeconds;
+    }
     return all;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace woodcock::trade {
 namespace {
@@ -11,20 +10,39 @@ namespace {
 /// The candidate of least `value` (absent: it does not take part), and those whose `difference`
 /// from it is not significant.
 template <class Value, class Difference>
-std::optional<Winner> leastOf(const std::vector<TradeModel>& models, const Value& value,
-                              const Difference& difference) {
+std::optional<Winner> leastOf(const std::vector<TradeModel>& models, Among among,
+                              const Value& value, const Difference& difference) {
+    std::vector<std::optional<double>> values;
+    for (const TradeModel& model : models) {
+        const bool takesPart = among == Among::All || !model.biased;
+        const std::optional<Measured> v = takesPart ? value(model) : std::nullopt;
+        values.push_back(v && std::isfinite(v->value) ? std::optional(v->value) : std::nullopt);
+    }
+    const auto isBetter = [&](std::size_t i, std::size_t j) { return *values[i] < *values[j]; };
     std::optional<Winner> winner;
-    double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < models.size(); ++i)
-        if (const std::optional<Measured> v = value(models[i]); v && v->value < least)
-            least = v->value, winner = Winner{i, {}};
+        if (values[i] && (!winner || isBetter(i, winner->best))) winner = Winner{i, {}, i};
     if (!winner) return winner;
     for (std::size_t i = 0; i < models.size(); ++i) {
-        if (i == winner->best || !value(models[i])) continue;
+        if (i == winner->best || !values[i]) continue;
         const Measured d = difference(models[i], models[winner->best]);
         if (d.value <= tieWidth * d.se) winner->tied.push_back(i);
     }
+    for (const std::size_t i : winner->tied)
+        if (models[winner->best].biased && !models[i].biased &&
+            (models[winner->recommended].biased || isBetter(i, winner->recommended)))
+            winner->recommended = i;
     return winner;
+}
+
+/// Seconds without loading; absent where the bias alone exceeds the error.
+std::optional<Measured> renderingTo(const TradeModel& model, double error) {
+    const double room = error - model.biasError();
+    if (model.costs.empty() || !(room > 0)) return std::nullopt;
+    const Measured n = model.noise();
+    const double seconds = n.value / room;
+    return Measured{std::max(model.secondsPerSample, seconds),
+                    std::hypot(n.se / room, seconds * model.squaredBias.se / room)};
 }
 
 }  // namespace
@@ -36,47 +54,48 @@ TradeModel TradeModel::careful() const {
 }
 
 double TradeModel::samplesIn(double seconds) const {
-    return std::max(0.0, std::floor(seconds / secondsPerSample));
+    return std::max(0.0, std::floor((seconds - loadSeconds) / secondsPerSample));
 }
 
 std::optional<Measured> TradeModel::errorAt(double seconds) const {
-    if (seconds < secondsPerSample) return std::nullopt;
+    const double rendering = seconds - loadSeconds;
+    if (costs.empty() || rendering < secondsPerSample) return std::nullopt;
     const Measured n = noise();
-    return Measured{biasError() + n.value / seconds, std::hypot(squaredBias.se, n.se / seconds)};
+    return Measured{biasError() + n.value / rendering,
+                    std::hypot(squaredBias.se, n.se / rendering)};
 }
 
 std::optional<Measured> TradeModel::secondsTo(double error) const {
-    const double room = error - biasError();
-    if (!(room > 0)) return std::nullopt;
-    const Measured n = noise();
-    const double seconds = n.value / room;
-    return Measured{std::max(secondsPerSample, seconds),
-                    std::hypot(n.se / room, seconds * squaredBias.se / room)};
+    std::optional<Measured> seconds = renderingTo(*this, error);
+    if (seconds) seconds->value += loadSeconds;
+    return seconds;
 }
 
-double noiseDifferenceError(const TradeModel& a, const TradeModel& b) {
-    const std::size_t common = std::min(a.costs.size(), b.costs.size());
-    std::vector<double> paired;
-    for (std::size_t k = 0; k < common; ++k) paired.push_back(a.costs[k] - b.costs[k]);
-    return meanOf(paired).se;
+std::optional<double> TradeModel::samplesTo(double error) const {
+    const std::optional<Measured> rendering = renderingTo(*this, error);
+    if (!rendering) return std::nullopt;
+    return std::ceil(rendering->value / secondsPerSample);
 }
 
 Measured errorDifference(const TradeModel& a, const TradeModel& b, double seconds) {
     const double bias = a.biasError() - b.biasError();
-    const double biasVariance = std::pow(a.squaredBias.se, 2) + std::pow(b.squaredBias.se, 2);
-    return {bias + (a.cost() - b.cost()) / seconds,
-            std::sqrt(biasVariance + std::pow(noiseDifferenceError(a, b) / seconds, 2))};
+    const double ofA = seconds - a.loadSeconds, ofB = seconds - b.loadSeconds;
+    std::vector<double> noise;
+    for (std::size_t k = 0; k < std::min(a.costs.size(), b.costs.size()); ++k)
+        noise.push_back(a.costs[k] / ofA - b.costs[k] / ofB);
+    return {bias + a.cost() / ofA - b.cost() / ofB,
+            std::hypot(a.squaredBias.se, b.squaredBias.se, meanOf(noise).se)};
 }
 
-std::optional<Winner> bestAt(const std::vector<TradeModel>& models, double seconds) {
+std::optional<Winner> bestAt(const std::vector<TradeModel>& models, double seconds, Among among) {
     return leastOf(
-        models, [&](const TradeModel& m) { return m.errorAt(seconds); },
+        models, among, [&](const TradeModel& m) { return m.errorAt(seconds); },
         [&](const TradeModel& a, const TradeModel& b) { return errorDifference(a, b, seconds); });
 }
 
-std::optional<Winner> fastestTo(const std::vector<TradeModel>& models, double error) {
+std::optional<Winner> fastestTo(const std::vector<TradeModel>& models, double error, Among among) {
     return leastOf(
-        models, [&](const TradeModel& m) { return m.secondsTo(error); },
+        models, among, [&](const TradeModel& m) { return m.secondsTo(error); },
         [&](const TradeModel& a, const TradeModel& b) {
             const Measured ta = *a.secondsTo(error), tb = *b.secondsTo(error);
             return Measured{ta.value - tb.value, std::hypot(ta.se, tb.se)};
@@ -86,7 +105,7 @@ std::optional<Winner> fastestTo(const std::vector<TradeModel>& models, double er
 std::vector<FrontPoint> paretoFront(const std::vector<TradeModel>& models, double longest,
                                     int steps) {
     double first = longest;
-    for (const TradeModel& m : models) first = std::min(first, m.secondsPerSample);
+    for (const TradeModel& m : models) first = std::min(first, m.firstSample());
     first *= 1 + 1e-9;  // the first sample ends within it, rounding or not
     std::vector<FrontPoint> front;
     for (int i = 0; i < steps && first < longest; ++i) {

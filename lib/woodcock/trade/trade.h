@@ -37,7 +37,6 @@ struct TradePoint {
 
 struct CandidateResult {
     Candidate candidate;
-    bool biased = false;  ///< by construction, whatever was measured
     double loadSeconds = 0;
     std::size_t bytes = 0;      ///< fields and majorants
     Measured secondsPerSample;  ///< wall clock
@@ -72,9 +71,10 @@ struct TradeCrop {
 struct TradeReading {
     double target = 0;
     Winner winner;
-    /// The best, or an unbiased candidate that is tied with it.
-    std::size_t recommended = 0;
 };
+
+/// Which seconds of a candidate count.
+enum class Counted { Rendering, LoadingToo };
 
 struct TradeResult {
     PictureSize full, measured;
@@ -87,7 +87,7 @@ struct TradeResult {
     std::vector<TradeCrop> crops;  ///< the first is the reference
     std::vector<std::string> notes;
 
-    std::vector<TradeModel> models() const;
+    std::vector<TradeModel> models(Counted counted = Counted::Rendering) const;
 };
 
 /// `given` are a user's candidates; without any, the built-in ones. `parse` gives `complete` before

@@ -65,7 +65,6 @@ async function copy(button) {
 
 // ---- the answer to a time or an error
 
-const target = () => settings[settings.kind];
 const rangeText = (kind, a, b) =>
     kind === "time"
         ? `${seconds(a)} to ${seconds(b)}`
@@ -73,21 +72,20 @@ const rangeText = (kind, a, b) =>
 const targetText = (kind, v) =>
     kind === "time" ? seconds(v) : `relMSE ${number(v, 2)} (${rms(v)} rms)`;
 
-function expectation(kind, r) {
+function expectation(kind, r, samples) {
     return kind === "time"
-        ? `${plural(r.samples, "sample")} per pixel, expected relMSE ${relmseText(r.relmse, r.se)}
-            (${rms(r.relmse)} rms)`
-        : `${plural(r.samples, "sample")} per pixel, ${seconds(r.seconds)}${
+        ? `${plural(samples, "sample")} per pixel, expected relMSE ${relmseText(r.value, r.se)}
+            (${rms(r.value)} rms)`
+        : `${plural(samples, "sample")} per pixel, ${seconds(r.value)}${
               r.se > 0 ? ` ± ${seconds(r.se)}` : ""
           }`;
 }
 
 function answer() {
     const kind = settings.kind,
-        list = ranking(kind, target()),
-        best = recommended(list),
-        first = list[0];
-    if (!best)
+        at = settings.at[kind],
+        chosen = choice(kind, at);
+    if (!chosen)
         return `<p class="answer">For ${targetText(kind, target())}: <b>none${
             settings.unbiasedOnly ? " of the unbiased ones" : ""
         }</b>: ${
@@ -95,35 +93,43 @@ function answer() {
                 ? "it is too short for one sample of every pixel."
                 : "every one's bias alone exceeds it."
         }</p>`;
-    const tied = list.filter((r) => r !== best && (r.tied || r === first)),
-        without = best.c.biased && list.find((r) => !r.c.biased);
-    const longest = Math.max(...(best.c.points || []).map((p) => p.samples), 0) || Infinity;
+    const best = candidates[chosen.recommended],
+        alike = [chosen.best, ...chosen.tied].filter((i) => i !== best.index),
+        tied = ranking(kind, at).filter((r) => alike.includes(r.c.index)),
+        unbiased = best.biased && choice(kind, at, true),
+        without = unbiased && candidates[unbiased.recommended];
+    const longest = Math.max(...(best.points || []).map((p) => p.samples), 0) || Infinity;
     const beyond = `<span class="soft">Measured up to ${plural(longest, "sample")}; what lies
         beyond follows from the model.</span>`;
     return (
-        `<p class="answer">For ${targetText(kind, target())}: ${namedWithBias(best.c)}</p>
-        <p>${expectation(kind, best)}. ${best.samples > 4 * longest ? beyond : ""}</p>
-        ${commandBox(commandFor(kind, target(), best))}` +
+        `<p class="answer">For ${targetText(kind, target())}: ${namedWithBias(best)}</p>
+        <p>${expectation(kind, reached(best, kind, at), chosen.samples)}.
+        ${chosen.samples > 4 * longest ? beyond : ""}</p>
+        ${commandBox(commandFor(kind, best, chosen.samples))}` +
         (tied.length
             ? `<p>Cannot be told from it: ${tied.map((r) => namedWithBias(r.c)).join(", ")}.</p>`
             : "") +
-        (without && !without.tied
-            ? `<p>Best without bias: ${nameOf(without.c)}, ${expectation(kind, without)}.</p>`
+        (without
+            ? `<p>Best without bias: ${nameOf(without)},
+                ${expectation(kind, reached(without, kind, at), unbiased.samples)}.</p>`
             : "")
     );
 }
 
 function rankingTable() {
     const kind = settings.kind,
-        list = ranking(kind, target()),
+        at = settings.at[kind],
+        list = ranking(kind, at),
         unable = allowed().filter((c) => !list.some((r) => r.c === c)),
-        best = list[0];
-    const figure = (r) => (kind === "time" ? r.relmse : r.seconds),
-        most = list.length ? figure(list[list.length - 1]) : 1;
+        best = list[0],
+        most = list[list.length - 1],
+        tied = choice(kind, at)?.tied;
     const share = (r) =>
         Math.max(
             0.02,
-            1 - Math.log(most / figure(r)) / Math.max(1e-9, Math.log(most / figure(best)) * 1.15),
+            1 -
+                Math.log(most.value / r.value) /
+                    Math.max(1e-9, Math.log(most.value / best.value) * 1.15),
         );
     return (
         `<table class="ranking"><caption>All of them ${
@@ -134,14 +140,14 @@ function rankingTable() {
         list
             .map(
                 (r) => `<tr><td>${nameOf(r.c)}</td><td>${
-                    kind === "time" ? relmseText(r.relmse, r.se) : seconds(r.seconds)
+                    kind === "time" ? relmseText(r.value, r.se) : seconds(r.value)
                 }</td>
             <td>${
                 r === best
                     ? "<b>best</b>"
-                    : r.tied
+                    : tied.includes(r.c.index)
                       ? "tied"
-                      : `× ${number(figure(r) / figure(best), 3)}`
+                      : `× ${number(r.value / best.value, 3)}`
             }</td></tr>
             <tr class="share" aria-hidden="true"><td colspan="3"><i
             class="c${r.c.index % colourCount}"
@@ -152,7 +158,11 @@ function rankingTable() {
             .map(
                 (c) =>
                     `<tr><td>${nameOf(c)}</td><td colspan="2" class="soft">${
-                        !c.model ? "not measured" : kind === "time" ? "too slow" : "never: its bias"
+                        !c.variance
+                            ? "not measured"
+                            : kind === "time"
+                              ? "too slow"
+                              : "never: its bias"
                     }</td></tr>`,
             )
             .join("") +
@@ -164,12 +174,12 @@ function rankingTable() {
 
 const steps = 1000;
 const toSlider = (kind, v) => {
-    const [a, b] = domain[kind].map(Math.log);
+    const [a, b] = domain(kind).map(Math.log);
     return b > a ? (steps * (Math.log(v) - a)) / (b - a) : 0;
 };
 const fromSlider = (kind, p) => {
-    const [a, b] = domain[kind].map(Math.log);
-    return Number(Math.exp(a + ((b - a) * p) / steps).toPrecision(2));
+    const [a, b] = domain(kind).map(Math.log);
+    return Math.exp(a + ((b - a) * p) / steps);
 };
 
 function strip(list, kind) {
@@ -246,14 +256,15 @@ function choose(section, changed) {
         find("unit").textContent = kind === "time" ? "seconds" : "relMSE";
         slider.setAttribute("aria-label", kind === "time" ? "time" : "error");
         slider.setAttribute("aria-valuetext", targetText(kind, target()));
-        slider.value = toSlider(kind, target());
-        if (document.activeElement !== field) field.value = Number(target().toPrecision(3));
+        // What is being used is left alone until it is let go.
+        if (document.activeElement !== slider) slider.value = toSlider(kind, target());
+        if (document.activeElement !== field) field.value = target();
         section.querySelector(".strip").innerHTML = strip(list, kind);
         const ends = section.querySelectorAll(".ends span");
         ((ends[0].textContent =
-            kind === "time" ? seconds(domain.time[0]) : number(domain.error[0], 2)),
+            kind === "time" ? seconds(domain(kind)[0]) : number(domain(kind)[0], 2)),
             (ends[2].textContent =
-                kind === "time" ? seconds(domain.time[1]) : number(domain.error[1], 2)));
+                kind === "time" ? seconds(domain(kind)[1]) : number(domain(kind)[1], 2)));
         ((find("answer").innerHTML = answer()),
             (find("when").innerHTML = whichToTake(list, kind)),
             (find("ranking").innerHTML = rankingTable()));
@@ -261,20 +272,22 @@ function choose(section, changed) {
     };
     section.addEventListener("input", (event) => {
         const { id } = event.target;
-        if (event.target === slider)
-            settings[settings.kind] = fromSlider(settings.kind, Number(slider.value));
+        const ask = (v) => (settings.at[settings.kind] = nearest(settings.kind, v));
+        if (event.target === slider) ask(fromSlider(settings.kind, Number(slider.value)));
         else if (event.target === field) {
             if (!(Number(field.value) > 0)) return;
-            settings[settings.kind] = Number(field.value);
+            ask(Number(field.value));
         } else settings[id] = event.target.checked;
         draw(id === "loading");
     });
+    // What was typed gives way to what was answered.
+    field.addEventListener("change", () => (field.value = target()));
     section.addEventListener("click", (event) => {
         const { kind, recommendation } = event.target.dataset;
         if (kind) settings.kind = kind;
         if (recommendation) {
             const r = report.recommendations.filter((x) => candidates[x.candidate])[recommendation];
-            ((settings.kind = r.kind), (settings[r.kind] = r.target));
+            ((settings.kind = r.kind), (settings.at[r.kind] = nearest(r.kind, r.target)));
         }
         if (event.target.matches(".copy")) copy(event.target);
         if (kind || recommendation) draw();

@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Error against time, and the biases.
 
-const modelLine = (c) => {
-    const [, last] = domain.time,
-        first = loadingOf(c) + valueOf(c.seconds_per_sample),
-        list = [];
-    if (!(last > first)) return list;
-    for (let i = 0; i <= 80; ++i) {
-        const t = first * Math.pow(last / first, i / 80),
-            r = inTime(c, t);
-        if (r) list.push([t, r.relmse]);
-    }
-    return list;
-};
+/** What the model says of a candidate, from its first sample to the last sensible time. */
+const modelLine = (c) =>
+    sensible("time")
+        .map((at) => [answers.time.targets[at], reached(c, "time", at).value])
+        .filter(([, relmse]) => relmse !== null);
 
 /** The lowest of the models shown, as pieces without a gap. */
-function frontLine(shown) {
-    const [low, high] = domain.time,
-        list = [];
-    for (let i = 0; i <= 200; ++i) {
-        const t = low * Math.pow(high / low, i / 200),
-            best = ranking("time", t, shown)[0];
-        if (best) list.push([t, best.relmse]);
-    }
-    return list;
-}
+const frontLine = (shown) =>
+    sensible("time")
+        .map((at) => [
+            answers.time.targets[at],
+            Math.min(...shown.map((c) => reached(c, "time", at).value ?? Infinity)),
+        ])
+        .filter(([, relmse]) => relmse < Infinity);
 
 function pointsTable() {
     const rows = candidates.flatMap((c) => (c.points || []).map((p) => ({ c, p })));
@@ -71,7 +61,10 @@ function errorPlot(section) {
         keys: true,
         height: 440,
         // The models' ends and the reference's own error are to be seen.
-        extent: { x: domain.time, y: [...series.flatMap((s) => s.line.map((p) => p[1])), noise] },
+        extent: {
+            x: domain("time"),
+            y: [...series.flatMap((s) => s.line.map((p) => p[1])), noise],
+        },
         behind: (f, shown) =>
             path(
                 frontLine(shown.map((s) => candidates[s.index])).map(([t, e]) => [
@@ -85,8 +78,8 @@ function errorPlot(section) {
                   label(f.left + 4, f.py(noise) - 4, "the reference's own error", "start")
                 : "") +
             (settings.kind === "time"
-                ? line(f.px(settings.time), f.top, f.px(settings.time), f.bottom, "chosen")
-                : line(f.left, f.py(settings.error), f.right, f.py(settings.error), "chosen")),
+                ? line(f.px(target()), f.top, f.px(target()), f.bottom, "chosen")
+                : line(f.left, f.py(target()), f.right, f.py(target()), "chosen")),
     });
 }
 

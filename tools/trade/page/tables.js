@@ -2,7 +2,7 @@
 // The candidates, and their readings at equal time and at equal error.
 
 /** What halving the error costs: variance x seconds; less is better. */
-const effort = (c) => valueOf(c.model?.noise);
+const effort = (c) => answers.cost[c.index];
 
 const candidateColumns = [
     {
