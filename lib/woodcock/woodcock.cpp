@@ -17,9 +17,7 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/load.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/seen_light.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock {
 

@@ -10,7 +10,7 @@
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/load.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 #include "woodcock/trade/scaling_cloud.h"
 #include "woodcock/trade/timing.h"
 

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "woodcock/base/error.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace {
 

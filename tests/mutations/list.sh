@@ -270,5 +270,5 @@ defect "standard errors of tiles without their root" 'FalseAlarms.*:Comparison.*
     'all.error = std::sqrt(variance) / n;' 'all.error = std::sqrt(variance / n) / n;'
 
 defect "Cycles' bounces are scatterings" 'Cycles*' "" \
-    lib/woodcock/scene/cycles_mapping.cpp \
+    tools/cycles/mapping.cpp \
     'events.value_or(cyclesMostBounces + 1) - 1' 'events.value_or(cyclesMostBounces + 1)'

@@ -6,8 +6,8 @@
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/parse.h"
 #include "woodcock/scene/quality.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -12,7 +12,7 @@
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/proof/support/render_scene.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/build_surfaces.h"
+#include "woodcock/scene/build.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,8 @@
 #include "tests/support/paths.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/temp_dir.h"
-#include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

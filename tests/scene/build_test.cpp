@@ -9,7 +9,7 @@
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/defaults.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -8,7 +8,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -5,8 +5,7 @@
 
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

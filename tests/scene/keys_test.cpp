@@ -3,11 +3,14 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <regex>
+#include <set>
 
+#include "tests/support/expect_error.h"
 #include "tests/support/keys_guide.h"
 #include "tests/support/paths.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 
@@ -81,6 +84,87 @@ TEST(SceneKeys, APermissionIsNeeded) {
         if (!key.permission) return;
         EXPECT_THROW(parse(sceneBefore(list, key)), Error);
     });
+}
+
+TEST(SceneKeys, EachThatNamesAFileToReadIsAmongTheScenesFiles) {
+    int found = 0;
+    forEachKey([&](const KeyList& list, const KeyInfo& key) {
+        if (key.type.find("path") == std::string::npos || list.id == "output" || key.name == "ocio")
+            return;
+        SceneDescription scene = parse(sceneBefore(list, key));
+        scene = parse(sceneBefore(list, key), {assignment(list, key, "\"sought.file\"")});
+        const std::vector<std::filesystem::path*> files = sceneFiles(scene);
+        const auto isSought = [](const auto* file) { return file->filename() == "sought.file"; };
+        EXPECT_EQ(std::count_if(files.begin(), files.end(), isSought), 1);
+        ++found;
+    });
+    EXPECT_GE(found, 4);
+}
+
+TEST(SceneKeys, AreNamedByTheMembersThatTheySay) {
+    RenderDescription render;
+    EXPECT_EQ(keyName(render, render.maxBounces), "max_bounces");
+    EXPECT_EQ(keyName(render, render.approximations.octaves), "octaves");
+    expectError(ErrorKind::Usage, "no key of 'render' says this member",
+                [&] { keyName(render, render.approximations); });
+    SurfaceDescription surface;
+    surface.shape = PlaneShape();
+    EXPECT_EQ(keyName(surface, std::get<PlaneShape>(surface.shape)), "plane");
+    EXPECT_EQ(keyName(surface, surface.instances), "instances");
+    VolumeDescription volume;
+    volume.blackbody.emplace();
+    EXPECT_EQ(keyName(volume, volume.blackbody), "blackbody");
+    EXPECT_EQ(keyName(*volume.blackbody, volume.blackbody->offset), "offset");
+}
+
+/// "volume[].scale" of "volume[{}].scale".
+std::string withoutIndices(const std::string& path) {
+    return std::regex_replace(path, std::regex(R"(\[[^\]]*\])"), "[]");
+}
+
+/// What a source may call a key of a scene: "render.spp", "volume[].emission.grid".
+class KnownKeys {
+public:
+    KnownKeys() {
+        for (const KeyList& list : allKeys()) {
+            const std::string table = withoutIndices(list.path);
+            if (!list.tag.empty()) paths_.insert(table + ".type");
+            for (const KeyInfo& key : list.keys) {
+                paths_.insert(table + "." + key.name);
+                if (table.find('.') != std::string::npos) ofTablesWithin_.insert(key.name);
+            }
+        }
+    }
+    bool has(const std::string& path) const {
+        if (paths_.contains(path)) return true;
+        const size_t dot = path.rfind('.');
+        return paths_.contains(path.substr(0, dot)) &&
+               ofTablesWithin_.contains(path.substr(dot + 1));
+    }
+
+private:
+    std::set<std::string> paths_, ofTablesWithin_;
+};
+
+TEST(SceneKeys, NamedInSourcesAreInTheTables) {
+    const KnownKeys known;
+    EXPECT_TRUE(known.has("volume[].emission.grid"));
+    EXPECT_FALSE(known.has("render.bounces"));
+    const std::regex name(
+        R"(["'`]((?:render|camera|output|(?:volume|material|surface|light)\[[^\]]*\])(?:\.[a-z_]+)+))");
+    int found = 0;
+    for (const char* folder : {"lib/woodcock", "tools"})
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(sourceDir() / folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".cpp" && extension != ".h") continue;
+            const std::string text = readText(entry.path());
+            for (std::sregex_iterator i(text.begin(), text.end(), name), end; i != end;
+                 ++i, ++found)
+                EXPECT_TRUE(known.has(withoutIndices((*i)[1])))
+                    << entry.path() << " speaks of " << (*i)[1];
+        }
+    EXPECT_GT(found, 20);
 }
 
 TEST(SceneKeys, StandInTheGuideAsInTheirTables) {

@@ -6,8 +6,7 @@
 #include "tests/support/expect_error.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

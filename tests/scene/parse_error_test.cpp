@@ -6,7 +6,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/scene_mistake.h"
 #include "woodcock/base/error.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 #include <gtest/gtest.h>
 

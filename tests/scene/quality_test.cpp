@@ -7,7 +7,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

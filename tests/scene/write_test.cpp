@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "woodcock/base/error.h"
-#include "woodcock/scene/parse.h"
 
 namespace woodcock::test {
 

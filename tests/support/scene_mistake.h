@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "woodcock/base/error.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -11,7 +11,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

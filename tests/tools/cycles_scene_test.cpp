@@ -10,7 +10,7 @@
 #include "woodcock/base/temp_dir.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/defaults.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

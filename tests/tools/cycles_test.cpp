@@ -13,7 +13,7 @@
 #include "woodcock/camera/camera.h"
 #include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

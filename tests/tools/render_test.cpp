@@ -8,7 +8,7 @@
 #include "tests/support/run_program.h"
 #include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -5,7 +5,7 @@
 
 #include "tests/support/expect_error.h"
 #include "woodcock/base/temp_dir.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

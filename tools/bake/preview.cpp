@@ -16,10 +16,9 @@
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
+#include "woodcock/scene/description.h"
 #include "woodcock/scene/load.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/places.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
 

@@ -6,7 +6,7 @@
 #include "tools/common/frames.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
-#include "woodcock/scene/places.h"
+#include "woodcock/scene/description.h"
 
 namespace woodcock::tool {
 

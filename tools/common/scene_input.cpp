@@ -12,8 +12,7 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
-#include "woodcock/scene/parse.h"
-#include "woodcock/scene/scene_files.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
 

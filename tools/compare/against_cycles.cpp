@@ -11,7 +11,7 @@
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/cycles/mapping.h"
 #include "woodcock/base/error.h"
-#include "woodcock/scene/cycles_mapping.h"
 
 namespace woodcock::tool {
 
@@ -23,7 +23,7 @@ inline nlohmann::json toJson(const Affine3d& m) {
 
 /// Radiance per unit of length, evenly or times a grid; null where there is none.
 inline nlohmann::json emissionJson(Rgb emission, const std::string& grid = "") {
-    const scene::CyclesColour glow = scene::cyclesColour(emission);
+    const CyclesColour glow = cyclesColour(emission);
     if (!(glow.strength > 0)) return nullptr;
     return {{"strength", glow.strength}, {"colour", toJson(glow.colour)}, {"grid", grid}};
 }
@@ -32,7 +32,7 @@ inline nlohmann::json emissionJson(Rgb emission, const std::string& grid = "") {
 inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters,
                                  Rgb emission = Rgb(0)) {
     if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
-    const scene::CyclesMedium medium = scene::cyclesMedium(sigmaA, sigmaS);
+    const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
     return {{"sigma_a", toJson(medium.sigmaA)},
             {"sigma_s", toJson(medium.sigmaS)},
             {"density", medium.density},

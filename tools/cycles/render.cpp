@@ -16,7 +16,7 @@
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/write_exr.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
 

@@ -9,6 +9,7 @@
 #include "tools/cycles/surfaces.h"
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/scene/build.h"
+#include "woodcock/scene/keys/sections.h"
 
 namespace woodcock::tool {
 
@@ -29,18 +30,18 @@ public:
           scatters_(scene.render.maxScatterings != 0) {}
 
     void addTo(json& list) const {
-        if (std::abs(volume_.g) > scene::cyclesLargestG)
-            throw cyclesRefusal(place("g"), "a g of {}: it clamps g to +-{}", volume_.g,
-                                scene::cyclesLargestG);
+        if (std::abs(volume_.g) > cyclesLargestG)
+            throw cyclesRefusal(place(volume_.g), "a g of {}: it clamps g to +-{}", volume_.g,
+                                cyclesLargestG);
         if (!volume_.inside.empty())
-            throw cyclesRefusal(place("inside"), "a volume inside the surface '{}'",
+            throw cyclesRefusal(place(volume_.inside), "a volume inside the surface '{}'",
                                 volume_.inside);
         if (volume_.repair)
-            throw cyclesRefusal(place("repair"),
+            throw cyclesRefusal(place(volume_.repair),
                                 "a volume that is repaired as it is loaded: it reads the "
                                 "file as it is; save it repaired with woodcock convert --repair");
         if (!volume_.file.empty() && grid::listGrids(volume_.file).nanoVdb)
-            throw cyclesRefusal(place("file"),
+            throw cyclesRefusal(place(volume_.file),
                                 "a file of NanoVDB: Blender reads none; `woodcock convert {} "
                                 "x.vdb` makes a VDB of it",
                                 volume_.file.string());
@@ -54,8 +55,15 @@ public:
     }
 
 private:
-    std::string place(const char* key) const {
-        return scene::findPlace(places_, name_ + "." + key);
+    template <class Member>
+    std::string place(const Member& member) const {
+        return scene::findPlace(places_, name_ + "." + scene::keyName(volume_, member));
+    }
+    template <class Member>
+    std::string placeInBlackbody(const Member& member) const {
+        return scene::findPlace(
+            places_, fmt::format("{}.{}.{}", name_, scene::keyName(volume_, volume_.blackbody),
+                                 scene::keyName(*volume_.blackbody, member)));
     }
 
     json fileJson(const scene::LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
@@ -78,18 +86,18 @@ private:
     json blackbodyJson() const {
         const scene::BlackbodyDescription& b = *volume_.blackbody;
         if (b.offset != 0)
-            throw cyclesRefusal(place("blackbody.offset"),
+            throw cyclesRefusal(placeInBlackbody(b.offset),
                                 "an offset of temperatures, {}: it can only multiply them",
                                 b.offset);
         if (b.scale < 0)
-            throw cyclesRefusal(place("blackbody.scale"), "a scale of temperatures below 0, {}",
+            throw cyclesRefusal(placeInBlackbody(b.scale), "a scale of temperatures below 0, {}",
                                 b.scale);
         if (loaded_.ambient != 0)
-            throw cyclesRefusal(place("blackbody"),
+            throw cyclesRefusal(place(volume_.blackbody),
                                 "the background {} of the temperature grid '{}': it would glow "
                                 "there, too",
                                 loaded_.ambient, loaded_.blackbody.grid);
-        const scene::CyclesBlackbody blackbody = scene::cyclesBlackbody(b);
+        const CyclesBlackbody blackbody = cyclesBlackbody(b);
         return {{"grid", loaded_.blackbody.grid},
                 {"temperature", blackbody.temperature},
                 {"intensity", blackbody.intensity},
@@ -99,7 +107,7 @@ private:
     json gridJson(const scene::LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
         for (int c = 0; c < field.field->channels(); ++c)
             if (field.field->background(c) != 0)
-                throw cyclesRefusal(place("file"),
+                throw cyclesRefusal(place(volume_.file),
                                     "the background {} of grid '{}': it draws active voxels "
                                     "alone",
                                     field.field->background(c), field.grid);
@@ -147,7 +155,7 @@ private:
 json lightJson(const scene::SunDescription& sun, const std::string& place) {
     if (sun.visible)
         throw cyclesRefusal(place, "a sun that the camera sees; leave out its 'visible'");
-    const scene::CyclesColour light = scene::cyclesColour(sun.irradiance);
+    const CyclesColour light = cyclesColour(sun.irradiance);
     return {{"type", "sun"},
             {"direction", toJson(normalize(sun.direction))},
             {"strength", light.strength},
@@ -161,19 +169,19 @@ json lightJson(const scene::EnvironmentDescription& environment, const std::stri
                {"image", nullptr}};
     if (!environment.image.empty()) {
         light["image"] = std::filesystem::absolute(environment.image).string();
-        light["image_from_world"] = toJson(scene::cyclesImageFromWorld(environment));
+        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
     }
     return light;
 }
 json lightJson(const scene::PointDescription& point, const std::string&) {
-    const scene::CyclesColour light = scene::cyclesPoint(point.intensity);
+    const CyclesColour light = cyclesPoint(point.intensity);
     return {{"type", "point"},
             {"position", toJson(point.position)},
             {"power", light.strength},
             {"colour", toJson(light.colour)}};
 }
 json lightJson(const scene::SphereDescription& sphere, const std::string&) {
-    const scene::CyclesColour light = scene::cyclesColour(sphere.radiance);
+    const CyclesColour light = cyclesColour(sphere.radiance);
     return {{"type", "sphere"},
             {"position", toJson(sphere.position)},
             {"radius", sphere.radius},
@@ -199,21 +207,26 @@ json cameraJson(const scene::SceneDescription& scene) {
     return out;
 }
 
+template <class Member>
+std::string placeInRender(const scene::SceneDescription& scene, const Member& member) {
+    return scene::findPlace(scene.places, "render." + scene::keyName(scene.render, member));
+}
+
 /// Cycles bounds diffuse, glossy and transmitted bounces each by itself, or all kinds together.
 json bouncesJson(const scene::SceneDescription& scene) {
     const scene::RenderDescription& render = scene.render;
     bool media = !scene.volumes.empty();
     for (const scene::SurfaceDescription& surface : scene.surfaces)
         media |= surface.interior.has_value();
-    json out{
-        {"volume", render.maxScatterings == 0 ? 0 : scene::cyclesBounces(render.maxScatterings)},
-        {"surface", scene::cyclesMostBounces},
-        {"all", scene::cyclesMostBounces}};
+    json out{{"volume", render.maxScatterings == 0 ? 0 : cyclesBounces(render.maxScatterings)},
+             {"surface", cyclesMostBounces},
+             {"all", cyclesMostBounces}};
     if (scene.surfaces.empty() || !render.maxBounces) return out;
-    const std::string place = scene::findPlace(scene.places, "render.max_bounces");
+    const std::string place = placeInRender(scene, render.maxBounces);
     if (*render.maxBounces == 0)
-        throw cyclesRefusal(place, "surfaces that reflect nothing, max_bounces = 0");
-    out["surface"] = scene::cyclesBounces(render.maxBounces);
+        throw cyclesRefusal(place, "surfaces that reflect nothing, {} = 0",
+                            scene::keyName(render, render.maxBounces));
+    out["surface"] = cyclesBounces(render.maxBounces);
     if (media)
         spdlog::warn(
             "{}: Cycles bounds diffuse, glossy and transmitted bounces by {} each, not "
@@ -243,7 +256,7 @@ json renderJson(const scene::SceneDescription& scene, const CyclesSettings& sett
 std::string cyclesScene(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
                         const CyclesSettings& settings) {
     if (scene.render.approximations.transparentShadows)
-        throw cyclesRefusal(scene::findPlace(scene.places, "render.transparent_shadows"),
+        throw cyclesRefusal(placeInRender(scene, scene.render.approximations.transparentShadows),
                             "Woodcock's transparent shadows");
     json volumes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)

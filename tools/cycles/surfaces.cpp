@@ -5,9 +5,10 @@
 
 #include "tools/cycles/json.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/scene_bounds.h"
-#include "woodcock/scene/unit_shapes.h"
+#include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/load_surfaces.h"
 
 namespace woodcock::tool {
 
@@ -116,29 +117,31 @@ json surfaceJson(const scene::SceneDescription& scene, const scene::LoadedScene&
                  std::size_t index) {
     const scene::SurfaceDescription& surface = scene.surfaces[index];
     const scene::LoadedSurface& mesh = loaded.surfaces[index];
-    const auto place = [&](const char* key) {
-        return scene::findPlace(scene.places, fmt::format("surface[{}].{}", index, key));
+    const auto place = [&](const auto& member) {
+        return scene::findPlace(
+            scene.places, fmt::format("surface[{}].{}", index, scene::keyName(surface, member)));
     };
-    if (surface.holdout) throw cyclesRefusal(place("holdout"), "a holdout as Woodcock does");
+    if (surface.holdout) throw cyclesRefusal(place(surface.holdout), "a holdout as Woodcock does");
     if (surface.shadowCatcher)
-        throw cyclesRefusal(place("shadow_catcher"), "a shadow catcher as Woodcock does");
-    if (surface.matte) throw cyclesRefusal(place("matte"), "a matte surface");
-    if (surface.priority != 0) throw cyclesRefusal(place("priority"), "priorities of surfaces");
+        throw cyclesRefusal(place(surface.shadowCatcher), "a shadow catcher as Woodcock does");
+    if (surface.matte) throw cyclesRefusal(place(surface.matte), "a matte surface");
+    if (surface.priority != 0)
+        throw cyclesRefusal(place(surface.priority), "priorities of surfaces");
     const auto* plane = std::get_if<scene::PlaneShape>(&surface.shape);
     if (plane && !plane->size)
-        throw cyclesRefusal(place("plane"), "an infinite plane; give it a size");
+        throw cyclesRefusal(place(*plane), "an infinite plane; give it a size");
     if (scene::natureOf(scene, index).encloses)
-        refuseReplacement(scene, loaded, index, place("material"));
+        refuseReplacement(scene, loaded, index, place(surface.material));
 
     json out{{"material", MaterialWriter(scene).write(surface.material)},
              {"camera_visible", surface.cameraVisible},
              {"medium", nullptr},
              {"instances", json::array()}};
     if (surface.interior)
-        out["medium"] = mediumJson(surface.interior->sigmaA, surface.interior->sigmaS,
-                                   surface.interior->g, scene.render.maxScatterings != 0,
-                                   scene::cyclesEmissionWithin(surface.interior->emission,
-                                                               scene::natureOf(scene, index).ior));
+        out["medium"] = mediumJson(
+            surface.interior->sigmaA, surface.interior->sigmaS, surface.interior->g,
+            scene.render.maxScatterings != 0,
+            cyclesEmissionWithin(surface.interior->emission, scene::natureOf(scene, index).ior));
     for (const Affine3d& instance : mesh.instances)
         out["instances"].push_back(
             toJson(surface.worldFromObject * instance * mesh.objectFromMesh));
@@ -178,9 +181,9 @@ void writeCyclesMeshes(const std::filesystem::path& directory, const scene::Scen
         if (loaded.surfaces[i].mesh)
             writeMesh(file, *loaded.surfaces[i].mesh);
         else if (std::holds_alternative<scene::SphereShape>(scene.surfaces[i].shape))
-            writeMesh(file, scene::sphereMesh(sphereRings));
+            writeMesh(file, mesh::sphereMesh(sphereRings));
         else
-            writeMesh(file, scene::diskMesh(diskSectors));
+            writeMesh(file, mesh::diskMesh(diskSectors));
     }
 }
 

@@ -9,8 +9,7 @@
 #include "tools/common/progress.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/render/view_depth.h"
-#include "woodcock/scene/build_medium.h"
-#include "woodcock/scene/seen_light.h"
+#include "woodcock/scene/build.h"
 
 namespace woodcock::tool {
 

@@ -29,9 +29,8 @@
 #include "woodcock/render/precision.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/scene_files.h"
-#include "woodcock/scene/seen_light.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
 
@@ -58,18 +57,19 @@ scene::SceneDescription describeScene(const RenderOptions& options) {
     }
     if (!options.layers.empty()) output.layers = options.layers;
     output.half |= options.half;
-    const auto replaceName = [&](const char* key, std::string& name, const auto& option) {
+    const auto replaceName = [&](std::string& name, const auto& option) {
         if (!option) return;
         name = *option;
+        const std::string& key = scene::keyName(output, name);
         scene.places[fmt::format("output.{}", key)] = fmt::format("--{}", key);
     };
-    replaceName("display", output.display, options.display);
-    replaceName("view", output.view, options.view);
-    replaceName("look", output.look, options.look);
+    replaceName(output.display, options.display);
+    replaceName(output.view, options.view);
+    replaceName(output.look, options.look);
     output.exposure = options.exposure.value_or(output.exposure);
     if (!options.ocio.empty()) {
         scene.ocio = options.ocio;
-        scene.places["ocio"] = "--ocio";
+        scene.places[scene::keyName(scene, scene.ocio)] = "--ocio";
     }
     return scene;
 }
@@ -92,7 +92,9 @@ image::ExrLayers layersOf(const scene::SceneDescription& scene) {
 
 /// Where the name that a message of ColorConfig begins with was given: "scene.toml:9:8: ".
 std::string placeOfDisplayError(const scene::SceneDescription& scene, std::string_view message) {
-    for (const std::string key : {"display", "view", "look"}) {
+    const scene::OutputDescription& output = scene.output;
+    for (const std::string* name : {&output.display, &output.view, &output.look}) {
+        const std::string& key = scene::keyName(output, *name);
         const std::string place = scene::findPlace(scene.places, "output." + key);
         if (message.starts_with(key + " '") && !place.empty()) return place + ": ";
     }
@@ -102,8 +104,9 @@ std::string placeOfDisplayError(const scene::SceneDescription& scene, std::strin
 image::Outputs prepareOutputs(const scene::SceneDescription& scene, const RenderOptions& options) {
     prepareOutput(options.stats, options.mkdir, "--stats");
     prepareOutput(options.writeScene, options.mkdir, "--write-scene");
-    image::ColorConfig colour = scene::inPlace(scene::findPlace(scene.places, "ocio"),
-                                               [&] { return image::ColorConfig(scene.ocio); });
+    image::ColorConfig colour =
+        scene::inPlace(scene::findPlace(scene.places, scene::keyName(scene, scene.ocio)),
+                       [&] { return image::ColorConfig(scene.ocio); });
     image::OutputSettings settings{.colour = std::move(colour)};
     if (options.rendersImages()) settings.files = scene.output.files;
     refuseOverwriting(settings.files, settings.colour.files());

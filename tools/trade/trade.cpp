@@ -22,7 +22,7 @@
 #include "tools/trade/report_answers.h"
 #include "tools/trade/report_html.h"
 #include "woodcock/base/whole_file.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
 

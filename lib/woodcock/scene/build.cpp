@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/scene/build.h"
 
+#include <algorithm>
+
 #include "woodcock/base/error.h"
-#include "woodcock/scene/build_medium.h"
-#include "woodcock/scene/build_surfaces.h"
-#include "woodcock/scene/level_of_detail.h"
+#include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/overrides.h"
 
 namespace woodcock::scene {
 namespace {
@@ -53,6 +54,11 @@ camera::Camera buildCamera(const CameraDescription& description) {
     return camera;
 }
 
+bool glows(const VolumeDescription& volume) {
+    return (volume.emission && volume.emission->scale.maximum() > 0) ||
+           (volume.blackbody && volume.blackbody->intensity > 0);
+}
+
 }  // namespace
 
 render::RenderSettings renderSettings(const RenderDescription& render) {
@@ -93,6 +99,34 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
     return {buildMedium(description, loaded, ""),
             buildLights(description, std::move(loaded.environmentMaps), surfaces), camera,
             std::move(surfaces.set), std::move(surfaces.interiorMedia)};
+}
+
+bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {
+    const auto interior = [](const SurfaceDescription& surface) {
+        return surface.interior && surface.interior->emission.maximum() > 0;
+    };
+    return std::any_of(scene.volumes.begin(), scene.volumes.end(), glows) ||
+           std::any_of(scene.surfaces.begin(), scene.surfaces.end(), interior) ||
+           anySurfaceEmits(scene);
+}
+
+bool anythingGlows(const SceneDescription& scene) {
+    const auto isSeen = [](const LightDescription& light) {
+        if (const auto* sun = std::get_if<SunDescription>(&light.light)) return sun->visible;
+        if (const auto* sphere = std::get_if<SphereDescription>(&light.light))
+            return sphere->visible;
+        return false;
+    };
+    return anyVolumeOrSurfaceGlows(scene) ||
+           std::any_of(scene.lights.begin(), scene.lights.end(), isSeen);
+}
+
+bool environmentIsHidden(const SceneDescription& scene) {
+    bool hidden = true;
+    for (const LightDescription& light : foreseenLights(scene))
+        if (const auto* environment = std::get_if<EnvironmentDescription>(&light.light))
+            hidden &= !environment->visible;
+    return hidden;
 }
 
 }  // namespace woodcock::scene

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "woodcock/base/vec.h"
+#include "woodcock/camera/camera.h"
+#include "woodcock/light/mesh_light.h"
+#include "woodcock/medium/medium.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load.h"
+#include "woodcock/surface/surface_set.h"
 
 namespace woodcock::scene {
 
@@ -21,5 +31,45 @@ Affine3d worldFromCamera(const CameraPose& pose);
 
 /// The rotation that takes an environment image's up, +y, and centre, -z, to where they are.
 Affine3d worldFromLight(const EnvironmentDescription& environment);
+
+// What is known of the light before a scene is built.
+
+/// Whether a volume, a surface or what a surface holds emits light.
+bool anyVolumeOrSurfaceGlows(const SceneDescription& scene);
+
+/// Whether light may come from where nothing covers: what glows, and lights that are seen.
+bool anythingGlows(const SceneDescription& scene);
+
+/// Whether no environment is visible to camera rays; lights that are still to be chosen count.
+bool environmentIsHidden(const SceneDescription& scene);
+
+// The parts of a scene.
+
+/// The volumes that fill the surface of this name; of an empty name, those that fill none.
+medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
+                           std::string_view inside);
+
+/// The volume that each part of that medium comes from.
+std::vector<size_t> volumesOfParts(const SceneDescription& description, const LoadedScene& loaded,
+                                   std::string_view inside);
+
+/// Biased: halves the resolution of each grid (see coarsened()) as often as its voxels, by their
+/// longest edge, stay at most description.render.levelOfDetail pixels wide where the box of what it
+/// holds is next to the camera. Albedos are weighted by density where both grids have one
+/// transform. What surfaces magnify is not thought of. Returns a note for each grid that changed.
+std::vector<std::string> coarsenForCamera(const SceneDescription& description,
+                                          const camera::Camera& camera, LoadedScene& loaded);
+
+struct BuiltSurfaces {
+    std::shared_ptr<const surface::SurfaceSet> set;  ///< null: none
+    std::vector<medium::Medium> interiorMedia;       ///< as of Scene
+    std::vector<light::MeshLight::Triangle> emitters;
+    light::MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
+};
+
+/// The surfaces of a scene, what they hold, and the triangles that emit light: those of all
+/// emissive instances, in the order of instances and of their triangles. Throws Error{Input} on
+/// transforms that flatten a surface, and where there are more emitters than can be counted.
+BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded);
 
 }  // namespace woodcock::scene

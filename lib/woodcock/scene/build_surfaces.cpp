@@ -1,17 +1,192 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/build_surfaces.h"
+#include "woodcock/scene/build.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <string_view>
 
 #include "woodcock/base/error.h"
-#include "woodcock/scene/build_materials.h"
-#include "woodcock/scene/build_medium.h"
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/scene_bounds.h"
+#include "woodcock/scene/choose_camera.h"
+#include "woodcock/scene/load_surfaces.h"
+#include "woodcock/surface/material.h"
 
 namespace woodcock::scene {
 namespace {
+
+// ---- materials
+
+/// In the list of buildMaterials(); the empty name is the default's.
+std::uint32_t materialIndex(const SceneDescription& description, std::string_view name) {
+    return static_cast<std::uint32_t>(
+        findNamed(description.materials, name).value_or(description.materials.size()));
+}
+
+using Image = std::shared_ptr<const surface::TextureImage>;
+
+surface::Material buildMaterial(const DiffuseDescription& m, const Image& image,
+                                const SceneDescription&) {
+    return surface::DiffuseMaterial{makeTexture(m.colour, image)};
+}
+surface::Material buildMaterial(const ConductorDescription& m, const Image& image,
+                                const SceneDescription&) {
+    surface::ConductorMaterial conductor;
+    conductor.fresnelColour = makeTexture(m.colour, image);
+    conductor.roughness = m.roughness;
+    conductor.schlick = !m.etaK;
+    if (m.etaK) std::tie(conductor.eta, conductor.k) = *m.etaK;
+    return conductor;
+}
+surface::Material buildMaterial(const DielectricDescription& m, const Image&,
+                                const SceneDescription&) {
+    return surface::DielectricMaterial{m.ior, m.roughness};
+}
+surface::Material buildMaterial(const InterfaceDescription&, const Image&,
+                                const SceneDescription&) {
+    return surface::InterfaceMaterial();
+}
+surface::Material buildMaterial(const EmissiveDescription& m, const Image& image,
+                                const SceneDescription&) {
+    return surface::EmissiveMaterial{surface::Texture(m.radiance.colour, image), m.bothSides};
+}
+surface::Material buildMaterial(const MixDescription& m, const Image& image,
+                                const SceneDescription& scene) {
+    return surface::MixMaterial{materialIndex(scene, m.first), materialIndex(scene, m.second),
+                                makeTexture(m.weight, image)};
+}
+
+/// What a surface sends out.
+struct Emission {
+    Rgb radiance{0.0f};
+    bool bothSides = false;
+};
+
+/// At texture coordinates, from the side that it faces or from the other.
+Emission emissionAt(const std::vector<surface::Material>& materials, std::uint32_t index, double u,
+                    double v, bool front) {
+    if (const auto* emissive = std::get_if<surface::EmissiveMaterial>(&materials[index])) {
+        const bool dark = !front && !emissive->bothSides;
+        return {dark ? Rgb(0.0f) : emissive->radiance.at(u, v), emissive->bothSides};
+    }
+    const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]);
+    if (!mix) return {};
+    const float weight = mix->weight.at(u, v).mean();
+    const Emission first = emissionAt(materials, mix->first, u, v, front),
+                   second = emissionAt(materials, mix->second, u, v, front);
+    return {first.radiance * (1 - weight) + second.radiance * weight,
+            first.bothSides || second.bothSides};
+}
+
+/// The longer side of the largest image that decides about emission; 0: there is none.
+int finestTexture(const std::vector<surface::Material>& materials, std::uint32_t index) {
+    const auto side = [](const surface::Texture& texture) {
+        return texture.image ? std::max(texture.image->width(), texture.image->height()) : 0;
+    };
+    if (const auto* emissive = std::get_if<surface::EmissiveMaterial>(&materials[index]))
+        return side(emissive->radiance);
+    if (const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]))
+        return std::max({side(mix->weight), finestTexture(materials, mix->first),
+                         finestTexture(materials, mix->second)});
+    return 0;
+}
+
+/// How often to cut the sides of a triangle, so that the pieces are about two texels wide.
+int cutsOf(const std::array<mesh::Vec2f, 3>& uv, int texels) {
+    constexpr int most = 64;
+    float longest = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const mesh::Vec2f a = uv[i], b = uv[(i + 1) % 3];
+        longest = std::max({longest, std::abs(a.u - b.u), std::abs(a.v - b.v)});
+    }
+    const double pieces = std::ceil(double{longest} * texels / 2);
+    return pieces < most ? std::max(1, static_cast<int>(pieces)) : most;
+}
+
+/// Mean over a triangle, from the centres of the equal pieces that `cuts` leave of it.
+Emission meanOver(const std::vector<surface::Material>& materials, std::uint32_t index,
+                  const std::array<mesh::Vec2f, 3>& uv, int cuts) {
+    Vec3d sum;
+    Emission mean;
+    const auto add = [&](double b1, double b2) {
+        const double b0 = 1 - b1 - b2;
+        mean = emissionAt(materials, index, b0 * uv[0].u + b1 * uv[1].u + b2 * uv[2].u,
+                          b0 * uv[0].v + b1 * uv[1].v + b2 * uv[2].v, true);
+        sum += Vec3d{mean.radiance[0], mean.radiance[1], mean.radiance[2]};
+    };
+    for (int i = 0; i < cuts; ++i)
+        for (int j = 0; i + j < cuts; ++j) {
+            add((i + 1.0 / 3) / cuts, (j + 1.0 / 3) / cuts);
+            if (i + j + 1 < cuts) add((i + 2.0 / 3) / cuts, (j + 2.0 / 3) / cuts);
+        }
+    sum = sum / (double(cuts) * cuts);
+    mean.radiance = Rgb::map([&](int c) { return static_cast<float>(sum[c]); });
+    return mean;
+}
+
+/// The materials in the order of the description, and after them the one of surfaces that name
+/// none.
+std::vector<surface::Material> buildMaterials(const SceneDescription& description,
+                                              const LoadedScene& loaded) {
+    std::vector<surface::Material> materials;
+    for (size_t i = 0; i < description.materials.size(); ++i)
+        materials.push_back(std::visit(
+            [&](const auto& m) { return buildMaterial(m, loaded.textures[i], description); },
+            description.materials[i].material));
+    materials.emplace_back(surface::DiffuseMaterial());
+    return materials;
+}
+
+/// Whether that is not the same everywhere and from both sides.
+bool emissionVaries(const std::vector<surface::Material>& materials, std::uint32_t index) {
+    return std::holds_alternative<surface::MixMaterial>(materials[index]) ||
+           finestTexture(materials, index) > 0;
+}
+
+/// Of each triangle of a mesh of this material, textures averaged over it; empty where all are
+/// dark.
+std::vector<Emission> meanEmission(const std::vector<surface::Material>& materials,
+                                   std::uint32_t material, const mesh::SurfaceMesh& mesh) {
+    const int texels = mesh.uvs.empty() ? 0 : finestTexture(materials, material);
+    std::vector<Emission> emission;
+    bool dark = true;
+    for (size_t i = 0; i < mesh.mesh.triangles.size(); ++i) {
+        const auto uv = mesh.uvs.empty() ? std::array<mesh::Vec2f, 3>{} : mesh.uvs[i];
+        emission.push_back(meanOver(materials, material, uv, cutsOf(uv, texels)));
+        dark &= !(emission.back().radiance.maximum() > 0);
+    }
+    if (dark) emission.clear();
+    return emission;
+}
+
+// ---- surfaces
+
+Box3d grown(const Box3d& box, double by) {
+    const Vec3d all = Vec3d{1, 1, 1} * by;
+    return {box.lower - all, box.upper + all};
+}
+
+double largestCoordinate(const Box3d& box) {
+    double largest = 0;
+    for (int i = 0; i < 3; ++i)
+        largest = std::max({largest, std::abs(box.lower[i]), std::abs(box.upper[i])});
+    return largest;
+}
+
+/// A world box with room around all of a surface, for what it holds: the surface itself is what
+/// bounds that. Below an infinite plane it reaches 1e9 times as far as all there is in the scene.
+Box3d spaceAround(const SceneDescription& scene, const LoadedScene& loaded, size_t index) {
+    const Box3d bounds = surfaceBounds(scene.surfaces[index], loaded.surfaces[index]);
+    // Of hits, floats may lose 1e-6.
+    if (!bounds.empty())
+        return grown(bounds, 0.01 * length(bounds.size()) + 1e-5 * largestCoordinate(bounds));
+    Box3d all;
+    for (const Vec3d& p : sceneOutline(scene, loaded)) all.add(p);
+    if (scene.camera.pose) all.add(worldFromCamera(*scene.camera.pose).translation);
+    for (const Affine3d& instance : loaded.surfaces[index].instances)
+        all.add((scene.surfaces[index].worldFromObject * instance).translation);
+    return grown(all, 1e9 * length(all.size()));
+}
 
 constexpr std::size_t mostEmitters = std::size_t{1} << 26;
 

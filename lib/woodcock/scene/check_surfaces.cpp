@@ -91,16 +91,15 @@ private:
     }
 
     void mix(size_t index, const MixDescription& mix) const {
-        const auto part = [&](const char* key, const std::string& name) -> const auto& {
-            const std::string value = fmt::format("material[{}].{}", index, key);
+        const auto part = [&](const std::string& name) -> const auto& {
+            const std::string value = fmt::format("material[{}].{}", index, keyName(mix, name));
             const auto& found = scene_.materials[need(scene_.materials, "material", value, name)];
             if (is<MixDescription>(found))
                 throw error(value, "is '{}', a mix itself; a mix is of two other materials", name);
             return found;
         };
-        const auto* first = std::get_if<DielectricDescription>(&part("first", mix.first).material);
-        const auto* second =
-            std::get_if<DielectricDescription>(&part("second", mix.second).material);
+        const auto* first = std::get_if<DielectricDescription>(&part(mix.first).material);
+        const auto* second = std::get_if<DielectricDescription>(&part(mix.second).material);
         if (first && second && first->ior != second->ior)
             throw error(fmt::format("material[{}]", index),
                         "mixes dielectrics of ior {} and {}, but what is inside has one",
@@ -109,25 +108,25 @@ private:
 
     void surface(size_t index) const {
         const SurfaceDescription& surface = scene_.surfaces[index];
-        const auto value = [&](const char* key) {
-            return fmt::format("surface[{}].{}", index, key);
+        const auto value = [&](const auto& member) {
+            return fmt::format("surface[{}].{}", index, keyName(surface, member));
         };
         if (!surface.material.empty())
-            need(scene_.materials, "material", value("material"), surface.material);
+            need(scene_.materials, "material", value(surface.material), surface.material);
         const SurfaceNature nature = natureOf(scene_, index);
         if (!nature.letsLightIn && surface.interior)
-            throw error(value("medium"), "can never be seen: {}", noWayIn(surface));
-        const bool plane = std::holds_alternative<PlaneShape>(surface.shape);
-        const bool infinite = plane && !std::get<PlaneShape>(surface.shape).size;
-        if (nature.encloses &&
-            (std::holds_alternative<DiskShape>(surface.shape) || (plane && !infinite)))
-            throw error(value(plane ? "plane" : "disk"),
+            throw error(value(surface.interior), "can never be seen: {}", noWayIn(surface));
+        const auto* plane = std::get_if<PlaneShape>(&surface.shape);
+        const auto* disk = std::get_if<DiskShape>(&surface.shape);
+        const bool infinite = plane && !plane->size;
+        if (nature.encloses && (disk || (plane && !infinite)))
+            throw error(plane ? value(*plane) : value(*disk),
                         "encloses nothing, so its material, '{}', cannot tell inside from outside; "
                         "give a closed shape, such as a thin box{}",
                         surface.material, plane ? ", or an infinite plane" : "");
         if (infinite && surface.interior) endlessGlow(index, *surface.interior);
         if (nature.emits && infinite)
-            throw error(value("plane"),
+            throw error(value(*plane),
                         "is infinite and would emit without end ('{}' is emissive); give it a size",
                         surface.material);
     }

@@ -12,10 +12,9 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/choose_camera.h"
+#include "woodcock/scene/load_surfaces.h"
 #include "woodcock/scene/overrides.h"
-#include "woodcock/scene/rounding.h"
-#include "woodcock/scene/scene_bounds.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::scene {
 namespace {

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "woodcock/base/affine.h"
+#include "woodcock/base/error.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/field_source.h"
 #include "woodcock/mesh/faceted_mesh.h"
 #include "woodcock/render/approximations.h"
-#include "woodcock/scene/places.h"
 
 namespace woodcock::scene {
 
@@ -309,6 +313,27 @@ struct OutputDescription {
     double exposure = 0;                       ///< stops, before the display transform
     bool operator==(const OutputDescription&) const = default;
 };
+
+/// Where the values of a scene were written, for messages: "volume[0].scale" -> "scene.toml:4:9",
+/// or the "--set ..." or option that gave it. Values that nobody wrote are not in it.
+using Places = std::map<std::string, std::string, std::less<>>;
+
+/// Of `value`; empty where nobody wrote it.
+inline std::string findPlace(const Places& places, std::string_view value) {
+    const auto found = places.find(value);
+    return found == places.end() ? std::string() : found->second;
+}
+
+/// What `action` returns; its errors gain the place before them.
+template <class Action>
+decltype(auto) inPlace(const std::string& place, Action action) {
+    try {
+        return action();
+    } catch (const Error& e) {
+        if (place.empty()) throw;
+        throw Error(e.kind(), fmt::format("{}: {}", place, e.what()));
+    }
+}
 
 /// What is absent (lights, the camera's pose, a density's name and scale) is chosen by
 /// completeScene() of scene/defaults.h, which says what it chose.

@@ -12,6 +12,7 @@
 #include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/image/read_image.h"
 #include "woodcock/medium/blackbody.h"
+#include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/load_surfaces.h"
 
 namespace woodcock::scene {
@@ -245,46 +246,54 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     const VolumeDescription& volume = scene.volumes[index];
     LoadedVolume loaded;
     if (std::holds_alternative<HomogeneousBox>(volume.coefficients)) return loaded;
-    const auto placeOf = [&](std::string_view key) {
-        return findPlace(scene.places, fmt::format("volume[{}].{}", index, key));
+    const auto placeOf = [&](const auto& member) {
+        return findPlace(scene.places,
+                         fmt::format("volume[{}].{}", index, keyName(volume, member)));
+    };
+    const auto placeOfGrid = [&](const std::optional<GridCoefficient>& c) {
+        return findPlace(scene.places, fmt::format("volume[{}].{}.{}", index, keyName(volume, c),
+                                                   keyName(*c, c->grid)));
     };
     const grid::VdbFile& file = inPlace(
-        placeOf("file"), [&]() -> const grid::VdbFile& { return loader.file(volume.file); });
-    // The first of these keys that was written is to blame.
+        placeOf(volume.file), [&]() -> const grid::VdbFile& { return loader.file(volume.file); });
+    // The first of these that was written is to blame.
     const auto load = [&](const std::string& grid, Purpose purpose,
-                          std::initializer_list<std::string_view> keys, grid::GridReach reach) {
-        std::string place;
-        for (const std::string_view key : keys)
-            if (place.empty()) place = placeOf(key);
-        return inPlace(place, [&] { return loader.field(volume, grid, purpose, reach); });
+                          const std::vector<std::string>& places, grid::GridReach reach) {
+        const auto written = std::find_if(places.begin(), places.end(),
+                                          [](const std::string& place) { return !place.empty(); });
+        return inPlace(written == places.end() ? "" : *written,
+                       [&] { return loader.field(volume, grid, purpose, reach); });
     };
     const grid::GridReach reach = reachOf(volume);
     if (const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients)) {
-        loaded.density = load(c->density, Purpose::Density, {"density", "file"}, reach);
+        loaded.density =
+            load(c->density, Purpose::Density, {placeOf(c->density), placeOf(volume.file)}, reach);
         if (!c->albedoGrid.empty())
-            loaded.albedo = load(c->albedoGrid, Purpose::Albedo, {"albedo_grid"}, reach);
+            loaded.albedo = load(c->albedoGrid, Purpose::Albedo, {placeOf(c->albedoGrid)}, reach);
     } else {
         const auto& separate = std::get<SeparateCoefficients>(volume.coefficients);
+        const std::string density =
+            findPlace(scene.places, fmt::format("volume[{}].density", index));
         if (const auto& sigma = separate.sigmaA)
-            loaded.sigmaA =
-                load(sigma->grid, Purpose::Coefficient, {"sigma_a.grid", "density", "file"}, reach);
+            loaded.sigmaA = load(sigma->grid, Purpose::Coefficient,
+                                 {placeOfGrid(sigma), density, placeOf(volume.file)}, reach);
         if (const auto& sigma = separate.sigmaS)
-            loaded.sigmaS =
-                load(sigma->grid, Purpose::Coefficient, {"sigma_s.grid", "density", "file"}, reach);
+            loaded.sigmaS = load(sigma->grid, Purpose::Coefficient,
+                                 {placeOfGrid(sigma), density, placeOf(volume.file)}, reach);
     }
     if (const auto& emission = volume.emission) {
         const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
         const bool density = c && c->density == emission->grid;
-        const std::initializer_list<std::string_view> keys{"emission.grid", "emission"};
+        const std::vector<std::string> places{placeOfGrid(emission), placeOf(emission)};
         // No surface ends what emits: without being asked, it ends with its active voxels.
         loaded.emission =
-            load(emission->grid, density ? Purpose::Density : Purpose::Coefficient, keys,
+            load(emission->grid, density ? Purpose::Density : Purpose::Coefficient, places,
                  volume.background == Background::Endless ? reach : grid::GridReach::ActiveVoxels);
-        inPlace(placeOf("emission"), [&] { requireDarkBackground(file, loaded.emission); });
+        inPlace(placeOf(emission), [&] { requireDarkBackground(file, loaded.emission); });
     }
     if (volume.blackbody)
-        loaded.blackbody =
-            inPlace(placeOf("blackbody"), [&] { return loader.blackbody(volume, loaded.ambient); });
+        loaded.blackbody = inPlace(placeOf(volume.blackbody),
+                                   [&] { return loader.blackbody(volume, loaded.ambient); });
     const auto nameOf = [&](grid::GridRole role) {
         return grid::hasRole(file, role) ? grid::findGrid(file, role).grid.uniqueName
                                          : std::string();
@@ -292,7 +301,7 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     loaded.temperatures = nameOf(grid::GridRole::Temperature);
     loaded.flames = nameOf(grid::GridRole::Emission);
     if (!loaded.temperatures.empty() && !volume.blackbody && !volume.emission &&
-        placeOf("file").empty())
+        placeOf(volume.file).empty())
         loaded.hottest = loader.largest(volume, loaded.temperatures);
     loaded.velocities = unusedVelocities(file, loaded);
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;

@@ -1,18 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/scene/load_surfaces.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <tuple>
 
+#include "woodcock/base/error.h"
+#include "woodcock/base/printable.h"
+#include "woodcock/grid/input_file.h"
 #include "woodcock/image/read_texture.h"
 #include "woodcock/scene/check_surfaces.h"
-#include "woodcock/scene/instance_file.h"
-#include "woodcock/scene/unit_shapes.h"
+#include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/keys/values.h"
 
 namespace woodcock::scene {
 namespace {
+
+constexpr std::string_view expected =
+    "x y z, x y z scale, x y z scale rx ry rz, or the 12 numbers of a matrix of three rows";
+constexpr size_t mostNumbers = 12;
+
+/// One line on its way to a transform.
+class Line {
+public:
+    Line(std::string_view text, const std::filesystem::path& file, size_t number)
+        : rest_(text.substr(0, text.find('#'))), file_(file), number_(number) {}
+
+    /// False where there is nothing but space.
+    bool read() {
+        while (skipSpace()) {
+            if (count_ == mostNumbers)
+                throw error("more than {} numbers; expected {}", mostNumbers, expected);
+            readNumber();
+        }
+        return count_ > 0;
+    }
+
+    Affine3d transform() const {
+        const auto& n = numbers_;
+        const Vec3d position{n[0], n[1], n[2]};
+        Affine3d map;
+        switch (count_) {
+            case 3:
+                return Affine3d::translate(position);
+            case 4:
+                map = placement(position, {}, Vec3d{1, 1, 1} * n[3]);
+                break;
+            case 7:
+                map = placement(position, {n[4], n[5], n[6]}, Vec3d{1, 1, 1} * n[3]);
+                break;
+            case 12:
+                map = {{Vec3d{n[0], n[4], n[8]}, {n[1], n[5], n[9]}, {n[2], n[6], n[10]}},
+                       {n[3], n[7], n[11]}};
+                break;
+            default:
+                throw error("{} number{}; expected {}", count_, count_ == 1 ? "" : "s", expected);
+        }
+        if (const std::string flaw = flawOf(map); !flaw.empty())
+            throw error("a transform that {}", flaw);
+        return map;
+    }
+
+private:
+    bool skipSpace() {
+        rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r"), rest_.size()));
+        return !rest_.empty();
+    }
+
+    void readNumber() {
+        const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r"));
+        const char* const end = word.data() + word.size();
+        const char* const begin = word.data() + (word.front() == '+' && word.size() > 1);
+        double& value = numbers_[count_];
+        const auto [stop, failed] = std::from_chars(begin, end, value);
+        if (failed != std::errc() || stop != end || !std::isfinite(value))
+            throw error("'{}', which is no number that can be used; expected {}",
+                        printable(word.substr(0, 40)), expected);
+        ++count_;
+        rest_.remove_prefix(word.size());
+    }
+
+    template <class... A>
+    Error error(fmt::format_string<A...> message, A&&... args) const {
+        return inputError("{}:{}: found {}", file_.string(), number_,
+                          fmt::format(message, std::forward<A>(args)...));
+    }
+
+    std::string_view rest_;
+    const std::filesystem::path& file_;
+    size_t number_;
+    std::array<double, mostNumbers> numbers_{};
+    size_t count_ = 0;
+};
 
 /// What a colour space conversion of white may give.
 constexpr float almostOne = 1 + 1e-4f;
@@ -28,7 +112,8 @@ public:
         auto& image = known_[{file, colourSpace}];
         if (image) return image;
         if (!config_)
-            inPlace(findPlace(scene_.places, "ocio"), [&] { config_.emplace(scene_.ocio); });
+            inPlace(findPlace(scene_.places, keyName(scene_, scene_.ocio)),
+                    [&] { config_.emplace(scene_.ocio); });
         inPlace(place, [&] {
             image::Image read = image::readTexture(file, colourSpace, *config_);
             image = std::make_shared<surface::TextureImage>(read.width, read.height,
@@ -47,16 +132,20 @@ private:
 
 struct NamedTexture {
     const TextureDescription* texture = nullptr;
-    const char* key = "";
+    std::string key = {};
     bool limited = true;  ///< to 1: it shares light out, and makes none
     bool isData = false;
 };
-NamedTexture textureOf(const DiffuseDescription& m) { return {&m.colour, "colour"}; }
-NamedTexture textureOf(const ConductorDescription& m) { return {&m.colour, "colour"}; }
+NamedTexture textureOf(const DiffuseDescription& m) { return {&m.colour, keyName(m, m.colour)}; }
+NamedTexture textureOf(const ConductorDescription& m) { return {&m.colour, keyName(m, m.colour)}; }
 NamedTexture textureOf(const DielectricDescription&) { return {}; }
 NamedTexture textureOf(const InterfaceDescription&) { return {}; }
-NamedTexture textureOf(const EmissiveDescription& m) { return {&m.radiance, "radiance", false}; }
-NamedTexture textureOf(const MixDescription& m) { return {&m.weight, "weight", true, true}; }
+NamedTexture textureOf(const EmissiveDescription& m) {
+    return {&m.radiance, keyName(m, m.radiance), false};
+}
+NamedTexture textureOf(const MixDescription& m) {
+    return {&m.weight, keyName(m, m.weight), true, true};
+}
 
 using Mesh = std::shared_ptr<const mesh::SurfaceMesh>;
 
@@ -87,16 +176,18 @@ public:
     LoadedSurface load(size_t index) {
         const SurfaceDescription& surface = scene_.surfaces[index];
         const SurfaceNature nature = natureOf(scene_, index);
-        const auto placeOf = [&](const char* key) {
-            return findPlace(scene_.places, fmt::format("surface[{}].{}", index, key));
+        const auto placeOf = [&](const auto& member) {
+            return findPlace(scene_.places,
+                             fmt::format("surface[{}].{}", index, keyName(surface, member)));
         };
-        LoadedSurface loaded = inPlace(placeOf(keyOf(surface)), [&] {
-            return std::visit([&](const auto& shape) { return shaped(shape, surface, nature); },
-                              surface.shape);
-        });
+        LoadedSurface loaded = std::visit(
+            [&](const auto& shape) {
+                return inPlace(placeOf(shape), [&] { return shaped(shape, surface, nature); });
+            },
+            surface.shape);
         loaded.instances = surface.instances;
         if (!surface.instanceFile.empty()) {
-            const auto more = inPlace(placeOf("instances"),
+            const auto more = inPlace(placeOf(surface.instances),
                                       [&] { return readInstanceFile(surface.instanceFile); });
             loaded.instances.insert(loaded.instances.end(), more.begin(), more.end());
         }
@@ -105,12 +196,6 @@ public:
     }
 
 private:
-    /// Of the shape's value, where reading or making it may fail.
-    static const char* keyOf(const SurfaceDescription& surface) {
-        if (std::holds_alternative<MeshShape>(surface.shape)) return "file";
-        return std::holds_alternative<FacetShape>(surface.shape) ? "facets" : "lathe";
-    }
-
     LoadedSurface shaped(const MeshShape& shape, const SurfaceDescription& surface,
                          const SurfaceNature& nature) {
         const auto key =
@@ -146,7 +231,7 @@ private:
     LoadedSurface shaped(const SphereShape& shape, const SurfaceDescription&,
                          const SurfaceNature& nature) {
         if (nature.emits && !sphere_)
-            sphere_ = std::make_shared<mesh::SurfaceMesh>(sphereMesh(emitterRings));
+            sphere_ = std::make_shared<mesh::SurfaceMesh>(mesh::sphereMesh(emitterRings));
         const Vec3d scale = Vec3d{1, 1, 1} * shape.radius;
         return {nature.emits ? sphere_ : nullptr,
                 Affine3d::translate(shape.centre) * Affine3d::scale(scale),
@@ -155,7 +240,7 @@ private:
     LoadedSurface shaped(const DiskShape& shape, const SurfaceDescription&,
                          const SurfaceNature& nature) {
         if (nature.emits && !disk_)
-            disk_ = std::make_shared<mesh::SurfaceMesh>(diskMesh(emitterSectors));
+            disk_ = std::make_shared<mesh::SurfaceMesh>(mesh::diskMesh(emitterSectors));
         return {nature.emits ? disk_ : nullptr, Affine3d::scale(Vec3d{1, 1, 1} * shape.radius), {}};
     }
     LoadedSurface shaped(const PlaneShape& shape, const SurfaceDescription&, const SurfaceNature&) {
@@ -199,7 +284,34 @@ void checkFillings(const SceneDescription& scene, const std::vector<LoadedSurfac
     }
 }
 
+Box3d meshBounds(const LoadedSurface& loaded) {
+    if (!loaded.mesh) return {{-1, -1, -1}, {1, 1, 1}};
+    Box3d box;
+    for (const Vec3f& p : loaded.mesh->mesh.points) box.add(p.as<double>());
+    return box;
+}
+
+bool infinite(const SurfaceDescription& surface) {
+    const auto* plane = std::get_if<PlaneShape>(&surface.shape);
+    return plane && !plane->size;
+}
+
 }  // namespace
+
+std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file) {
+    const std::string text = grid::readInput(file);
+    std::vector<Affine3d> instances;
+    size_t number = 0;
+    for (std::string_view rest = text; !rest.empty();) {
+        const size_t end = rest.find('\n');
+        Line line(rest.substr(0, end), file, ++number);
+        if (line.read()) instances.push_back(line.transform());
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    }
+    if (instances.empty())
+        throw inputError("{} places no instance; expected lines of {}", file.string(), expected);
+    return instances;
+}
 
 std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
                                         std::vector<std::string>& notes) {
@@ -228,17 +340,21 @@ std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
         textures.emplace_back();
         if (!named.texture || named.texture->image.empty()) continue;
         const std::string value = fmt::format("material[{}].{}", i, named.key);
-        const auto placeOf = [&](const char* key) {
-            return findPlace(scene.places, fmt::format("{}.{}", value, key));
+        const auto placeOf = [&](const auto& member) {
+            return findPlace(scene.places,
+                             fmt::format("{}.{}", value, keyName(*named.texture, member)));
         };
         // Weights are no colours: a mask of bytes means what it says.
         const bool data = named.isData && named.texture->colourSpace.empty();
-        const auto image = reader.read(
-            named.texture->image, data ? "data" : named.texture->colourSpace, placeOf("image"));
+        const auto image =
+            reader.read(named.texture->image, data ? "data" : named.texture->colourSpace,
+                        placeOf(named.texture->image));
         textures.back() = image;
         const Rgb largest = named.texture->colour * image->maximum();
         if (!named.limited || largest.maximum() <= almostOne) continue;
-        inPlace(placeOf(named.texture->colour == Rgb(1) ? "image" : "times"), [&] {
+        const std::string place = named.texture->colour == Rgb(1) ? placeOf(named.texture->image)
+                                                                  : placeOf(named.texture->colour);
+        inPlace(place, [&] {
             throw inputError(
                 "{} reaches {:.4g} with {}, but a {} is at most 1; give times = {:.3g} or less",
                 value, largest.maximum(), named.texture->image.string(), named.key,
@@ -246,6 +362,15 @@ std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
         });
     }
     return textures;
+}
+
+Box3d surfaceBounds(const SurfaceDescription& surface, const LoadedSurface& loaded) {
+    Box3d bounds;
+    if (infinite(surface)) return bounds;
+    const Box3d mesh = meshBounds(loaded);
+    for (const Affine3d& instance : loaded.instances)
+        bounds.add((surface.worldFromObject * instance * loaded.objectFromMesh).box(mesh));
+    return bounds;
 }
 
 }  // namespace woodcock::scene

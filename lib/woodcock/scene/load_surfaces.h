@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "woodcock/base/affine.h"
+#include "woodcock/base/vec.h"
 #include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/surface/texture.h"
@@ -35,5 +38,14 @@ std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
 /// it above.
 surface::Texture makeTexture(const TextureDescription& description,
                              std::shared_ptr<const surface::TextureImage> image);
+
+/// World boxes of the instances of a surface, all together; empty for an infinite plane.
+Box3d surfaceBounds(const SurfaceDescription& surface, const LoadedSurface& loaded);
+
+/// The places where a surface stands, from a text file with a line for each: `x y z`; `x y z
+/// scale`; `x y z scale rx ry rz` (degrees, about x, y and z in this order, after scaling); or the
+/// 12 numbers of a matrix, its upper three rows one after the other. What follows a # is a comment.
+/// Throws Error{Input} that names the file and the line.
+std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file);
 
 }  // namespace woodcock::scene

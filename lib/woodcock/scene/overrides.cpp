@@ -13,7 +13,7 @@
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/base/toml_text.h"
 #include "woodcock/scene/keys/sections.h"
-#include "woodcock/scene/write.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::scene {
 namespace {

@@ -9,16 +9,28 @@
 namespace woodcock::scene {
 namespace {
 
+const std::string& renderSection() { return keysOf<RenderDescription>().path; }
+
+const std::string& volumeStorage() {
+    static const VolumeDescription volume;
+    return keyName(volume, volume.storage);
+}
+
 /// Keys of which one at most has a meaning: where one is written, a quality does not bring the
 /// other.
-constexpr std::pair<std::string_view, std::string_view> alternatives[]{
-    {"octaves", "similarity_after"},
-    {"similarity_after", "octaves"},
-    {"march_estimate", "march_step"}};
+std::vector<std::pair<std::string, std::string>> alternatives() {
+    const RenderDescription r;
+    const render::Approximations& a = r.approximations;
+    const auto name = [&](const auto& member) { return keyName(r, member); };
+    return {{name(a.octaves), name(a.similarityAfter)},
+            {name(a.similarityAfter), name(a.octaves)},
+            {name(a.jackknife), name(a.marchStep)}};
+}
 
 bool isDisplaced(const toml::table& render, std::string_view key) {
     if (render.contains(key)) return true;
-    return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
+    static const auto pairs = alternatives();
+    return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
         return pair.first == key && render.contains(pair.second);
     });
 }
@@ -48,6 +60,8 @@ const std::vector<RenderChoice>& qualityChoices(Quality quality) {
     return choices[static_cast<std::size_t>(quality)];
 }
 
+std::string qualityPath() { return fmt::format("{}.{}", renderSection(), qualityKey); }
+
 std::vector<std::string> choiceKeys() {
     return renderKeys([](const KeyInfo& key) { return key.choice; });
 }
@@ -61,20 +75,20 @@ bool isReducedPrecision(grid::Storage storage) {
 }
 
 void eraseChoices(toml::table& scene) {
-    if (toml::table* render = scene["render"].as_table())
+    if (toml::table* render = scene[renderSection()].as_table())
         for (const std::string& key : choiceKeys()) render->erase(key);
     if (toml::array* volumes = scene["volume"].as_array())
         for (toml::node& volume : *volumes)
-            if (toml::table* table = volume.as_table()) table->erase("storage");
+            if (toml::table* table = volume.as_table()) table->erase(volumeStorage());
 }
 
 void expandQuality(toml::table& scene) {
-    toml::table* const render = scene["render"].as_table();
-    const toml::node* const node = render ? render->get("quality") : nullptr;
+    toml::table* const render = scene[renderSection()].as_table();
+    const toml::node* const node = render ? render->get(qualityKey) : nullptr;
     if (!node) return;
-    const TomlValue name(*node, "render.quality");
-    const auto quality = static_cast<Quality>(name.choice("quality", qualityNames));
-    const std::string place = name.place() + ", quality";
+    const TomlValue name(*node, qualityPath());
+    const auto quality = static_cast<Quality>(name.choice(qualityKey, qualityNames));
+    const std::string place = fmt::format("{}, {}", name.place(), qualityKey);
     std::vector<const RenderChoice*> missing;  // found first: what is added displaces nothing
     for (const RenderChoice& choice : qualityChoices(quality))
         if (!isDisplaced(*render, choice.key)) missing.push_back(&choice);
@@ -89,10 +103,11 @@ void expandQuality(toml::table& scene) {
 std::vector<std::string> biasedChoices(const SceneDescription& scene) {
     std::vector<std::string> keys;
     for (const Key<RenderDescription>& key : keysOf<RenderDescription>().keys)
-        if (key.biased && key.biased(scene.render)) keys.push_back("render." + key.info.name);
+        if (key.biased && key.biased(scene.render))
+            keys.push_back(renderSection() + "." + key.info.name);
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         if (isReducedPrecision(scene.volumes[i].storage))
-            keys.push_back(fmt::format("volume[{}].storage", i));
+            keys.push_back(fmt::format("volume[{}].{}", i, volumeStorage()));
     return keys;
 }
 

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "woodcock/scene/description.h"
@@ -15,6 +16,11 @@ namespace woodcock::scene {
 /// From the fastest to the most accurate. Those from Final on are unbiased.
 enum class Quality { Draft, Preview, Final, Reference };
 inline const std::array<std::string, 4> qualityNames{"draft", "preview", "final", "reference"};
+
+/// The key of [render] that names one.
+inline constexpr std::string_view qualityKey = "quality";
+/// The same as --set names it.
+std::string qualityPath();
 
 /// A key of [render] and its value, as TOML.
 struct RenderChoice {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::proof {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -12,14 +13,55 @@
 #include <variant>
 #include <vector>
 
+#include "woodcock/base/path_variables.h"
 #include "woodcock/base/toml_reader.h"
-#include "woodcock/scene/scene_writer.h"
+#include "woodcock/base/toml_text.h"
 
 namespace woodcock::scene {
 
 // A key of a scene file is written once, in the table of its section: <section>_keys.cpp of this
 // folder. Parsing, the keys that messages list, --set, --write-scene, the digest of a scene and the
 // tables of the guide (data/scenes/README.md) all follow from that entry.
+
+/// Lines of a scene file.
+class SceneWriter {
+public:
+    /// A file for people, or the text that a digest is taken of: without comments, with all paths
+    /// absolute, and with what the image does not show at its defaults.
+    enum class Mode { File, Digest };
+    SceneWriter(const std::filesystem::path& directory, Mode mode)
+        : directory_(directory), digest_(mode == Mode::Digest) {}
+
+    bool isDigest() const { return digest_; }
+
+    void heading(std::string_view text) {
+        text_ += fmt::format("{}{}\n", text_.empty() ? "" : "\n", text);
+    }
+    void line(std::string_view key, std::string_view value, std::string_view comment = "") {
+        text_ += fmt::format("{} = {}", key, value);
+        if (!digest_ && !comment.empty()) text_ += fmt::format("  # {}", comment);
+        text_ += '\n';
+    }
+    void comment(std::string_view text) {
+        if (!digest_) text_ += fmt::format("# {}\n", text);
+    }
+    const std::string& text() const { return text_; }
+
+    /// A path inside a value.
+    std::string quoted(const std::filesystem::path& p) const {
+        namespace fs = std::filesystem;
+        if (digest_) return tomlText(escapePath(fs::absolute(p).lexically_normal()));
+        const bool here = directory_.empty() || directory_ == ".";
+        if (here || p.is_absolute()) return tomlText(escapePath(p));
+        return tomlText(escapePath(fs::absolute(p).lexically_normal().lexically_proximate(
+            fs::absolute(directory_ / "").lexically_normal())));
+    }
+
+private:
+    std::filesystem::path directory_;
+    bool digest_;
+    std::string text_;
+};
 
 /// What is said of a key, whatever it is a key of.
 struct KeyInfo {
@@ -41,6 +83,9 @@ struct KeyInfo {
     std::vector<std::string> examples = {};  ///< of its kind of value
 };
 
+/// Members of a description that are names of files.
+using Files = std::vector<std::filesystem::path*>;
+
 /// A kind of value: how it is read, with relative paths from a base, and how TOML writes it.
 template <class T>
 struct Value {
@@ -48,6 +93,8 @@ struct Value {
     std::vector<std::string> examples;
     std::function<T(const TomlValue&, const std::filesystem::path&)> read;
     std::function<std::string(const T&, const SceneWriter&)> write;
+    /// Adds the files that a value names; absent: it names none.
+    std::function<void(T&, Files&)> files = {};
 };
 
 /// The text of a value, and what is said of it behind.
@@ -63,6 +110,11 @@ struct Key {
     /// Nothing where there is nothing to say. Keys that say in another way what a key says are
     /// never written; they have no such function.
     std::function<std::optional<Written>(const D&, const SceneWriter&)> write;
+    /// The member of a D that holds the value; null where this D has none. Absent: no one member
+    /// does.
+    std::function<const void*(const D&)> member = {};
+    /// Adds the files that the value names; absent: it names none.
+    std::function<void(D&, Files&)> files = {};
     /// Whether this D's value changes the expected picture; of choices. Absent: no value does.
     std::function<bool(const D&)> biased = {};
     /// Whether a D has this key at all; absent: every one has.
@@ -93,6 +145,22 @@ struct KeyTable {
 /// The table of D; specialised in <section>_keys.cpp.
 template <class D>
 const KeyTable<D>& keysOf();
+
+/// The name of the key that says a member of `d`: "max_bounces" of render.maxBounces. Of a kind of
+/// a variant, the key that chooses it. Throws Error{Usage} where no key says the member.
+template <class D, class Member>
+const std::string& keyName(const D& d, const Member& member) {
+    for (const Key<D>& key : keysOf<D>().keys)
+        if (key.member && key.member(d) == static_cast<const void*>(&member)) return key.info.name;
+    throw usageError("no key of '{}' says this member", keysOf<D>().id);
+}
+
+/// Adds the files that `d` names.
+template <class D>
+void addFiles(D& d, Files& files) {
+    for (const Key<D>& key : keysOf<D>().keys)
+        if (key.files) key.files(d, files);
+}
 
 /// Whether `d` has the key.
 template <class D>
@@ -178,7 +246,8 @@ Value<D> nested() {
                 readKeys(value.table(), d, base);
                 return d;
             },
-            [](const D& d, const SceneWriter& out) { return inlineTable(d, out); }};
+            [](const D& d, const SceneWriter& out) { return inlineTable(d, out); },
+            [](D& d, Files& files) { addFiles(d, files); }};
 }
 
 template <class T>
@@ -203,6 +272,17 @@ Key<D> keyAt(KeyInfo info, Access access, Value<T> value) {
             info.fallback = value.write(*member, SceneWriter(".", SceneWriter::Mode::File));
     }
     Key<D> key{info, {}, {}};
+    key.member = [=](const D& d) { return static_cast<const void*>(access(d)); };
+    if (value.files)
+        key.files = [=](D& d, Files& files) {
+            // Found in a constant D: looking must not make the member.
+            auto* member = const_cast<Member*>(access(std::as_const(d)));
+            if constexpr (optional) {
+                if (member && *member) value.files(**member, files);
+            } else {
+                if (member) value.files(*member, files);
+            }
+        };
     key.read = [=](const TomlValue& v, D& d, const std::filesystem::path& base) {
         if (auto* member = access(d)) *member = value.read(v, base);
     };

@@ -58,6 +58,7 @@ Key<R> resolution() {
     key.write = [](const R& r, const SceneWriter&) {
         return Written{fmt::format("[{}, {}]", r.width, r.height)};
     };
+    key.member = [](const R& r) { return static_cast<const void*>(&r.width); };
     return key;
 }
 
@@ -102,7 +103,7 @@ std::vector<Key<R>> amountKeys() {
              .doc = "of the random numbers. Another seed gives other noise",
              .inDigest = false},
             &R::seed, seed()),
-        otherWay<R>({.name = "quality",
+        otherWay<R>({.name = std::string(qualityKey),
                      .doc = "a set of choices, see \"Qualities\"",
                      .type = choiceOf<Quality>("quality", qualityNames).type,
                      .fallback = "none",

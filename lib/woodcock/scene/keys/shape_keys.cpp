@@ -12,6 +12,12 @@ using Rings = std::vector<mesh::FacetRing>;
 
 constexpr int mostSegments = 100'000, mostFacets = 1000;
 
+/// The shape of a surface that has this one.
+template <class Shape>
+const void* memberOf(const S& s) {
+    return std::get_if<Shape>(&s.shape);
+}
+
 /// A shape, as the value of the key that is its name.
 template <class Shape>
 Key<S> shapeKey(KeyInfo info) {
@@ -23,6 +29,7 @@ Key<S> shapeKey(KeyInfo info) {
         const auto* shape = std::get_if<Shape>(&s.shape);
         return shape ? std::optional(Written{inlineTable(*shape, out)}) : std::nullopt;
     };
+    key.member = memberOf<Shape>;
     return key;
 }
 
@@ -37,6 +44,7 @@ Key<S> box() {
         const auto* shape = std::get_if<BoxShape>(&s.shape);
         return shape ? std::optional(Written{bounds().write(shape->box, out)}) : std::nullopt;
     };
+    key.member = memberOf<BoxShape>;
     return key;
 }
 
@@ -66,6 +74,7 @@ Key<S> facets() {
             all += "\n    " + inlineTable(ring, out) + ",";
         return Written{all + "\n]"};
     };
+    key.member = memberOf<FacetShape>;
     return key;
 }
 

@@ -69,7 +69,10 @@ Value<std::filesystem::path> path() {
     return {"path",
             {"\"folder/b $$5.exr\"", "\"c.exr\""},
             [](const TomlValue& v, Base base) { return v.path(base); },
-            [](const std::filesystem::path& v, const SceneWriter& out) { return out.quoted(v); }};
+            [](const std::filesystem::path& v, const SceneWriter& out) { return out.quoted(v); },
+            [](std::filesystem::path& v, Files& files) {
+                if (!v.empty()) files.push_back(&v);
+            }};
 }
 
 Value<Vec3d> vector() {
@@ -142,6 +145,44 @@ const KeyTable<Transform>& keysOf() {
         .outer = "[[surface]]\nsphere = {}\n[surface.transform]\n",
         .path = "surface[0].transform"};
     return table;
+}
+
+template <>
+const KeyTable<Box3d>& keysOf() {
+    const auto check = [](const TomlTable& table, Box3d& box) {
+        for (int i = 0; i < 3; ++i)
+            if (!(box.lower[i] < box.upper[i]))
+                throw table.find("max")
+                    ->element(static_cast<size_t>(i))
+                    .error("is {}; it must exceed min[{}], which is {}", box.upper[i], i,
+                           box.lower[i]);
+    };
+    static const KeyTable<Box3d> table{
+        .id = "box",
+        .keys = {key({.name = "min",
+                      .doc = "the corner with the least coordinates",
+                      .example = "[0, 0, 0]",
+                      .required = true,
+                      .always = true},
+                     &Box3d::lower, vector()),
+                 key({.name = "max",
+                      .doc = "the corner with the greatest coordinates",
+                      .example = "[1, 1, 1]",
+                      .required = true,
+                      .always = true},
+                     &Box3d::upper, vector())},
+        .check = check,
+        .outer = "[[volume]]\nsigma_a = 1\n[volume.box]\n",
+        .least = "min = [-1, -1, -1]\nmax = [2, 2, 2]",
+        .path = "volume[0].box"};
+    return table;
+}
+
+Value<Box3d> bounds() {
+    Value<Box3d> value = nested<Box3d>();
+    value.type = "`{ min = [x, y, z], max = [x, y, z] }`";
+    value.examples = {"{ min = [-1, 0, 0.1], max = [1, 2, 3] }"};
+    return value;
 }
 
 Affine3d placement(Vec3d translate, Vec3d rotate, Vec3d scale) {

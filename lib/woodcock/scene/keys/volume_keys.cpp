@@ -231,6 +231,24 @@ std::vector<Exclusion> exclusions() {
 
 }  // namespace
 
+std::vector<Exclusion> coefficientExclusions() {
+    std::vector<Exclusion> all;
+    for (const char* sigma : {"sigma_a", "sigma_s"})
+        for (const char* other : {"scale", "albedo", "albedo_grid"})
+            all.push_back({sigma, other,
+                           "sigma_a and sigma_s say what scale and albedo say (sigma_t = scale x "
+                           "density, sigma_s = albedo x sigma_t)"});
+    return all;
+}
+
+std::optional<std::pair<Rgb, Rgb>> readScaleAndAlbedo(const TomlTable& table) {
+    const auto scale = table.find("scale"), albedo = table.find("albedo");
+    if (albedo && !scale) throw albedo->error("needs a scale: here sigma_t = scale");
+    if (!scale) return std::nullopt;
+    return splitByAlbedo(scale->colour(notNegative),
+                         albedo ? albedo->exactColour(zeroToOne) : Vec3d{1, 1, 1});
+}
+
 template <>
 const KeyTable<GridCoefficient>& keysOf() {
     static const KeyTable<GridCoefficient> table{

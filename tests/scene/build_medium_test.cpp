@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/level_of_detail.h"
+#include "woodcock/scene/build.h"
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,7 @@
 #include "woodcock/base/temp_dir.h"
 #include "woodcock/proof/support/render_scene.h"
 #include "woodcock/proof/support/write_vdb.h"
-#include "woodcock/scene/build.h"
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/cycles_mapping.h"
+#include "tools/cycles/mapping.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "woodcock/scene/build.h"
 
-namespace woodcock::scene {
+namespace woodcock::tool {
 
 CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
     CyclesMedium medium{.sigmaA = sigmaA, .sigmaS = sigmaS};
@@ -21,7 +21,7 @@ CyclesMedium cyclesMedium(Rgb sigmaA, Rgb sigmaS) {
     return medium;
 }
 
-CyclesBlackbody cyclesBlackbody(const BlackbodyDescription& blackbody) {
+CyclesBlackbody cyclesBlackbody(const scene::BlackbodyDescription& blackbody) {
     // Its intensity b means b T^4 + 1 - b: only 1 leaves no rest. The tint may exceed 1.
     return {blackbody.scale, 1, blackbody.colour * static_cast<float>(blackbody.intensity)};
 }
@@ -45,10 +45,10 @@ CyclesColour cyclesPoint(Rgb intensity) {
     return point;
 }
 
-Affine3d cyclesImageFromWorld(const EnvironmentDescription& environment) {
+Affine3d cyclesImageFromWorld(const scene::EnvironmentDescription& environment) {
     // The light's -z, its image's centre, becomes +x, its +y +z.
     const Affine3d cyclesFromLight{{Vec3d{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}}, {}};
-    return cyclesFromLight * worldFromLight(environment).inverse();
+    return cyclesFromLight * scene::worldFromLight(environment).inverse();
 }
 
-}  // namespace woodcock::scene
+}  // namespace woodcock::tool

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/parse.h"
+#include "woodcock/scene/scene_file.h"
+
+#include <fmt/format.h>
 
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/keys/sections.h"
@@ -8,6 +10,8 @@
 
 namespace woodcock::scene {
 namespace {
+
+// ---- reading
 
 /// The tables of a list such as [[volume]]; none where the key is missing.
 std::vector<TomlTable> tablesOf(const TomlTable& scene, const std::string& key) {
@@ -70,6 +74,66 @@ void checkLightChanges(const SceneDescription& scene) {
     foreseenLights(scene);
 }
 
+// ---- writing
+
+void write(SceneWriter& out, const VolumeDescription& volume) {
+    out.heading("[[volume]]");
+    writeKeys(out, volume);
+}
+
+void write(SceneWriter& out, const MaterialDescription& material) {
+    out.heading("[[material]]");
+    writeKeys(out, material);
+    writeTagged(out, material.material);
+}
+
+void write(SceneWriter& out, const SurfaceDescription& surface) {
+    out.heading("[[surface]]");
+    writeKeys(out, surface);
+}
+
+void write(SceneWriter& out, const LightDescription& light) {
+    out.heading("[[light]]");
+    writeTagged(out, light.light);
+}
+
+void write(SceneWriter& out, const CameraDescription& camera) {
+    out.heading("[camera]");
+    writeKeys(out, camera);
+}
+
+void write(SceneWriter& out, const SceneDescription& scene) {
+    out.comment("A Woodcock scene. Lengths are world units, angles degrees, colours scene-linear.");
+    writeKeys(out, scene);
+    for (const VolumeDescription& volume : scene.volumes) write(out, volume);
+    for (const MaterialDescription& material : scene.materials) write(out, material);
+    for (const SurfaceDescription& surface : scene.surfaces) write(out, surface);
+    for (const LightDescription& light : scene.lights) write(out, light);
+    if (scene.camera != CameraDescription()) write(out, scene.camera);
+    out.heading("[render]");
+    writeKeys(out, scene.render);
+    if (out.isDigest() || scene.output == OutputDescription()) return;
+    out.heading("[output]");
+    writeKeys(out, scene.output);
+}
+
+/// FNV-1a, 64 bits.
+std::uint64_t hashOf(std::string_view text) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const char c : text) {
+        hash ^= static_cast<unsigned char>(c);
+        hash *= 0x100000001b3;
+    }
+    return hash;
+}
+
+template <class Section>
+std::string writeSection(const Section& section) {
+    SceneWriter out(".", SceneWriter::Mode::File);
+    write(out, section);
+    return out.text();
+}
+
 }  // namespace
 
 std::vector<LightDescription> readLights(const TomlTable& scene,
@@ -90,7 +154,7 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
             lightChanges.push_back(assignment);
             continue;
         }
-        if (overriddenKey(assignment) == "render.quality") eraseChoices(table);
+        if (overriddenKey(assignment) == qualityPath()) eraseChoices(table);
         applyOverride(table, assignment);
     }
     keepOverriddenSuns(table);
@@ -108,6 +172,36 @@ SceneDescription parseScene(const std::filesystem::path& file,
                             const std::vector<std::string>& overrides) {
     return parseSceneText(readTomlFile(file, "scene file"), file.string(), file.parent_path(),
                           overrides);
+}
+
+std::string writeVolume(const VolumeDescription& volume) { return writeSection(volume); }
+std::string writeCamera(const CameraDescription& camera) { return writeSection(camera); }
+std::string writeLight(const LightDescription& light) { return writeSection(light); }
+
+std::string writeScene(const SceneDescription& scene, const std::filesystem::path& directory) {
+    SceneWriter out(directory, SceneWriter::Mode::File);
+    write(out, scene);
+    return out.text();
+}
+
+std::string sceneDigest(const SceneDescription& scene) {
+    SceneDescription content = scene;
+    // However it is said where a sun stands.
+    for (LightDescription& light : content.lights)
+        if (auto* sun = std::get_if<SunDescription>(&light.light)) sun->place.reset();
+    SceneWriter out(".", SceneWriter::Mode::Digest);
+    write(out, content);
+    return fmt::format("{:016x}", hashOf(out.text()));
+}
+
+std::vector<std::filesystem::path*> sceneFiles(SceneDescription& scene) {
+    Files files;
+    const auto addKind = [&](auto& kind) { addFiles(kind, files); };
+    for (VolumeDescription& volume : scene.volumes) addFiles(volume, files);
+    for (LightDescription& light : scene.lights) std::visit(addKind, light.light);
+    for (MaterialDescription& material : scene.materials) std::visit(addKind, material.material);
+    for (SurfaceDescription& surface : scene.surfaces) addFiles(surface, files);
+    return files;
 }
 
 }  // namespace woodcock::scene

@@ -7,9 +7,9 @@
 #include "woodcock/base/spectrum.h"
 #include "woodcock/scene/description.h"
 
-namespace woodcock::scene {
+namespace woodcock::tool {
 
-// Woodcock's parameters in Blender Cycles' terms. The other direction is tools/blender/mapping.py.
+// Woodcock's parameters in Blender Cycles' terms. The other way: woodcock_addon/mapping.py.
 
 /// What Volume Coefficients takes, sigma_a and sigma_s as they are; and what Volume Scatter and
 /// Volume Absorption take, as object densities are those of the world:
@@ -31,7 +31,7 @@ struct CyclesBlackbody {
     Rgb tint{1.0f};
 };
 /// Its `offset` has to be 0 and its `scale` no less: Cycles can only multiply.
-CyclesBlackbody cyclesBlackbody(const BlackbodyDescription& blackbody);
+CyclesBlackbody cyclesBlackbody(const scene::BlackbodyDescription& blackbody);
 
 /// What has to glow inside a dielectric in Cycles, where light that leaves glass keeps the radiance
 /// that it had within. Really it has n^2 times that much within.
@@ -58,6 +58,6 @@ CyclesColour cyclesPoint(Rgb intensity);
 
 /// Turns a world direction to where Cycles looks it up in an environment image: the image's centre
 /// is towards +x, its top +z and its left +y there.
-Affine3d cyclesImageFromWorld(const EnvironmentDescription& environment);
+Affine3d cyclesImageFromWorld(const scene::EnvironmentDescription& environment);
 
-}  // namespace woodcock::scene
+}  // namespace woodcock::tool

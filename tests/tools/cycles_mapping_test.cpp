@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/cycles_mapping.h"
+#include "tools/cycles/mapping.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 namespace woodcock::test {
 
 using namespace scene;
+using namespace tool;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "woodcock/scene/instance_file.h"
+#include "woodcock/scene/load_surfaces.h"
 
 #include <gtest/gtest.h>
 
