@@ -244,10 +244,14 @@ GridSource readNanoVdbSource(const VdbFile& listed, const GridListing& listing, 
     const VdbGrids grids = readNanoVdbGrid(listed.path, index);
     GridBase& grid = *grids.grids.front();
     GridSource source;
-    readAs<FloatGrid>(grid, repair, source) || readAs<DoubleGrid>(grid, repair, source) ||
+    if (readAs<FloatGrid>(grid, repair, source) || readAs<DoubleGrid>(grid, repair, source) ||
         readAs<Int32Grid>(grid, repair, source) || readAs<Int64Grid>(grid, repair, source) ||
-        readAs<Vec3SGrid>(grid, repair, source) || readAs<Vec3DGrid>(grid, repair, source);
-    return source;
+        readAs<Vec3SGrid>(grid, repair, source) || readAs<Vec3DGrid>(grid, repair, source))
+        return source;
+    throw inputError(
+        "grid '{}' in {} has values of type {}; expected float, double, int32, int64, vec3s or "
+        "vec3d",
+        listing.uniqueName, listed.path.string(), grid.valueType());
 }
 
 }  // namespace
