@@ -28,8 +28,14 @@ std::vector<DistanceQuery<N>> track(const Medium& medium, const TestRay& ray,
     for (int i = 0; i < settings.count; ++i) {
         RandomStream random(hashOf(seed, i));
         const double u = random.uniformOpenLow();
-        queries.push_back({ray.origin, ray.direction, ray.tMax, u, random, settings.roulette,
-                           settings.absorptionToo, throughput});
+        queries.push_back({.origin = ray.origin,
+                           .direction = ray.direction,
+                           .tMax = ray.tMax,
+                           .u = u,
+                           .random = random,
+                           .roulette = settings.roulette,
+                           .absorptionToo = settings.absorptionToo,
+                           .throughput = throughput});
     }
     TrackingCounters counters;
     trackDistance<N>(medium, queries, counters);

@@ -28,8 +28,12 @@ std::vector<TransmittanceQuery<N>> marchAcross(const Medium& medium, const March
                                                Spectrum<N> contribution = Spectrum<N>(1.0f)) {
     std::vector<TransmittanceQuery<N>> queries;
     for (int i = 0; i < count; ++i)
-        queries.push_back({ray.origin, ray.direction, ray.tMax, RandomStream(hashOf(seed, i)),
-                           roulette, contribution});
+        queries.push_back({.origin = ray.origin,
+                           .direction = ray.direction,
+                           .tMax = ray.tMax,
+                           .random = RandomStream(hashOf(seed, i)),
+                           .roulette = roulette,
+                           .contribution = contribution});
     TrackingCounters counters;
     marchTransmittance<N>(medium, settings, queries, counters);
     return queries;
@@ -44,8 +48,13 @@ std::vector<DistanceQuery<N>> marchInto(const Medium& medium, const MarchSetting
     for (int i = 0; i < count; ++i) {
         RandomStream random(hashOf(seed, i));
         const double u = random.uniformOpenLow();
-        queries.push_back(
-            {ray.origin, ray.direction, ray.tMax, u, random, roulette, false, throughput});
+        queries.push_back({.origin = ray.origin,
+                           .direction = ray.direction,
+                           .tMax = ray.tMax,
+                           .u = u,
+                           .random = random,
+                           .roulette = roulette,
+                           .throughput = throughput});
     }
     TrackingCounters counters;
     marchDistance<N>(medium, settings, queries, counters);
@@ -327,8 +336,11 @@ TEST(Marching, StepsAreSpentOnlyWhereTheFieldVaries) {
     const Medium medium = plain.medium();
     for (double step : {0.1, 1.0, 1e6}) {
         prepareMarch(medium, {step, true});
-        std::vector<TransmittanceQuery<1>> query{
-            {{-5, 4, 4}, {1, 0, 0}, infinity, RandomStream(1), 0, Spectrum<1>(1.0f)}};
+        std::vector<TransmittanceQuery<1>> query{{.origin = {-5, 4, 4},
+                                                  .direction = {1, 0, 0},
+                                                  .tMax = infinity,
+                                                  .random = RandomStream(1),
+                                                  .contribution = Spectrum<1>(1.0f)}};
         TrackingCounters counters;
         marchTransmittance<1>(medium, {step, true}, query, counters);
         EXPECT_LE(counters.collisions, 20 * 2 * (8 / step + 1));

@@ -145,10 +145,18 @@ TEST(Nearest, TransmittanceIsThatOfThePiecewiseConstantIntegral) {
             std::vector<DistanceQuery<3>> along;
             for (std::size_t k = 0; k < n; ++k) {
                 RandomStream random(hashOf(m, i, k));
-                across.push_back({ray.origin, ray.direction, ray.tMax, random, 0, Spectrum<3>(1)});
+                across.push_back({.origin = ray.origin,
+                                  .direction = ray.direction,
+                                  .tMax = ray.tMax,
+                                  .random = random,
+                                  .contribution = Spectrum<3>(1)});
                 const double u = random.uniformOpenLow();
-                along.push_back(
-                    {ray.origin, ray.direction, ray.tMax, u, random, 0, false, Spectrum<3>(1)});
+                along.push_back({.origin = ray.origin,
+                                 .direction = ray.direction,
+                                 .tMax = ray.tMax,
+                                 .u = u,
+                                 .random = random,
+                                 .throughput = Spectrum<3>(1)});
             }
             TrackingCounters counters;
             trackTransmittance<3>(medium, across, counters);
@@ -189,8 +197,11 @@ TEST(Nearest, DeepCellsAreCutBetweenVoxels) {
             TrackingCounters counters;
             constexpr int n = 4000;
             for (int i = 0; i < n; ++i) {
-                TransmittanceQuery<3> q{origin, {1, 0, 0},     8, RandomStream(hashOf(11, i)),
-                                        0,      Spectrum<3>(1)};
+                TransmittanceQuery<3> q{.origin = origin,
+                                        .direction = {1, 0, 0},
+                                        .tMax = 8,
+                                        .random = RandomStream(hashOf(11, i)),
+                                        .contribution = Spectrum<3>(1)};
                 trackTransmittance<3>(medium, {&q, 1}, counters);
                 passed.add(q.contribution[1]);
             }

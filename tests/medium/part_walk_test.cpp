@@ -63,8 +63,8 @@ TEST(PartWalk, SegmentsAreOrderedWithoutGapsAndBoundTheField) {
                     t = s.t1;
                     for (int k = 0; k < 5; ++k) {
                         const double at = s.t0 + (s.t1 - s.t0) * random.uniform();
-                        for (int c = 0; c < 3; ++c) {
-                            const double f = part.value(ray.origin + ray.direction * at, c);
+                        const Rgb value = part.value(ray.origin + ray.direction * at);
+                        for (const double f : value.c) {
                             ASSERT_LE(s.range.min, f + 1e-6);
                             ASSERT_GE(s.range.max, f - 1e-6);
                         }
@@ -79,8 +79,7 @@ TEST(PartWalk, SegmentsAreOrderedWithoutGapsAndBoundTheField) {
                 for (int k = 0; k < 50; ++k) {  // nothing outside the segments
                     const double at = ray.tMax * random.uniform();
                     if (!all.empty() && at > all[0].t0 - 1e-9 && at < t + 1e-9) continue;
-                    for (int c = 0; c < 3; ++c)
-                        ASSERT_EQ(part.value(ray.origin + ray.direction * at, c), 0);
+                    ASSERT_EQ(part.value(ray.origin + ray.direction * at), Rgb(0.0f));
                 }
             }
         }
@@ -138,7 +137,7 @@ TEST(MediumPart, FarFromItsGridIsBackground) {
     const Medium hazy = PlainMedium({{.grid = mixedGrid(1, 3, haze)}}).medium();
     for (double far : {1e6, 1e12, 1e30})
         for (int c = 0; c < 3; ++c)
-            EXPECT_EQ(hazy.parts[0].value({far, -far, 0.5}, c), haze[static_cast<std::size_t>(c)]);
+            EXPECT_EQ(hazy.parts[0].value({far, -far, 0.5})[c], haze[static_cast<std::size_t>(c)]);
 }
 
 TEST(MediumPart, RefusesWhatHasNoMeaning) {

@@ -122,7 +122,12 @@ TEST(RefinedWalk, DeepRampsCostFewCollisions) {
         for (int i = 0; i < n; ++i) {
             RandomStream random(hashOf(7, i));
             const double u = random.uniformOpenLow();
-            queries.push_back({{2, 3.5, 3.5}, {1, 0, 0}, 1e3, u, random, 0, false, Spectrum<1>(1)});
+            queries.push_back({.origin = {2, 3.5, 3.5},
+                               .direction = {1, 0, 0},
+                               .tMax = 1e3,
+                               .u = u,
+                               .random = random,
+                               .throughput = Spectrum<1>(1)});
         }
         TrackingCounters counters;
         trackDistance<1>(medium, queries, counters);
@@ -155,12 +160,11 @@ TEST(RefinedWalk, TransmittanceAcrossTheFootOfADeepSpike) {
         constexpr int n = 4000;
         std::vector<TransmittanceQuery<1>> queries;
         for (int i = 0; i < n; ++i)
-            queries.push_back({{-2, 4 - b, 4 - b},
-                               {1, 0, 0},
-                               1e3,
-                               RandomStream(hashOf(9, i)),
-                               0,
-                               Spectrum<1>(1)});
+            queries.push_back({.origin = {-2, 4 - b, 4 - b},
+                               .direction = {1, 0, 0},
+                               .tMax = 1e3,
+                               .random = RandomStream(hashOf(9, i)),
+                               .contribution = Spectrum<1>(1)});
         TrackingCounters counters;
         trackTransmittance<1>(medium, queries, counters);
         EXPECT_LT(static_cast<double>(counters.collisions) / n, 100) << depth;
@@ -180,8 +184,12 @@ TEST(RefinedWalk, ManyCollisionsInAShallowCellLoseNothing) {
     constexpr int n = 200000;
     std::vector<TransmittanceQuery<1>> queries;
     for (int i = 0; i < n; ++i)
-        queries.push_back({ray.origin, ray.direction, ray.tMax, RandomStream(hashOf(21, i)), 1e-9f,
-                           Spectrum<1>(1)});
+        queries.push_back({.origin = ray.origin,
+                           .direction = ray.direction,
+                           .tMax = ray.tMax,
+                           .random = RandomStream(hashOf(21, i)),
+                           .roulette = 1e-9f,
+                           .contribution = Spectrum<1>(1)});
     TrackingCounters counters;
     trackTransmittance<1>(medium, queries, counters);
     EXPECT_GT(counters.collisions, 10 * n);  // effort: it gets to the eighth
@@ -219,9 +227,18 @@ TEST(RefinedWalk, DeadChannelsAndLargeValuesSetNoPace) {
         std::vector<DistanceQuery<3>> weighted;
         for (int i = 0; i < n; ++i) {
             RandomStream random(hashOf(22, i));
-            across.push_back({origin, direction, 1e3, random, 0, Spectrum<3>(1)});
+            across.push_back({.origin = origin,
+                              .direction = direction,
+                              .tMax = 1e3,
+                              .random = random,
+                              .contribution = Spectrum<3>(1)});
             const double u = random.uniformOpenLow();
-            weighted.push_back({origin, direction, 1e3, u, random, 0, false, Spectrum<3>(1)});
+            weighted.push_back({.origin = origin,
+                                .direction = direction,
+                                .tMax = 1e3,
+                                .u = u,
+                                .random = random,
+                                .throughput = Spectrum<3>(1)});
         }
         TrackingCounters counters;
         trackTransmittance<3>(medium, across, counters);
@@ -253,8 +270,11 @@ TEST(RefinedWalk, HazeBesideASpikeCountsBeforeTheCut) {
             .medium(1, 3);
     Moments m;
     for (int i = 0; i < 20000; ++i) {
-        TransmittanceQuery<1> q{{0, 1.5, 1.5}, {1, 0, 0}, 8, RandomStream(hashOf(11, i)), 0,
-                                Spectrum<1>(1)};
+        TransmittanceQuery<1> q{.origin = {0, 1.5, 1.5},
+                                .direction = {1, 0, 0},
+                                .tMax = 8,
+                                .random = RandomStream(hashOf(11, i)),
+                                .contribution = Spectrum<1>(1)};
         TrackingCounters counters;
         trackTransmittance<1>(medium, {&q, 1}, counters);
         m.add(q.contribution[0]);

@@ -80,18 +80,18 @@ TEST(SimilarMedium, IsTrackedExactlyInTheMean) {
             TrackingCounters counters;
             for (int k = 0; k < samples; ++k) {
                 RandomStream random(hashOf(i, k));
-                TransmittanceQuery<3> q{ray.origin, ray.direction, ray.tMax, random, 0, Rgb(1.0f)};
+                TransmittanceQuery<3> q{.origin = ray.origin,
+                                        .direction = ray.direction,
+                                        .tMax = ray.tMax,
+                                        .random = random,
+                                        .contribution = Rgb(1.0f)};
                 trackTransmittance<3>(medium, {&q, 1}, counters);
-                DistanceQuery<3> d{ray.origin,
-                                   ray.direction,
-                                   ray.tMax,
-                                   random.uniformOpenLow(),
-                                   RandomStream(hashOf(i, k, 1)),
-                                   0,
-                                   false,
-                                   Rgb(1.0f),
-                                   0,
-                                   -1};
+                DistanceQuery<3> d{.origin = ray.origin,
+                                   .direction = ray.direction,
+                                   .tMax = ray.tMax,
+                                   .u = random.uniformOpenLow(),
+                                   .random = RandomStream(hashOf(i, k, 1)),
+                                   .throughput = Rgb(1.0f)};
                 trackDistance<3>(medium, {&d, 1}, counters);
                 double missing = 0, excess = 0;
                 for (int c = 0; c < 3; ++c) {

@@ -18,9 +18,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 template <int N>
 std::array<Moments, N> track(const Medium& medium, const TestRay& ray, Spectrum<N> contribution,
                              float roulette, int count, std::uint64_t seed) {
-    std::vector<TransmittanceQuery<N>> queries(
-        static_cast<std::size_t>(count),
-        {ray.origin, ray.direction, ray.tMax, RandomStream(), roulette, contribution});
+    std::vector<TransmittanceQuery<N>> queries(static_cast<std::size_t>(count),
+                                               {.origin = ray.origin,
+                                                .direction = ray.direction,
+                                                .tMax = ray.tMax,
+                                                .random = RandomStream(),
+                                                .roulette = roulette,
+                                                .contribution = contribution});
     for (std::size_t i = 0; i < queries.size(); ++i)
         queries[i].random = RandomStream(hashOf(seed, i));
     TrackingCounters counters;
@@ -142,8 +146,11 @@ TEST(Transmittance, AThinSpikeInADeepFogEndsAtOnce) {  // no collision of the sp
         return v == Vec3i{4, 4, 4} ? 1e9f : v == Vec3i{0, 0, 0} ? 2.0f : 1.0f;
     });
     const Medium medium = PlainMedium({{.grid = grid, .scattering = Rgb(1e3f)}}).medium(1, 3);
-    std::vector<TransmittanceQuery<1>> query{
-        {{-5, 1.5, 1.5}, {1, 0, 0}, 20, RandomStream(1), 0, Spectrum<1>(1)}};
+    std::vector<TransmittanceQuery<1>> query{{.origin = {-5, 1.5, 1.5},
+                                              .direction = {1, 0, 0},
+                                              .tMax = 20,
+                                              .random = RandomStream(1),
+                                              .contribution = Spectrum<1>(1)}};
     TrackingCounters counters;
     trackTransmittance<1>(medium, query, counters);
     EXPECT_EQ(query[0].contribution[0], 0);

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Deliberate defects, read by run.sh; see there for the arguments of `defect`. Most are biased by so
 # little that a picture would not show them.
-tracer=lib/woodcock/render/batch_tracer.h
-media=lib/woodcock/render/batch_tracer_media.h
-light=lib/woodcock/render/batch_tracer_light.h
-surfaces=lib/woodcock/render/batch_tracer_surfaces.h
+stages=lib/woodcock/render/stages
+media=$stages/shade_media.cpp
+light=$stages/light.cpp
+lookAhead=$stages/look_ahead.cpp
+surfaces=$stages/shade_surfaces.cpp
 tracking=lib/woodcock/medium/tracking.cpp
 bsdf=lib/woodcock/surface/bsdf.cpp
 
@@ -43,8 +44,9 @@ defect "transform transposed" 'BuildScene.*:MediumPart.*:Invariance.Orientation'
     indexFromWorld_.translation = m.translation;'
 
 defect "taps off by half a voxel" 'Distance.*:Transmittance.*' "table of slabs" \
-    $tracking \
-    'field.stochasticVoxel(index, bits)' 'field.stochasticVoxel(index + Vec3d{0, 0.5, 0}, bits)'
+    lib/woodcock/medium/look_up.h \
+    'field.stochasticVoxel(index, how.bits)' \
+    'field.stochasticVoxel(index + Vec3d{0, 0.5, 0}, how.bits)'
 
 defect "absorption's weight lost" 'Distance.*' "half-spaces" \
     $tracking \
@@ -110,10 +112,10 @@ defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of
     'henyeyGreenstein(dot(p.from.forward, s.direction), -p.from.g)'
 
 defect "all octaves come through the first one's medium" 'Octaves.*' "" \
-    lib/woodcock/render/batch_tracer_approximate_media.h \
-    'return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves),
+    lib/woodcock/render/media_table.cpp \
+    'return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves_),
             medium::octave::phase(i)};' \
-    'return {1, medium::octave::total(octaves), medium::octave::phase(i)};'
+    'return {1, medium::octave::total(octaves_), medium::octave::phase(i)};'
 
 defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
     $media \
@@ -125,30 +127,30 @@ defect "MIS forgets how a light was picked" 'Furnace*:LocalLights.*' "" \
     'powerHeuristic(s.pdf * chosen->probability, phase)' 'powerHeuristic(s.pdf, phase)'
 
 defect "local lights counted by both samplings" 'PointLight.*:SphereLight.*' "airlight" \
-    $light \
+    $lookAhead \
     '(pdf + flight.density(e, t))' 'pdf'
 
 defect "shadow rays go on behind the light" 'PointLight.*:SphereLight.*' "" \
-    $light \
-    'ray.tMax = s.distance;' 'ray.tMax = infinity;'
+    $lookAhead \
+    'ray.tMax = s.distance;' 'ray.tMax = std::numeric_limits<double>::infinity();'
 
 defect "numbers used twice" 'Slab.*:Furnace.*' "table of slabs" \
-    $media \
+    $stages/event_numbers.h \
     'p.sequence.draw(set + 1)' 'p.sequence.draw(set)'
 
 defect "roulette of high orders without factor" 'Furnace*' "furnace at any depth" \
-    $media \
+    $stages/roulette.h \
     'p.throughput *= endless ? 1 / endlessSurvival : 1.41421356f;' ''
 
 defect "one order of scattering too few" 'Slab.*:Invariance.Bounds*' "" \
-    $tracer \
-    'p.scatterings >= *options_.maxScatterings) {' 'p.scatterings + 1 >= *options_.maxScatterings) {'
+    lib/woodcock/render/traced_scene.h \
+    'scatterings < *options.maxScatterings' 'scatterings + 1 < *options.maxScatterings'
 
 # ---- surfaces
 
 defect "shadow rays see the outside's medium alone" 'SurfaceLayers*' "media inside surfaces" \
-    $surfaces \
-    'mediumIndex(shadow.mediumSet, place.inside)' 'shadow.mediumSet'
+    $stages/shadow_walk.cpp \
+    'traced.mediumAround(shadow.mediumSet, way.inside())' 'traced.media.number(shadow.mediumSet, 0)'
 
 defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
     lib/woodcock/render/nested_media.cpp \
@@ -156,7 +158,7 @@ defect "priorities upside down" 'SurfaceLayers*' "nested dielectrics" \
 
 defect "refracted light stays in the medium it came from" 'SurfaceLayers*' "plates of glass" \
     $surfaces \
-    'if (b.transmitted) s.start.inside = crossing.beyond;' ''
+    'if (b.transmitted) s.way.goOnFromHit(crossing.beyond);' ''
 
 defect "emissive surfaces counted in full by both samplings" 'SurfaceLayers*' "emissive surfaces" \
     $surfaces \
@@ -164,12 +166,12 @@ defect "emissive surfaces counted in full by both samplings" 'SurfaceLayers*' "e
     'static_cast<float>(hitWeight(p, [&] { return 0 * pdf(); }))'
 
 defect "roulette of bounces without factor" 'SurfaceLayers*' "emissive surfaces" \
-    $surfaces \
+    $stages/roulette.h \
     'p.throughput *= 1 / survival;' 'p.throughput *= 1.0f;'
 
 defect "shadow catchers forget the sky" 'SurfaceLayers*' "" \
     $surfaces \
-    'if (caught) addUnoccluded(p);' ''
+    'if (caught) addUnoccluded(traced, p);' ''
 
 # ---- camera, film
 

@@ -39,8 +39,10 @@ Samples trace(const Scene& scene, double clamp) {
             for (std::uint32_t s = 0; s < 32; ++s) jobs.push_back({x, y, s});
     std::vector<PathResult> results(jobs.size());
     const auto tracer = PathTracer::make(scene, findNeeds(scene), options);
-    EXPECT_TRUE(tracer->trace(jobs, results, [] { return false; }));
-    return {results, tracer->counters().clamped};
+    RenderCounters counters;
+    EXPECT_TRUE(tracer->trace(
+        jobs, results, [] { return false; }, counters));
+    return {results, counters.clamped};
 }
 
 TEST(Clamp, ScalesWhatIsBrighterAndLeavesTheRest) {

@@ -83,8 +83,8 @@ TEST_F(VolumeBackground, EndsOneVoxelAroundTheActiveOnes) {
     const BuiltScene built = build("scale = 1");
     const MediumPart& part = built.scene.medium.parts.at(0);
     EXPECT_FALSE(part.unbounded());
-    EXPECT_NEAR(part.value({-0.9, 5, 5}), haze + 0.1 * (2 - haze), 1e-6);
-    EXPECT_EQ(part.value({-1.1, 5, 5}), 0);
+    EXPECT_NEAR(part.value({-0.9, 5, 5})[0], haze + 0.1 * (2 - haze), 1e-6);
+    EXPECT_EQ(part.value({-1.1, 5, 5}), Rgb(0.0f));
     EXPECT_EQ(part.worldBounds().lower, (Vec3d{-1, -1, -1}));
     EXPECT_EQ(part.worldBounds().upper, (Vec3d{10, 10, 10}));
 }

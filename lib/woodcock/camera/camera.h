@@ -8,6 +8,7 @@ namespace woodcock::camera {
 /// World-space ray with unit direction.
 struct CameraRay {
     Vec3d origin, direction;
+    float time = 0;  ///< within the shutter: 0 where it opens, 1 where it closes
 };
 
 /// Pinhole or orthographic. Looks along -z of camera space, +y up; worldFromCamera is a rigid
@@ -22,8 +23,9 @@ struct Camera {
     /// shift): the camera sees what lies there without turning.
     double shiftX = 0, shiftY = 0;
 
-    /// The ray through film position (x, y), in pixels of an image of width x height, y down.
-    CameraRay ray(double x, double y, int width, int height) const;
+    /// The ray through film position (x, y), in pixels of an image of width x height, y down, at a
+    /// time within the shutter.
+    CameraRay ray(double x, double y, int width, int height, float time = 0) const;
 
     static Camera perspective(Vec3d eye, Vec3d lookAt, Vec3d up, double fovY);
     static Camera orthographic(Vec3d eye, Vec3d lookAt, Vec3d up, double height);

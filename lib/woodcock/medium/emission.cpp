@@ -2,6 +2,7 @@
 #include "woodcock/medium/emission.h"
 
 #include "woodcock/base/error.h"
+#include "woodcock/medium/look_up.h"
 
 namespace woodcock::medium {
 
@@ -35,23 +36,21 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
     majorants_ = grid::MajorantGrid(field, {largest > 0 ? 1 / largest : 1, 1, 1});
 }
 
-Rgb EmissionPart::value(Vec3d world) const {
+Rgb EmissionPart::value(Vec3d world, float time) const {
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? d_.scale : Rgb(0.0f);
     if (extent_.empty() || (d_.field->limits() && !extent_.contains(p))) return Rgb(0.0f);
-    const Vec3d near = d_.field->nearSupport(p);
-    if (d_.field->channels() == 1) return d_.scale * d_.field->trilinear(near);
-    return Rgb::map([&](int c) { return d_.scale[c] * d_.field->trilinear(near, c); });
+    return d_.scale * glowAt(*this, p, time);
 }
 
 std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPart> parts,
-                                                     Vec3d origin, Vec3d direction, double tMax,
-                                                     double extinction, double u) {
+                                                     const EmissionQuery& q) {
+    const double extinction = q.extinction;
     pieces_.clear();
     double first = std::numeric_limits<double>::infinity();
     for (const EmissionPart& part : parts)
-        part.walk(origin, direction, tMax, [&](double t0, double t1, double bound) {
-            pieces_.push_back({&part, t0, t1, bound, 0, 0});
+        part.walk(q.origin, q.direction, q.tMax, [&](double t0, double t1, double bound) {
+            pieces_.push_back({.part = &part, .t0 = t0, .t1 = t1, .bound = bound});
             first = std::min(first, t0);
         });
     double even = 0, dimmed = 0;
@@ -65,8 +64,8 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
     }
     if (!(even > 0 && dimmed > 0)) return {};
 
-    const bool byDimmed = u >= 0.5;
-    double left = (byDimmed ? 2 * u - 1 : 2 * u) * (byDimmed ? dimmed : even);
+    const bool byDimmed = q.u >= 0.5;
+    double left = (byDimmed ? 2 * q.u - 1 : 2 * q.u) * (byDimmed ? dimmed : even);
     const auto weightOf = [&](const Piece& p) { return byDimmed ? p.dimmed : p.even; };
     const Piece* piece = nullptr;
     for (const Piece& p : pieces_) {
@@ -84,9 +83,9 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
     // Divided by the bound, which is also a factor of the light.
     const double density = 0.5 / even + 0.5 * std::exp(-extinction * (t - first)) / dimmed;
     const double weight = 1 / (density * piece->bound);
-    const Rgb q = piece->part->value(origin + direction * t);
+    const Rgb glow = piece->part->value(q.origin + q.direction * t, q.time);
     return EmissionPoint{
-        t, Rgb::map([&](int c) { return static_cast<float>(double{q[c]} * weight); })};
+        t, Rgb::map([&](int c) { return static_cast<float>(double{glow[c]} * weight); })};
 }
 
 }  // namespace woodcock::medium

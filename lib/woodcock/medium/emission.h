@@ -32,8 +32,8 @@ public:
 
     const Description& description() const { return d_; }
     Box3d worldBounds() const { return d_.worldFromIndex.box(extent_); }
-    /// q at a world position, by full trilinear interpolation.
-    Rgb value(Vec3d world) const;
+    /// q at a world position and a time within the shutter, by full trilinear interpolation.
+    Rgb value(Vec3d world, float time = 0) const;
     /// Calls visit(t0, t1, bound) for the pieces of a ray before tMax where q may differ from 0;
     /// no channel of |q| exceeds `bound` there.
     template <class F>
@@ -67,6 +67,15 @@ private:
     grid::MajorantGrid majorants_;
 };
 
+/// A straight piece of a path: world space, direction of unit length.
+struct EmissionQuery {
+    Vec3d origin, direction;
+    float time = 0;  ///< within the shutter: see look_up.h
+    double tMax;
+    double extinction = 0;  ///< per world unit: of the homogeneous medium that stands for this one
+    double u;               ///< in [0, 1)
+};
+
 /// A point of a ray, and its emission. The mean of `light` times the transmittance to `t` is the
 /// radiance that emission adds to the ray.
 struct EmissionPoint {
@@ -83,15 +92,15 @@ struct EmissionPoint {
 /// are drawn from where no light gets through.
 class EmissionSampler {
 public:
-    /// `extinction`: of that homogeneous medium, per world unit. `u` in [0, 1).
-    std::optional<EmissionPoint> sample(std::span<const EmissionPart> parts, Vec3d origin,
-                                        Vec3d direction, double tMax, double extinction, double u);
+    /// Absent where nothing glows along the ray.
+    std::optional<EmissionPoint> sample(std::span<const EmissionPart> parts,
+                                        const EmissionQuery& q);
 
 private:
     struct Piece {
         const EmissionPart* part;
         double t0, t1, bound;
-        double even, dimmed;  ///< integrals of both densities, up to their norms
+        double even = 0, dimmed = 0;  ///< integrals of both densities, up to their norms
     };
     std::vector<Piece> pieces_;  // of one ray
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "woodcock/base/error.h"
-#include "woodcock/medium/medium.h"
+#include "woodcock/medium/look_up.h"
 #include "woodcock/medium/roulette.h"
 
 namespace woodcock::medium {
@@ -27,14 +27,6 @@ struct Numbers {
     double& operator[](int i) { return c[static_cast<std::size_t>(i)]; }
     double operator[](int i) const { return c[static_cast<std::size_t>(i)]; }
 };
-
-/// f by full trilinear interpolation: one-tap stochastic interpolation adds variance, and with it
-/// bias.
-template <int N>
-Spectrum<N> fieldAt(const grid::Field& field, Vec3d index) {
-    if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
-    return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
-}
 
 /// -ln cos(x), to all digits where x is small, as it mostly is.
 double minusLogCosine(double x) {
@@ -56,21 +48,27 @@ struct Step {
     double depth(int c, double t) const { return rate[c] > 0 ? rate[c] * (t - t0) : 0; }
 };
 
-/// The steps of one part along a ray, in order. Empty steps are left out.
+/// The steps of one part along a ray, in order. Empty steps are left out. The field is read in
+/// full: one-tap stochastic interpolation adds variance, and with it bias.
 template <int N>
 class March {
 public:
-    March(const MediumPart& part, const MarchSettings& settings, Vec3d origin, Vec3d direction,
-          double tMax, RandomStream random)
+    template <class Query>
+    March(const MediumPart& part, const MarchSettings& settings, const Query& q,
+          RandomStream random)
         : part_(&part),
-          ray_(part.indexRay(origin, direction)),
-          walk_(part, part.marchCells(), ray_, tMax),
+          ray_(part.indexRay(q.origin, q.direction)),
+          walk_(part, part.marchCells(), ray_, q.tMax),
+          time_(q.time),
           stepsPerLength_(length(ray_.direction) / settings.step),
           jackknife_(settings.jackknife),
           random_(random) {}
 
     const MediumPart& part() const { return *part_; }
-    const grid::IndexRay& ray() const { return ray_; }
+    /// f at `t` of the ray.
+    Spectrum<N> density(double t) const {
+        return densityAt<N>(*part_, ray_.at(t), time_, InFull{});
+    }
 
     bool next(Step<N>& step, TrackingCounters& counters) {
         while (done_ == count_) {
@@ -111,7 +109,7 @@ private:
         const double width = step.t1 - step.t0;
         const auto look = [&] {
             ++counters.collisions;
-            return fieldAt<N>(*part_->field(), ray_.at(step.t0 + width * random_.uniform()));
+            return density(step.t0 + width * random_.uniform());
         };
         const Spectrum<N> a = look();
         const Spectrum<N> b = jackknife_ ? look() : a;
@@ -127,6 +125,7 @@ private:
     const MediumPart* part_;
     grid::IndexRay ray_;
     PartWalk walk_;
+    float time_;
     double stepsPerLength_;
     bool jackknife_;
     RandomStream random_;
@@ -166,7 +165,7 @@ double placeWithin(const Step<N>& step, const March<N>& march, int c, RandomStre
         const double along = -std::log1p(u * std::expm1(-rate * width)) / rate;
         t[i] = step.t0 + std::min(along, width);
         ++counters.collisions;
-        values[i] = fieldAt<N>(*march.part().field(), march.ray().at(t[i]));
+        values[i] = march.density(t[i]);
         sum += values[i][c];
     }
     if (!(sum > 0)) {  // then only the step's own estimate is known
@@ -235,9 +234,8 @@ Spectrum<N> weightOf(const Medium& medium, const DistanceQuery<N>& q, const Even
         const MediumPart& part = medium.parts[static_cast<std::size_t>(event.part)];
         extinguished = channels<N>(part.extinction()) * event.f;
         scattered = q.absorptionToo ? extinguished : channels<N>(part.scattering()) * event.f;
-        if (const grid::Field* albedo = part.albedo(); albedo && !q.absorptionToo)
-            scattered *= fieldAt<N>(
-                *albedo, albedo->nearSupport(part.albedoIndex(q.origin + q.direction * event.t)));
+        if (part.albedo() && !q.absorptionToo)
+            scattered *= albedoAt<N>(part, q.origin + q.direction * event.t, q.time, InFull{});
     }
     if constexpr (N == 1) {
         return Spectrum<N>(extinguished[0] > 0 ? scattered[0] / extinguished[0] : 0.0f);
@@ -259,7 +257,7 @@ void marchOne(const Medium& medium, const MarchSettings& settings, DistanceQuery
     if constexpr (N > 1)
         for (double u = q.random.uniform(); c + 1 < N && u >= chances[c]; ++c) u -= chances[c];
     const auto march = [&](std::size_t i) {
-        return March<N>(medium.parts[i], settings, q.origin, q.direction, q.tMax, streams[i]);
+        return March<N>(medium.parts[i], settings, q, streams[i]);
     };
     Event<N> event{q.tMax};
     Numbers<N> depth{};  // of the part where the event is
@@ -295,8 +293,7 @@ Spectrum<N> marchedTransmittance(const Medium& medium, const MarchSettings& sett
                                  TrackingCounters& counters) {
     Numbers<N> depth{};
     for (const MediumPart& part : medium.parts) {
-        March<N> march(part, settings, q.origin, q.direction, q.tMax,
-                       RandomStream(q.random.bits()));
+        March<N> march(part, settings, q, RandomStream(q.random.bits()));
         Step<N> step;
         while (march.next(step, counters)) {
             bool lost = true;

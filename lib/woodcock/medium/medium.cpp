@@ -3,6 +3,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
+#include "woodcock/medium/look_up.h"
 
 namespace woodcock::medium {
 
@@ -88,33 +89,28 @@ Box3d MediumPart::findReach() const {
     return {box.lower - more, box.upper + more};
 }
 
-float MediumPart::value(Vec3d world, int channel) const {
+Rgb MediumPart::value(Vec3d world, float time) const {
     const Vec3d p = indexFromWorld_.point(world);
-    if (!d_.field) return support_.contains(p) ? 1.0f : 0.0f;
-    if (limits_ && !limits_->contains(p)) return 0.0f;
-    return d_.field->trilinear(d_.field->nearSupport(p), d_.field->channels() == 1 ? 0 : channel);
+    if (!d_.field) return Rgb(support_.contains(p) ? 1.0f : 0.0f);
+    if (limits_ && !limits_->contains(p)) return {};
+    return densityAt<3>(*this, d_.field->nearSupport(p), time, InFull{});
 }
 
-Rgb MediumPart::albedoAt(Vec3d world) const {
-    if (!d_.albedo) return Rgb(1.0f);
-    const grid::Field& albedo = *d_.albedo;
-    const Vec3d p = albedo.nearSupport(albedoIndex(world));
-    return Rgb::map([&](int c) { return albedo.trilinear(p, albedo.channels() == 1 ? 0 : c); });
+Rgb MediumPart::albedo(Vec3d world, float time) const {
+    return d_.albedo ? albedoAt<3>(*this, world, time, InFull{}) : Rgb(1.0f);
 }
 
-Rgb MediumPart::sigmaT(Vec3d world) const {
-    if (!extinctionVaries())
-        return Rgb::map([&](int c) { return extinction()[c] * value(world, c); });
-    const Rgb albedo = albedoAt(world);
+Rgb MediumPart::sigmaT(Vec3d world, float time) const {
+    const Rgb f = value(world, time);
+    if (!extinctionVaries()) return extinction() * f;
+    const Rgb a = albedo(world, time);
     return Rgb::map([&](int c) {
-        return (d_.absorption[c] + d_.scattering[c] * (albedo[c] + loss_ * (1 - albedo[c]))) *
-               value(world, c);
+        return (d_.absorption[c] + d_.scattering[c] * (a[c] + loss_ * (1 - a[c]))) * f[c];
     });
 }
 
-Rgb MediumPart::sigmaS(Vec3d world) const {
-    const Rgb albedo = albedoAt(world);
-    return Rgb::map([&](int c) { return d_.scattering[c] * value(world, c) * albedo[c]; });
+Rgb MediumPart::sigmaS(Vec3d world, float time) const {
+    return d_.scattering * value(world, time) * albedo(world, time);
 }
 
 bool MediumPart::chromatic() const {

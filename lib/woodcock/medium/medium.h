@@ -93,11 +93,11 @@ public:
     bool unbounded() const { return background_.max > 0 && !limits_; }
     Box3d worldBounds() const { return d_.worldFromIndex.box(extent()); }
 
-    /// f at a world position, by full trilinear interpolation.
-    float value(Vec3d world, int channel = 0) const;
-    /// sigma_t and sigma_s at a world position, by full trilinear interpolation.
-    Rgb sigmaT(Vec3d world) const;
-    Rgb sigmaS(Vec3d world) const;
+    /// f, sigma_t and sigma_s at a world position and a time within the shutter, in full: by
+    /// trilinear interpolation, or as the field's look-up has it.
+    Rgb value(Vec3d world, float time = 0) const;
+    Rgb sigmaT(Vec3d world, float time = 0) const;
+    Rgb sigmaS(Vec3d world, float time = 0) const;
 
     /// Roughly the mean of the largest channel's sigma_t over the support, per world unit. It
     /// affects cost only.
@@ -108,7 +108,7 @@ public:
 
 private:
     void takeCoefficients();
-    Rgb albedoAt(Vec3d world) const;
+    Rgb albedo(Vec3d world, float time) const;
     Box3d findReach() const;
 
     Description d_;

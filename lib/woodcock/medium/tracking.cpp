@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "woodcock/medium/medium.h"
+#include "woodcock/medium/look_up.h"
 #include "woodcock/medium/refined_walk.h"
 #include "woodcock/medium/roulette.h"
 
@@ -18,39 +18,23 @@ struct Sampled {
     Spectrum<N> f, albedo;
 };
 
+/// f at an index position, by full interpolation inside tight bounds.
 template <int N>
-Spectrum<N> tap(const grid::Field& field, Vec3d index, std::uint64_t bits) {
-    const Vec3i v = field.stochasticVoxel(index, bits);
-    if (N == 1 || field.channels() == 1) return Spectrum<N>(field.voxel(v));
-    return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });
+[[gnu::always_inline]] inline Spectrum<N> density(const MediumPart& part, Vec3d index, float time,
+                                                  bool tight, std::uint64_t bits) {
+    if (tight) return densityAt<N>(part, index, time, InFull{});
+    return densityAt<N>(part, index, time, OneTap{bits});
 }
 
-/// f as above, but by full interpolation inside tight bounds.
+/// The field's value at a tentative collision at `t`. Where the two bounds are equal, f is known
+/// without a lookup.
 template <int N>
-Spectrum<N> density(const MediumPart& part, Vec3d index, bool tight, std::uint64_t bits) {
-    const grid::Field& field = *part.field();
-    if (part.unbounded()) index = field.nearSupport(index);  // else it is inside
-    if (!tight) return tap<N>(field, index, bits);
-    if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
-    return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
-}
-
-/// The albedo of a part that has a grid of it.
-template <int N>
-Spectrum<N> albedoTap(const MediumPart& part, Vec3d world, std::uint64_t bits) {
-    const grid::Field& field = *part.albedo();
-    return tap<N>(field, field.nearSupport(part.albedoIndex(world)), bits);
-}
-
-/// The field's value at a tentative collision. Where the two bounds are equal, f is known without a
-/// lookup.
-template <int N>
-Sampled<N> sampleAt(const MediumPart& part, const grid::IndexRay& ray, Vec3d origin,
-                    Vec3d direction, double t, grid::Range range, bool tight,
-                    RandomStream& random) {
+Sampled<N> sampleAt(DistanceQuery<N>& q, const MediumPart& part, const grid::IndexRay& ray,
+                    double t, grid::Range range, bool tight) {
     Sampled<N> s{Spectrum<N>(range.max), Spectrum<N>(1.0f)};
-    if (range.min != range.max) s.f = density<N>(part, ray.at(t), tight, random.bits());
-    if (part.albedo()) s.albedo = albedoTap<N>(part, origin + direction * t, random.bits());
+    if (range.min != range.max) s.f = density<N>(part, ray.at(t), q.time, tight, q.random.bits());
+    if (part.albedo())
+        s.albedo = albedoAt<N>(part, q.origin + q.direction * t, q.time, OneTap{q.random.bits()});
     return s;
 }
 
@@ -182,8 +166,8 @@ private:
 /// Handles the collision at which `process` is; true when the query is decided.
 template <int N>
 bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) {
-    const auto s = sampleAt<N>(process.part(), process.ray(), q.origin, q.direction, process.t(),
-                               process.range(), process.tight(), q.random);
+    const auto s =
+        sampleAt(q, process.part(), process.ray(), process.t(), process.range(), process.tight());
     const bool scatters = collide<N>(process.part(), s, process.mu(), q.absorptionToo,
                                      q.random.uniform(), q.throughput);
     if (!(q.throughput.maximum() > 0) || roulette.kills(q.throughput.maximum())) {
@@ -290,10 +274,10 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
             t += depth / rate;
-            Spectrum<N> f = density<N>(part, ray.at(t), walk.tight(), q.random.bits());
+            Spectrum<N> f = density<N>(part, ray.at(t), q.time, walk.tight(), q.random.bits());
             if constexpr (Varies)
-                f *= relativeExtinction<N>(
-                    part, albedoTap<N>(part, q.origin + q.direction * t, q.random.bits()));
+                f *= relativeExtinction<N>(part, albedoAt<N>(part, q.origin + q.direction * t,
+                                                             q.time, OneTap{q.random.bits()}));
             for (int c = 0; c < N; ++c)
                 ratio[c] *=
                     std::max(0.0f, 1 - (f[c] - least()) * extinction[c] / static_cast<float>(rate));

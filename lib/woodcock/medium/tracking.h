@@ -12,8 +12,8 @@ namespace woodcock::medium {
 
 struct Medium;
 
-/// The two inner loops: distance and transmittance. Each takes an array of rays, each with a random
-/// stream of its own. They do not depend on lights, materials or film.
+/// The two inner loops: distance and transmittance. Each takes an array of rays, each with a time
+/// and a random stream of its own. They do not depend on lights, materials or film.
 
 /// Work done, for measuring.
 struct TrackingCounters {
@@ -25,6 +25,7 @@ template <int N>
 struct DistanceQuery {
     Vec3d origin, direction;  ///< world space, direction of unit length
     double tMax;              ///< length of the ray; infinity: until it leaves the medium
+    float time = 0;           ///< of the ray, within the shutter: see look_up.h
     double u;  ///< in (0, 1]: draws the first optical depth; the stream draws the rest
     RandomStream random;
     float roulette = 0;          ///< throughput below which Russian roulette is played; 0: never
@@ -48,6 +49,7 @@ template <int N>
 struct TransmittanceQuery {
     Vec3d origin, direction;
     double tMax;
+    float time = 0;
     RandomStream random;
     /// Below this (largest channel) Russian roulette is played, in one draw for the whole ray.
     float roulette = 0;

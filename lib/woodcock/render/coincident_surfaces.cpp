@@ -48,6 +48,89 @@ bool NestedMedia::inLayer(const surface::CoincidentSurface& surface,
     return (sideOf(surface, hit) > 0) == (hit.coincident.layer == Back);
 }
 
+/// What surfaces lie in one place, by kind; and of opaque ones the best, as it is seen from the
+/// front (0) and from the back (1).
+struct NestedMedia::Place {
+    struct Best {
+        const surface::CoincidentSurface* surface = nullptr;
+        Rank rank;
+        void add(const surface::CoincidentSurface& s, const Rank& r) {
+            if (!surface || r > rank) surface = &s, rank = r;
+        }
+    };
+    std::array<Best, 2> solid, sheet;
+    std::array<bool, 2> interior{};  ///< a closed surface is on this side
+
+    /// Something opaque parts the two sides.
+    bool parted() const { return solid[0].surface || sheet[0].surface; }
+    bool sheetCounts(std::size_t seenFrom) const {
+        return sheet[seenFrom].surface &&
+               (!solid[seenFrom].surface || sheet[seenFrom].rank > solid[seenFrom].rank);
+    }
+    bool has(int layer) const {
+        switch (layer) {
+            case Front:
+                return parted() && interior[0];
+            case FrontSheet:
+                return sheetCounts(0);
+            case Solid:
+                return solid[0].surface != nullptr;
+            case BackSheet:  // without an opaque surface between, both sides are one sheet
+                return solid[0].surface && sheetCounts(1);
+            case Back:
+                return parted() && interior[1];
+            default:
+                return !parted() && (interior[0] || interior[1]);
+        }
+    }
+    /// The layer that comes next; NoLayer, or FromCamera, where none does.
+    int after(int layer, bool forward) const {
+        if (layer == NoLayer && !forward) layer = FromCamera;
+        do layer += forward ? 1 : -1;
+        while (layer > NoLayer && layer < FromCamera && !has(layer));
+        return layer;
+    }
+};
+
+NestedMedia::Place NestedMedia::placeOf(const surface::SurfaceHit& hit,
+                                        std::span<const surface::CoincidentSurface> surfaces,
+                                        bool cameraRay) const {
+    Place place;
+    for (const surface::CoincidentSurface& s : surfaces) {
+        if (cameraRay && !set_.objects[s.object].cameraVisible) continue;
+        const double side = sideOf(s, hit);
+        if (holds_[s.object]) {
+            place.interior[side > 0] = true;
+            continue;
+        }
+        for (std::size_t seenFrom = 0; seenFrom < 2; ++seenFrom)
+            (sheet_[s.object] ? place.sheet : place.solid)[seenFrom].add(
+                s, rank(s, seenFrom == 0 ? side : -side));
+    }
+    return place;
+}
+
+/// The face of the medium that counts on either side of a layer of closed surfaces. Of two, that of
+/// higher rank; but glass goes before a mere interface, or fog on glass would take its reflections
+/// away.
+const surface::CoincidentSurface* NestedMedia::boundaryThatCounts(
+    const surface::SurfaceHit& layer, std::span<const surface::CoincidentSurface> surfaces,
+    Vec3d direction, const MediumStack& inside) const {
+    MediumStack near = inside, beyond = inside;
+    crossLayer(layer, surfaces, direction, near, beyond);
+    const std::uint32_t from = filling(near), to = filling(beyond);
+    const auto order = [&](const surface::CoincidentSurface& c) {
+        const bool changes = from != to && (c.instance == from || c.instance == to);
+        const bool passes = std::holds_alternative<surface::InterfaceMaterial>(
+            set_.materials[set_.objects[c.object].material]);
+        return std::tuple(changes, !passes, rank(c, 1));
+    };
+    const surface::CoincidentSurface* counts = nullptr;
+    for (const surface::CoincidentSurface& s : surfaces)
+        if (inLayer(s, layer) && (!counts || order(s) > order(*counts))) counts = &s;
+    return counts;
+}
+
 bool NestedMedia::nextLayer(const surface::SurfaceHit& hit, Vec3d direction,
                             const MediumStack& inside, bool cameraRay,
                             surface::SurfaceHit& next) const {
@@ -61,80 +144,22 @@ bool NestedMedia::nextLayer(const surface::SurfaceHit& hit, Vec3d direction,
         return true;
     }
     const bool forward = dot(direction, firstNormal(hit)) < 0;
-    // The best of each kind, as it is seen from the front and from the back.
-    struct Best {
-        const surface::CoincidentSurface* surface = nullptr;
-        Rank rank;
-        void add(const surface::CoincidentSurface& s, const Rank& r) {
-            if (!surface || r > rank) surface = &s, rank = r;
-        }
-    };
-    std::array<Best, 2> solid, sheet;
-    std::array<bool, 2> interior{};  // in front and behind
-    for (const surface::CoincidentSurface& s : all) {
-        if (cameraRay && !set_.objects[s.object].cameraVisible) continue;
-        const double side = sideOf(s, hit);
-        if (holds_[s.object]) {
-            interior[side > 0] = true;
-            continue;
-        }
-        for (std::size_t seenFrom = 0; seenFrom < 2; ++seenFrom)
-            (sheet_[s.object] ? sheet : solid)[seenFrom].add(s,
-                                                             rank(s, seenFrom == 0 ? side : -side));
-    }
-    const bool parted = solid[0].surface || sheet[0].surface;
-    const auto sheetCounts = [&](std::size_t seenFrom) {
-        return sheet[seenFrom].surface &&
-               (!solid[seenFrom].surface || sheet[seenFrom].rank > solid[seenFrom].rank);
-    };
-    const auto exists = [&](int layer) {
-        switch (layer) {
-            case Front:
-                return parted && interior[0];
-            case FrontSheet:
-                return sheetCounts(0);
-            case Solid:
-                return solid[0].surface != nullptr;
-            case BackSheet:  // without an opaque surface between, both sides are one sheet
-                return solid[0].surface && sheetCounts(1);
-            case Back:
-                return parted && interior[1];
-            default:
-                return !parted && (interior[0] || interior[1]);
-        }
-    };
-    int layer = hit.coincident.layer;
-    if (layer == NoLayer && !forward) layer = FromCamera;
-    do layer += forward ? 1 : -1;
-    while (layer > NoLayer && layer < FromCamera && !exists(layer));
+    const Place place = placeOf(hit, all, cameraRay);
+    const int layer = place.after(hit.coincident.layer, forward);
     if (layer <= NoLayer || layer >= FromCamera) return false;
 
-    surface::SurfaceHit place = hit;
-    place.coincident.layer = static_cast<std::uint8_t>(layer);
-    place.coincident.forCamera = cameraRay;
+    surface::SurfaceHit there = hit;
+    there.coincident.layer = static_cast<std::uint8_t>(layer);
+    there.coincident.forCamera = cameraRay;
     const surface::CoincidentSurface* counts = nullptr;
     if (layer == Solid || layer == FrontSheet || layer == BackSheet) {
         // A sheet alone may be met from behind.
         const std::size_t seenFrom = layer == BackSheet || (layer == Solid && !forward);
-        counts = (layer == Solid ? solid : sheet)[seenFrom].surface;
+        counts = (layer == Solid ? place.solid : place.sheet)[seenFrom].surface;
     } else {
-        // The face of the medium that counts on either side. Of two, that of higher rank; but glass
-        // goes before a mere interface, or fog on glass would take its reflections away.
-        MediumStack near = inside, beyond = inside;
-        crossLayer(place, all, direction, near, beyond);
-        const std::uint32_t from = filling(near), to = filling(beyond);
-        for (const surface::CoincidentSurface& s : all) {
-            if (!inLayer(s, place)) continue;
-            const auto order = [&](const surface::CoincidentSurface& c) {
-                const bool changes = from != to && (c.instance == from || c.instance == to);
-                const bool passes = std::holds_alternative<surface::InterfaceMaterial>(
-                    set_.materials[set_.objects[c.object].material]);
-                return std::tuple(changes, !passes, rank(c, 1));
-            };
-            if (!counts || order(s) > order(*counts)) counts = &s;
-        }
+        counts = boundaryThatCounts(there, all, direction, inside);
     }
-    next = set_.geometry.inPlaceOf(place, *counts);
+    next = set_.geometry.inPlaceOf(there, *counts);
     next.t = std::numeric_limits<double>::min();  // no length, but in front of the ray
     return true;
 }

@@ -35,6 +35,7 @@ struct MediumSummary {
 struct Flight {
     Vec3d origin, direction;
     double tMax = std::numeric_limits<double>::infinity();
+    float time = 0;
     const MediumSummary* medium = nullptr;
 
     Equiangular equiangular(Vec3d lightPosition) const {

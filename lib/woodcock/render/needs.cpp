@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
+#include "woodcock/render/local_light.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
@@ -25,12 +26,20 @@ Needs findNeeds(const Scene& scene) {
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
         const light::Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];
-        const auto* point = std::get_if<light::PointLight>(&light);
-        const Vec3d p = point ? point->position : std::get<light::SphereLight>(light).position;
+        const std::optional<Vec3d> p = localLightPosition(light);
+        if (!p) continue;  // equiangular sampling needs a place
         n.localLights |=
-            n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) < reach;
+            n.scattering && length(*p - max(bounds.lower, min(bounds.upper, *p))) < reach;
     }
     return n;
+}
+
+RenderCounters& RenderCounters::operator+=(const RenderCounters& b) {
+    paths += b.paths, scatterings += b.scatterings, shadowRays += b.shadowRays;
+    distanceSegments += b.distanceSegments, distanceCollisions += b.distanceCollisions;
+    shadowSegments += b.shadowSegments, shadowCollisions += b.shadowCollisions;
+    surfaceRays += b.surfaceRays, clamped += b.clamped;
+    return *this;
 }
 
 namespace {

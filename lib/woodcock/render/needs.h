@@ -37,6 +37,8 @@ struct RenderCounters {
     std::uint64_t shadowSegments = 0, shadowCollisions = 0;
     std::uint64_t surfaceRays = 0;  ///< that looked for the nearest surface
     std::uint64_t clamped = 0;      ///< paths that brought more than Approximations::clamp
+
+    RenderCounters& operator+=(const RenderCounters& b);
 };
 
 }  // namespace woodcock::render

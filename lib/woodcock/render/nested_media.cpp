@@ -37,6 +37,12 @@ std::uint8_t shiningSides(std::span<const surface::Material> materials, std::uin
     return 0;
 }
 
+bool isOpaque(const surface::Material& material) {
+    return std::holds_alternative<surface::DiffuseMaterial>(material) ||
+           std::holds_alternative<surface::ConductorMaterial>(material) ||
+           std::holds_alternative<surface::EmissiveMaterial>(material);
+}
+
 bool hasHoles(std::span<const surface::Material> materials, std::uint32_t index) {
     const auto* mix = std::get_if<surface::MixMaterial>(&materials[index]);
     return mix && (std::holds_alternative<surface::InterfaceMaterial>(materials[mix->first]) ||
@@ -51,6 +57,7 @@ NestedMedia::NestedMedia(const Scene& scene)
         anyHolds_ |= object.holdsMedium;
         anyInvisible_ |= !object.cameraVisible;
         shines_.push_back(shiningSides(set_.materials, object.material));
+        opaque_.push_back(!object.holdsMedium && isOpaque(set_.materials[object.material]));
         sheet_.push_back(!object.holdsMedium && hasHoles(set_.materials, object.material));
     }
 }
@@ -110,26 +117,28 @@ Crossing NestedMedia::cross(const MediumStack& inside, Vec3d direction,
     return {near, beyond, std::move(bsdf), passes};
 }
 
-bool NestedMedia::nearest(Vec3d origin, Vec3d direction, double tMax, const RayStart& start,
-                          bool cameraRay, surface::SurfaceHit& hit) const {
+bool NestedMedia::nearest(const SurfaceQuery& ray, const RayStart& start,
+                          surface::SurfaceHit& hit) const {
     const surface::SurfaceHit* left = start.left ? &*start.left : nullptr;
-    if (left && left->coincident.any && nextLayer(*left, direction, start.inside, cameraRay, hit))
-        return hit.t < tMax;
-    if (!set_.geometry.intersect(origin, direction, tMax, left, hit)) return false;
+    if (left && left->coincident.any &&
+        nextLayer(*left, ray.direction, start.inside, ray.cameraRay, hit))
+        return hit.t < ray.tMax;
+    if (!set_.geometry.intersect(ray.origin, ray.direction, ray.tMax, left, hit)) return false;
     double travelled = 0;
     while (true) {
         if (hit.coincident.any) {
             const surface::SurfaceHit place = hit;
-            if (nextLayer(place, direction, start.inside, cameraRay, hit)) {
+            if (nextLayer(place, ray.direction, start.inside, ray.cameraRay, hit)) {
                 hit.t = place.t;
                 break;
             }
-        } else if (!cameraRay || !anyInvisible_ || object(hit).cameraVisible) {
+        } else if (!ray.cameraRay || !anyInvisible_ || object(hit).cameraVisible) {
             break;
         }
         travelled += hit.t;
         const surface::SurfaceHit passed = hit;
-        if (!set_.geometry.intersect(passed.position, direction, tMax - travelled, &passed, hit))
+        if (!set_.geometry.intersect(passed.position, ray.direction, ray.tMax - travelled, &passed,
+                                     hit))
             return false;
     }
     hit.t += travelled;

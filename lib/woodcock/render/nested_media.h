@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -40,6 +41,14 @@ struct Crossing {
     bool passes;
 };
 
+/// A ray that looks for surfaces: world space, direction of unit length.
+struct SurfaceQuery {
+    Vec3d origin, direction;
+    float time = 0;  ///< within the shutter; surfaces stand still
+    double tMax = std::numeric_limits<double>::infinity();
+    bool cameraRay = false;  ///< goes through what is invisible to the camera
+};
+
 /// The surfaces of a scene, and the media inside of them. Where closed surfaces overlap, their
 /// priorities say which medium a place has.
 class NestedMedia {
@@ -73,6 +82,8 @@ public:
     const surface::SurfaceObject& object(const surface::SurfaceHit& hit) const {
         return set_.objects[hit.object];
     }
+    /// Surely no light gets through: cross() need not be asked.
+    bool opaque(const surface::SurfaceHit& hit) const { return opaque_[hit.object]; }
     /// The hit's triangle in the scene's MeshLight, or SurfaceObject::dark.
     std::uint32_t emitter(const surface::SurfaceHit& hit) const {
         const std::uint32_t first = set_.firstEmitter[hit.instance];
@@ -80,11 +91,9 @@ public:
     }
     /// Whether this emitter is the hit's triangle, or lies in the same place.
     bool startsOn(const surface::SurfaceHit& hit, std::uint32_t emitter) const;
-    /// The nearest hit before `tMax` (world units); false: none. Camera rays go through what is
-    /// invisible to them. Where surfaces coincide it is the next layer of them: see
-    /// coincident_surfaces.cpp.
-    bool nearest(Vec3d origin, Vec3d direction, double tMax, const RayStart& start, bool cameraRay,
-                 surface::SurfaceHit& hit) const;
+    /// The nearest hit before ray.tMax; false: none. Where surfaces coincide it is the next layer
+    /// of them: see coincident_surfaces.cpp.
+    bool nearest(const SurfaceQuery& ray, const RayStart& start, surface::SurfaceHit& hit) const;
 
 private:
     static constexpr std::uint32_t outside = 0xffffffffu;
@@ -106,6 +115,12 @@ private:
     using Rank = std::tuple<int, int, std::uint32_t, std::uint32_t, std::uint32_t>;
     Rank rank(const surface::CoincidentSurface& surface, double side) const;
     bool inLayer(const surface::CoincidentSurface& surface, const surface::SurfaceHit& hit) const;
+    struct Place;
+    Place placeOf(const surface::SurfaceHit& hit,
+                  std::span<const surface::CoincidentSurface> surfaces, bool cameraRay) const;
+    const surface::CoincidentSurface* boundaryThatCounts(
+        const surface::SurfaceHit& layer, std::span<const surface::CoincidentSurface> surfaces,
+        Vec3d direction, const MediumStack& inside) const;
     /// The first layer beyond `hit` in a direction; `hit` may be a layer itself. False: none.
     bool nextLayer(const surface::SurfaceHit& hit, Vec3d direction, const MediumStack& inside,
                    bool cameraRay, surface::SurfaceHit& next) const;
@@ -125,7 +140,8 @@ private:
     std::vector<bool> holds_;  ///< by object: light gets inside
     /// By object: it sends light out of its front (1), of both sides (2), or of none.
     std::vector<std::uint8_t> shines_;
-    std::vector<bool> sheet_;  ///< by object: it holds nothing, and has holes
+    std::vector<bool> sheet_;   ///< by object: it holds nothing, and has holes
+    std::vector<bool> opaque_;  ///< by object
     bool anyHolds_ = false;
     bool anyInvisible_ = false;
 };

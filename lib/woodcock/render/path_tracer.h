@@ -8,18 +8,12 @@
 #include <span>
 
 #include "woodcock/image/film.h"
-#include "woodcock/medium/marching.h"
 #include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
-
-/// How rays are marched where approximations.marchStep is above 0.
-inline medium::MarchSettings marchSettings(const Approximations& approximations) {
-    return {approximations.marchStep, approximations.jackknife};
-}
 
 /// One camera path to trace.
 struct PathJob {
@@ -35,9 +29,9 @@ struct PathResult {
         catcher;  ///< where the camera sees a shadow catcher; its radiance is not in `film`
 };
 
-/// Traces camera paths through a scene in batches: spawn, look ahead, walk, shade, shadow walk,
-/// retire. Use one object for each thread. The result of a job depends on the scene, the seed and
-/// the job only, never on the other jobs of its batch.
+/// Traces camera paths through a scene in batches; path_tracer.cpp says how. Use one object for
+/// each thread, for as many calls as it has: it keeps its buffers. The result of a job depends on
+/// the scene, the seed and the job only, never on other jobs.
 class PathTracer {
 public:
     struct Options {
@@ -52,13 +46,14 @@ public:
     };
 
     virtual ~PathTracer() = default;
-    /// Fills results[i] for jobs[i]. `stop` is called now and then; once it returns true, trace()
-    /// returns false and the results are void.
+    /// Fills results[i] for jobs[i], and adds what that took to `counters`. `stop` is called now
+    /// and then; once it returns true, trace() returns false, the results are void, and `counters`
+    /// stay as they were.
     virtual bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
-                       const std::function<bool()>& stop) = 0;
-    virtual const RenderCounters& counters() const = 0;
+                       const std::function<bool()>& stop, RenderCounters& counters) = 0;
 
-    /// The tracer for the fewest channels that the scene needs.
+    /// The tracer for the fewest channels that the scene needs. The scene, and
+    /// options.approximateMedia, must outlive it.
     static std::unique_ptr<PathTracer> make(const Scene& scene, const Needs& needs,
                                             const Options& options);
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/session.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -15,6 +16,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/render/path_tracer.h"
 #include "woodcock/render/sample_plan.h"
+#include "woodcock/render/stages/inner_loops.h"
 #include "woodcock/render/tile_order.h"
 #include "woodcock/render/work_estimate.h"
 
@@ -50,13 +52,6 @@ void validate(const RenderSettings& s, const image::Film::Window& crop) {
             s.firstSample, s.endSample);
 }
 
-void add(RenderCounters& a, const RenderCounters& b) {
-    a.paths += b.paths, a.scatterings += b.scatterings, a.shadowRays += b.shadowRays;
-    a.distanceSegments += b.distanceSegments, a.distanceCollisions += b.distanceCollisions;
-    a.shadowSegments += b.shadowSegments, a.shadowCollisions += b.shadowCollisions;
-    a.surfaceRays += b.surfaceRays, a.clamped += b.clamped;
-}
-
 void prepare(const Scene& scene, const Approximations& approximations) {
     if (approximations.marchStep == 0) return;
     medium::prepareMarch(scene.medium, marchSettings(approximations));
@@ -84,6 +79,7 @@ public:
           crop_(crop),
           needs_(findNeeds(scene)),
           approximateMedia_(scene, settings.approximations),
+          tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
           film_(settings.width, settings.height, crop,
                 {needs_.surfaces, settings.featureLayers, scene.lights.showsBackground()}),
           tiles_(scatteredTiles(crop, tileSize)),
@@ -290,12 +286,8 @@ private:
         const auto tileStart = Clock::now();
         const std::vector<PathJob> jobs = jobsOf(tiles_[tile], pass);
         std::vector<PathResult> results(jobs.size());
-        const auto tracer = PathTracer::make(
-            scene_, needs_,
-            {settings_.width, settings_.height, settings_.seed, settings_.maxScatterings,
-             settings_.maxBounces, settings_.approximations, settings_.depthLayers,
-             settings_.featureLayers, &approximateMedia_});
-        if (!tracer->trace(jobs, results, stopping)) return false;
+        RenderCounters counters;
+        if (!tracers_.local()->trace(jobs, results, stopping, counters)) return false;
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             film_.add(jobs[i].x, jobs[i].y, results[i].film);
             if (settings_.depthLayers || settings_.featureLayers)
@@ -303,9 +295,21 @@ private:
             if (results[i].catcher.weight > 0) film_.add(jobs[i].x, jobs[i].y, results[i].catcher);
         }
         const std::lock_guard lock(countersMutex_);
-        add(counters_, tracer->counters());
+        counters_ += counters;
         work_.finish(tile, secondsSince(tileStart));
         return true;
+    }
+
+    PathTracer::Options tracerOptions() const {
+        return {.width = settings_.width,
+                .height = settings_.height,
+                .seed = settings_.seed,
+                .maxScatterings = settings_.maxScatterings,
+                .maxBounces = settings_.maxBounces,
+                .approximations = settings_.approximations,
+                .depthLayers = settings_.depthLayers,
+                .featureLayers = settings_.featureLayers,
+                .approximateMedia = &approximateMedia_};
     }
 
     static constexpr int fewestSamplesForNoise =
@@ -316,6 +320,8 @@ private:
     const image::Film::Window crop_;
     const Needs needs_;
     const ApproximateMedia approximateMedia_;
+    /// One for each thread that renders, made when it first does.
+    tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;
     image::Film film_;
     std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
     std::vector<std::uint32_t> counts_;  // and the pixels' numbers of samples by it

@@ -71,9 +71,19 @@ void rays(Lab& lab) {
         std::vector<medium::DistanceQuery<1>> scattered;
         for (int i = 0; i < count; ++i) {
             RandomStream random(hashOf(lab.seed(l.name), i));
-            across.push_back({l.from, along, l.end, random, 0, Spectrum<1>(1)});
+            across.push_back({.origin = l.from,
+                              .direction = along,
+                              .tMax = l.end,
+                              .random = random,
+                              .contribution = Spectrum<1>(1)});
             const double u = random.uniformOpenLow();
-            scattered.push_back({l.from, along, l.end, u, random, 0, true, Spectrum<1>(1)});
+            scattered.push_back({.origin = l.from,
+                                 .direction = along,
+                                 .tMax = l.end,
+                                 .u = u,
+                                 .random = random,
+                                 .absorptionToo = true,
+                                 .throughput = Spectrum<1>(1)});
         }
         medium::TrackingCounters counters;
         medium::trackTransmittance<1>(medium, across, counters);

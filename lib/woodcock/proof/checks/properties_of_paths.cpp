@@ -39,7 +39,13 @@ Estimate meanOf(const Lab& lab, const std::string& name, double expected,
 bool fly(const medium::Medium& medium, Vec3d& origin, Vec3d direction, double tMax, double& t,
          Spectrum<1>& throughput, RandomStream& random, float roulette = 0) {
     const double u = random.uniformOpenLow();
-    medium::DistanceQuery<1> q{origin, direction, tMax, u, random, roulette, false, throughput};
+    medium::DistanceQuery<1> q{.origin = origin,
+                               .direction = direction,
+                               .tMax = tMax,
+                               .u = u,
+                               .random = random,
+                               .roulette = roulette,
+                               .throughput = throughput};
     medium::TrackingCounters counters;
     medium::trackDistance<1>(medium, {&q, 1}, counters);
     random = q.random, throughput = q.throughput, t = q.t;

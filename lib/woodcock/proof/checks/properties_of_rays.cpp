@@ -102,8 +102,12 @@ using Estimator = std::function<double(const medium::Medium&, const Ray&, std::u
 
 template <int N>
 double track(const medium::Medium& medium, const Ray& ray, std::uint64_t seed, float roulette) {
-    medium::TransmittanceQuery<N> q{ray.origin,         ray.direction, ray.tMax,
-                                    RandomStream(seed), roulette,      Spectrum<N>(1.0f)};
+    medium::TransmittanceQuery<N> q{.origin = ray.origin,
+                                    .direction = ray.direction,
+                                    .tMax = ray.tMax,
+                                    .random = RandomStream(seed),
+                                    .roulette = roulette,
+                                    .contribution = Spectrum<N>(1.0f)};
     medium::TrackingCounters counters;
     medium::trackTransmittance<N>(medium, {&q, 1}, counters);
     return q.contribution[0];
@@ -121,8 +125,12 @@ double shadowTracking(const medium::Medium& medium, const Ray& ray, std::uint64_
 double escape(const medium::Medium& medium, const Ray& ray, std::uint64_t seed) {
     RandomStream random(seed);
     const double u = random.uniformOpenLow();
-    medium::DistanceQuery<1> q{ray.origin, ray.direction, ray.tMax,         u, random,
-                               0,          false,         Spectrum<1>(1.0f)};
+    medium::DistanceQuery<1> q{.origin = ray.origin,
+                               .direction = ray.direction,
+                               .tMax = ray.tMax,
+                               .u = u,
+                               .random = random,
+                               .throughput = Spectrum<1>(1.0f)};
     medium::TrackingCounters counters;
     medium::trackDistance<1>(medium, {&q, 1}, counters);
     return q.part < 0 ? q.throughput[0] : 0;

@@ -115,8 +115,13 @@ void flights(Lab& lab) {
             RandomStream random(lab.seed(name));
             std::vector<medium::DistanceQuery<1>> queries;
             for (int i = 0; i < n; ++i)
-                queries.push_back({ray.origin, direction, infinity, random.uniformOpenLow(),
-                                   RandomStream(random.bits()), 0, true, Spectrum<1>(1.0f), 0, -1});
+                queries.push_back({.origin = ray.origin,
+                                   .direction = direction,
+                                   .tMax = infinity,
+                                   .u = random.uniformOpenLow(),
+                                   .random = RandomStream(random.bits()),
+                                   .absorptionToo = true,
+                                   .throughput = Spectrum<1>(1.0f)});
             medium::TrackingCounters counters;
             medium::trackDistance<1>(loose.medium, queries, counters);
             const double escape = reach(infinity);

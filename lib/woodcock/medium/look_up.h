@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/medium/medium.h"
+
+namespace woodcock::medium {
+
+// A part of the medium at (position, time). Tracking, marching, emission, equiangular points and
+// layers all ask here.
+//
+// Time is that of the path, from 0 to 1 within the shutter. Parts stand still, so nothing reads it
+// yet. One that moves is read where its matter was.
+
+/// How a field is read: one voxel, chosen at random by the weights of the interpolation. For values
+/// that enter linearly: the noise then causes no bias.
+struct OneTap {
+    std::uint64_t bits;
+};
+/// How a field is read: by its interpolation, in full.
+struct InFull {};
+
+/// A field at an index position in its support. One channel serves all N.
+template <int N>
+Spectrum<N> read(const grid::Field& field, Vec3d index, OneTap how) {
+    const Vec3i v = field.stochasticVoxel(index, how.bits);
+    if (N == 1 || field.channels() == 1) return Spectrum<N>(field.voxel(v));
+    return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });
+}
+template <int N>
+Spectrum<N> read(const grid::Field& field, Vec3d index, InFull) {
+    if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
+    return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
+}
+
+/// f of a part that has a field, at an index position within the part's extent.
+template <int N, class How>
+[[gnu::always_inline]] inline Spectrum<N> densityAt(const MediumPart& part, Vec3d index,
+                                                    float /*time*/, How how) {
+    const grid::Field& field = *part.field();
+    if (part.unbounded()) index = field.nearSupport(index);  // else it is inside
+    return read<N>(field, index, how);
+}
+
+/// The albedo of a part that has a grid of it.
+template <int N, class How>
+[[gnu::always_inline]] inline Spectrum<N> albedoAt(const MediumPart& part, Vec3d world,
+                                                   float /*time*/, How how) {
+    const grid::Field& field = *part.albedo();
+    return read<N>(field, field.nearSupport(part.albedoIndex(world)), how);
+}
+
+/// What a part emits where its field, scaled by Description::scale, does: the field at an index
+/// position within the part's extent.
+inline Rgb glowAt(const EmissionPart& part, Vec3d index, float /*time*/) {
+    const grid::Field& field = *part.description().field;
+    return read<3>(field, field.nearSupport(index), InFull{});
+}
+
+}  // namespace woodcock::medium

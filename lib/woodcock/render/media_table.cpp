@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/media_table.h"
+
+#include "woodcock/medium/octaves.h"
+
+namespace woodcock::render {
+
+namespace {
+
+/// Whether a flight can meet light, so that following it finds what next-event estimation does not.
+bool flightsMeetLight(const Scene& scene, const Needs& needs) {
+    bool meet = needs.surfaces || needs.emission;
+    for (const light::Light& light : scene.lights.lights()) {
+        const auto* sun = std::get_if<light::Sun>(&light);
+        meet |= std::holds_alternative<light::Environment>(light) || (sun && !sun->delta());
+    }
+    return meet;
+}
+
+}  // namespace
+
+MediaTable::MediaTable(const Scene& scene, const Needs& needs, const Approximations& approximations,
+                       const ApproximateMedia* approximate)
+    : similarityAfter_(approximations.similarityAfter), octaves_(approximations.octaves) {
+    std::vector<const medium::Medium*> own{&scene.medium};
+    if (needs.surfaces)
+        for (const medium::Medium& medium : scene.interiorMedia) own.push_back(&medium);
+    setSize_ = static_cast<std::uint32_t>(own.size());
+    for (const medium::Medium* medium : own) media_.emplace_back(*medium);
+    replaces_ = approximate && !approximate->sets.empty();
+    if (!replaces_) return;
+    for (const ApproximateMedia::Set& set : approximate->sets)
+        for (std::size_t i = 0; i < own.size(); ++i) media_.emplace_back(set[i], *own[i]);
+    octavesEnd_ = octaves_ > 0 && !flightsMeetLight(scene, needs);
+}
+
+MediaTable::Onward MediaTable::onward(std::int64_t scatterings, RandomStream& random) const {
+    if (octaves_ == 0) return {setAfter(scatterings + 1)};
+    const int i = medium::octave::draw(octaves_, random.uniform());
+    return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves_),
+            medium::octave::phase(i)};
+}
+
+}  // namespace woodcock::render

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "woodcock/render/path_state.h"
+
+namespace woodcock::render {
+
+/// The random numbers of one scattering event and of the flight after it.
+struct EventNumbers {
+    std::array<double, 2> phase, light;
+    double flight, pick, equiangular;
+};
+
+/// The first scattering orders take their numbers from the quasi-random sequence.
+inline constexpr std::int64_t quasiRandomOrders = 4;
+
+/// The numbers of a path's next event.
+template <int N, bool Surfaces>
+EventNumbers drawNumbers(PathState<N, Surfaces>& p) {
+    std::int64_t order = p.scatterings;
+    if constexpr (Surfaces) order += p.surfaces.bounces;
+    if (order >= quasiRandomOrders) {
+        auto& r = p.random;
+        return {{r.uniform(), r.uniform()},
+                {r.uniform(), r.uniform()},
+                r.uniformOpenLow(),
+                r.uniform(),
+                r.uniform()};
+    }
+    const auto set = static_cast<std::uint32_t>(2 * order + 1);
+    const auto a = p.sequence.draw(set), b = p.sequence.draw(set + 1);
+    return {{a[0], a[1]}, {a[2], a[3]}, 1 - b[0], b[1], b[2]};
+}
+
+}  // namespace woodcock::render

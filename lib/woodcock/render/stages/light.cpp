@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/stages/light.h"
+
+#include <cmath>
+
+#include "woodcock/medium/phase.h"
+#include "woodcock/render/local_light.h"
+#include "woodcock/render/stages/roulette.h"
+
+namespace woodcock::render {
+
+template <int N, bool Surfaces>
+void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                  const EventNumbers& u, const FlightShare& share) {
+    PathState<N, Surfaces>& p = batch.paths[i];
+    const light::LightSet& lights = traced.scene.lights;
+    const auto chosen = batch.choice.choose(p.from, u.pick);
+    if (!chosen) return;
+    const light::LightSample s =
+        lights.sample(chosen->light, p.from.position, u.light[0], u.light[1]);
+    if (!(s.weight.maximum() > 0)) return;
+    const double phase = medium::henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
+    double weight = phase / chosen->probability;
+    if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
+    if (const auto lightPosition =
+            localLightPosition(lights.lights()[static_cast<std::size_t>(chosen->light)]))
+        weight *= share(*lightPosition);
+    if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
+                     s.weight * static_cast<float>(weight), true))
+        batch.shadows.back().emitter = s.emitter;
+}
+
+template <int N, bool Surfaces>
+void addSphereHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                   const FlightShare* share) {
+    for (int light : traced.scene.lights.local()) {
+        const auto* sphere = std::get_if<light::SphereLight>(
+            &traced.scene.lights.lights()[static_cast<std::size_t>(light)]);
+        if (!sphere || (!share && !sphere->visible)) continue;
+        const PathState<N, Surfaces>& p = batch.paths[i];
+        const double t = sphere->hit(p.origin, p.direction);
+        if (!std::isfinite(t)) continue;
+        if (!share) p.result->film.glow = 1;
+        double weight = 1;
+        if (share)
+            weight = hitWeight(p, [&] { return batch.choice.pdf(light, p.from, p.direction); }) *
+                     (*share)(sphere->position);
+        bool lightSampled = false;
+        if constexpr (Surfaces)
+            lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;
+        addShadowRay(traced, batch, i, p.origin, p.direction, t,
+                     sphere->radiance * static_cast<float>(weight), lightSampled);
+    }
+}
+
+template <int N, bool Surfaces>
+bool addShadowRay(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i, Vec3d origin,
+                  Vec3d direction, double tMax, Rgb light, bool mayPass) {
+    PathState<N, Surfaces>& p = batch.paths[i];
+    light *= tint(p);
+    const float brightest = light.maximum();
+    const Spectrum<N> contribution = p.throughput * brightest;
+    if (!(contribution.maximum() > 0)) return false;
+    batch.shadows.push_back(
+        {.path = i, .colour = light * (1 / brightest), .mediumSet = p.mediumSet});
+    if constexpr (Surfaces) {
+        ShadowRay<Surfaces>& ray = batch.shadows.back();
+        ray.start = p.surfaces.way.start();
+        ray.transparent = mayPass && traced.options.approximations.transparentShadows;
+        ray.inFront = p.surfaces.seen;
+    }
+    batch.shadowQueries.push_back({.origin = origin,
+                                   .direction = direction,
+                                   .tMax = tMax,
+                                   .time = p.time,
+                                   .random = RandomStream(p.random.bits()),
+                                   .roulette = shadowRoulette * traced.typicalRadiance,
+                                   .contribution = contribution});
+    return true;
+}
+
+#define INSTANTIATE(N, SURFACES)                                                                   \
+    template void addNextEvent(const TracedScene&, Batch<N, SURFACES>&, std::size_t,               \
+                               const EventNumbers&, const FlightShare&);                           \
+    template void addSphereHits(const TracedScene&, Batch<N, SURFACES>&, std::size_t,              \
+                                const FlightShare*);                                               \
+    template bool addShadowRay(const TracedScene&, Batch<N, SURFACES>&, std::size_t, Vec3d, Vec3d, \
+                               double, Rgb, bool);
+INSTANTIATE(1, false)
+INSTANTIATE(1, true)
+INSTANTIATE(3, false)
+INSTANTIATE(3, true)
+#undef INSTANTIATE
+
+}  // namespace woodcock::render

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "woodcock/render/batch.h"
+#include "woodcock/render/stages/event_numbers.h"
+#include "woodcock/render/traced_scene.h"
+
+namespace woodcock::render {
+
+/// Next-event estimation at the scattering event p.from of path i.
+template <int N, bool Surfaces>
+void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                  const EventNumbers& u, const FlightShare& share);
+
+/// Adds sphere lights that the new direction hits, with the weight of multiple importance sampling
+/// that next-event estimation leaves. Where `share` is null, the camera sees them.
+template <int N, bool Surfaces>
+void addSphereHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                   const FlightShare* share);
+
+/// Adds a shadow ray that brings `light` times the path's throughput; false: that is zero, and none
+/// was added. `mayPass`: transparent shadows apply to it.
+template <int N, bool Surfaces>
+bool addShadowRay(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i, Vec3d origin,
+                  Vec3d direction, double tMax, Rgb light, bool mayPass);
+
+/// The weight, by multiple importance sampling, of light that a path hits. pdf(): the density with
+/// which next-event estimation at the last event would have sampled it.
+template <int N, bool Surfaces, class F>
+double hitWeight(const PathState<N, Surfaces>& p, F&& pdf) {
+    if constexpr (Surfaces) {
+        using enum SurfaceState::LightSampled;
+        if (p.surfaces.lightSampled == Never) return 1;
+        if (p.surfaces.lightSampled == ThroughDielectrics) return pdf() > 0 ? 0 : 1;
+    } else {
+        if (p.scatterings == 0) return 1;
+    }
+    return powerHeuristic(p.phasePdf, pdf());
+}
+
+}  // namespace woodcock::render

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/stages/spawn.h"
+
+#include "woodcock/render/stages/camera_layers.h"
+#include "woodcock/render/stages/light.h"
+
+namespace woodcock::render {
+
+template <int N, bool Surfaces>
+void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& job,
+           PathResult& result) {
+    const PathTracer::Options& options = traced.options;
+    const SampleSequence sequence(options.seed, job.x, job.y, job.sample);
+    const auto u = sequence.draw(0);
+    const float time = 0;  // nothing moves, so none is drawn
+    const camera::CameraRay ray =
+        traced.scene.camera.ray(job.x + u[0], job.y + u[1], options.width, options.height, time);
+    result = {};
+    batch.paths.push_back(
+        {.result = &result,
+         .sequence = sequence,
+         .random = RandomStream(hashOf(options.seed, 0x70617468, job.x, job.y, job.sample)),
+         .origin = ray.origin,
+         .direction = ray.direction,
+         .time = ray.time,
+         .flight = 1 - u[2],
+         .mediumSet = traced.media.setAfter(0)});
+    const std::size_t i = batch.paths.size() - 1;
+    PathState<N, Surfaces>& p = batch.paths[i];
+    ++batch.counters.paths;
+    if constexpr (Surfaces)
+        p.surfaces.way = BoundaryWalk(
+            traced.surfaces->rayStart(traced.scene.camera.kind == camera::Camera::Kind::Perspective
+                                          ? traced.aroundCamera
+                                          : traced.surfaces->cameraPosition(p.origin),
+                                      p.direction));
+    if (options.depthLayers || options.featureLayers) sampleCameraLayers(traced, p);
+    addSphereHits(traced, batch, i, nullptr);
+    if (traced.needs.emission) p.equiangular = u[3];
+    if (traced.needs.localLights) {
+        p.equiangular = u[3];
+        p.localLightPick = p.random.uniform();
+    }
+}
+
+template void spawn(const TracedScene&, Batch<1, false>&, const PathJob&, PathResult&);
+template void spawn(const TracedScene&, Batch<1, true>&, const PathJob&, PathResult&);
+template void spawn(const TracedScene&, Batch<3, false>&, const PathJob&, PathResult&);
+template void spawn(const TracedScene&, Batch<3, true>&, const PathJob&, PathResult&);
+
+}  // namespace woodcock::render

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "woodcock/render/media_table.h"
+#include "woodcock/render/nested_media.h"
+#include "woodcock/render/path_state.h"
+#include "woodcock/render/path_tracer.h"
+
+namespace woodcock::render {
+
+/// A scene as the stages read it. It does not change while paths are traced.
+struct TracedScene {
+    const Scene& scene;
+    const Needs needs;
+    const PathTracer::Options options;
+    const float typicalRadiance;  ///< in the scene's media; what roulette compares with
+    const MediaTable media;
+    // Where there are surfaces:
+    std::optional<NestedMedia> surfaces;
+    NestedMedia::CameraPosition aroundCamera;  ///< of a perspective camera
+
+    TracedScene(const Scene& s, const Needs& n, const PathTracer::Options& o)
+        : scene(s),
+          needs(n),
+          options(o),
+          typicalRadiance(s.lights.typicalRadiance(s.bounds())),
+          media(s, n, o.approximations, o.approximateMedia) {
+        if (!n.surfaces) return;
+        surfaces.emplace(s);
+        if (s.camera.kind == camera::Camera::Kind::Perspective)
+            aroundCamera = surfaces->cameraPosition(s.camera.worldFromCamera.translation);
+    }
+
+    /// The number in `media` of the medium around a ray.
+    std::uint32_t mediumAround(std::uint8_t mediumSet, const MediumStack& inside) const {
+        return media.number(mediumSet, surfaces->medium(inside));
+    }
+    /// Whether a path that has scattered so often may do so again.
+    bool mayScatter(std::int64_t scatterings) const {
+        return !options.maxScatterings || scatterings < *options.maxScatterings;
+    }
+    template <int N, bool Surfaces>
+    Flight flightOf(const PathState<N, Surfaces>& p) const {
+        Flight flight{.origin = p.origin,
+                      .direction = p.direction,
+                      .time = p.time,
+                      .medium = &media[p.medium]};
+        if constexpr (Surfaces) flight.tMax = p.surfaces.way.tMax();
+        return flight;
+    }
+};
+
+}  // namespace woodcock::render
