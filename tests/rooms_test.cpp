@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -169,6 +170,49 @@ TEST(Rooms, WhatIsAllowedInVainIsFound) {
     EXPECT_TRUE(says("light does not use medium"));
     EXPECT_TRUE(says("image does not use OpenImageIO"));
     EXPECT_FALSE(says("light does not use base"));
+}
+
+/// The kinds of light, as light.h lists them.
+std::vector<std::string> kindsOfLight(const std::string& header) {
+    std::smatch list;
+    if (!std::regex_search(header, list, std::regex(R"(public std::variant<([^>]+)>)"))) return {};
+    const std::string names = list[1];
+    static const std::regex word(R"(\w+)");
+    return {std::sregex_token_iterator(names.begin(), names.end(), word),
+            std::sregex_token_iterator()};
+}
+
+/// Lines of other rooms and of tools that ask which kind a light is.
+std::vector<std::string> questionsAboutKinds(const fs::path& folder,
+                                             const std::vector<std::string>& kinds) {
+    const std::regex question(
+        fmt::format(R"(\b(get|get_if|holds_alternative)<(const )?(light::)?({})>)"
+                    R"(|\bvisit\b.*(\blights\(\)|light::))",
+                    fmt::join(kinds, "|")));
+    std::vector<std::string> found;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+        const fs::path file = fs::relative(entry.path(), folder);
+        if (!entry.is_regular_file() || *file.begin() == "light") continue;
+        if (file.extension() != ".h" && file.extension() != ".cpp") continue;
+        std::istringstream text(readText(entry.path()));
+        for (std::string line; std::getline(text, line);)
+            if (std::regex_search(line, question)) found.push_back(file.string() + ": " + line);
+    }
+    return found;
+}
+
+TEST(Rooms, LightAloneKnowsTheKindsOfLight) {
+    const auto kinds = kindsOfLight(readText(sourceDir() / "lib/woodcock/light/light.h"));
+    EXPECT_GT(kinds.size(), 5u);
+    for (const char* folder : {"lib/woodcock", "tools"})
+        EXPECT_EQ(questionsAboutKinds(sourceDir() / folder, kinds), std::vector<std::string>());
+
+    const TempDir lib;
+    fs::create_directory(lib / "light");
+    writeText(lib / "light/a.cpp", "std::get_if<Sun>(&light)\n");
+    writeText(lib / "b.cpp", "f();\nif (std::holds_alternative<light::PointLight>(l)) g();\n");
+    writeText(lib / "c.h", "std::visit(f, scene.lights()[0]);\nstd::get_if<SunDescription>(&l);\n");
+    EXPECT_EQ(questionsAboutKinds(lib.path(), {"Sun", "PointLight"}).size(), 2u);
 }
 
 }  // namespace

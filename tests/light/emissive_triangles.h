@@ -79,7 +79,8 @@ struct Sample {
 inline Sample draw(const light::MeshLight& light, Vec3d from, RandomStream& random) {
     Sample s;
     const double u0 = random.uniform();
-    s.light = light.sample(from, u0, random.uniform(), s.triangle);
+    s.light = light.sample(from, u0, random.uniform());
+    if (s.light.emitter != light::LightSample::none) s.triangle = s.light.emitter;
     return s;
 }
 

@@ -128,7 +128,7 @@ TEST(Environment, ATurnedImageTurnsItsLight) {
             EXPECT_NEAR(environment.radiance(turn.vector(d))[c], map.radiance(d)[c] * scale[c],
                         1e-4);
         const double u = random.uniform(), v = random.uniform();
-        const LightSample s = environment.sample(u, v);
+        const LightSample s = environment.sample({}, u, v);
         EXPECT_LE(length(s.direction - turn.vector(map.sample(u, v).direction)), 1e-14);
         EXPECT_NEAR(s.weight[1], environment.radiance(s.direction)[1] / s.pdf, 1e-4);
     }
@@ -139,7 +139,7 @@ TEST(Environment, AConstantIsTheSameEverywhere) {
     EXPECT_TRUE(environment.constant());
     EXPECT_EQ(environment.radiance({0, 1, 0}), (Rgb{1, 2, 3}));
     EXPECT_EQ(environment.meanRadiance(), (Rgb{1, 2, 3}));
-    EXPECT_EQ(environment.pdf({0, 1, 0}), 0);
+    EXPECT_EQ(environment.pdf({}, {0, 1, 0}), 0);
 }
 
 }  // namespace

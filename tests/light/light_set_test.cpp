@@ -91,5 +91,30 @@ TEST(LightSet, SamplingIsThatOfTheLight) {
         }
 }
 
+TEST(LightSet, ListsLightsByWhatTheyAre) {
+    FlatLight flat{};
+    flat.x = {1, 0, 0}, flat.y = {0, 1, 0}, flat.normal = {0, 0, 1};
+    flat.halfX = flat.halfY = 1, flat.radiance = Rgb(1.0f);
+    const LightSet lights({SpotLight({}, {0, 0, 1}, Rgb(1.0f), 30, 0), RectangleLight{flat},
+                           Sun({0, -1, 0}, Rgb(1.0f), 0, false), DiskLight{flat},
+                           Environment(Rgb(1.0f), false), SphereLight{{}, 1, Rgb(1.0f)}});
+    const auto list = [](std::span<const int> indices) {
+        return std::vector<int>(indices.begin(), indices.end());
+    };
+    EXPECT_EQ(list(lights.local()), (std::vector<int>{0, 1, 3, 5}));
+    EXPECT_EQ(list(lights.meetable()), (std::vector<int>{1, 3, 5}));
+    EXPECT_EQ(list(lights.distant()), (std::vector<int>{4}));
+    EXPECT_EQ(list(lights.sampled()), (std::vector<int>{0, 1, 2, 3, 5}));
+    EXPECT_FALSE(lights.showsBackground());
+    // Behind them, neither the spot nor what shines to one side is picked.
+    std::vector<float> p(5);
+    lights.pickProbabilities({{0.1, 0.2, -3}, {0, 0, 1}, 0}, p);
+    EXPECT_EQ(p[0], 0);
+    EXPECT_EQ(p[1], 0);
+    EXPECT_EQ(p[3], 0);
+    EXPECT_GT(p[2], 0);
+    EXPECT_GT(p[4], 0);
+}
+
 }  // namespace
 }  // namespace woodcock::test

@@ -14,22 +14,22 @@ namespace {
 TEST(Sun, WithoutAWidthIsADelta) {
     const Sun sun({0, -2, 0}, {3, 2, 1}, 0, true);
     EXPECT_TRUE(sun.delta());
-    const LightSample s = sun.sample(0.3, 0.7);
+    const LightSample s = sun.sample({}, 0.3, 0.7);
     EXPECT_EQ(s.direction, (Vec3d{0, 1, 0}));
     EXPECT_EQ(s.weight, (Rgb{3, 2, 1}));
     EXPECT_EQ(s.pdf, 0);
-    EXPECT_EQ(sun.pdf({0, 1, 0}), 0);
+    EXPECT_EQ(sun.pdf({}, {0, 1, 0}), 0);
     EXPECT_EQ(sun.radiance({0, 1, 0}), Rgb(0.0f));
 }
 
 TEST(PointLight, FallsWithTheSquareOfTheDistance) {
     const PointLight light{{1, 2, 3}, {8, 4, 2}};
-    const LightSample s = light.sample({1, 2, 1});
+    const LightSample s = light.sample({1, 2, 1}, 0, 0);
     EXPECT_EQ(s.direction, (Vec3d{0, 0, 1}));
     EXPECT_EQ(s.distance, 2);
     EXPECT_EQ(s.weight, (Rgb{2, 1, 0.5}));
     EXPECT_EQ(s.pdf, 0);
-    EXPECT_EQ(light.sample({1, 2, 3}).weight, Rgb(0.0f));
+    EXPECT_EQ(light.sample({1, 2, 3}, 0, 0).weight, Rgb(0.0f));
 }
 
 TEST(SphereLight, IsHitWhereItsSurfaceIs) {

@@ -159,7 +159,7 @@ TEST(MeshLight, NeglectsNoTriangleThatIsSeen) {
                 any |= seen;
                 EXPECT_EQ(light.pdf(from, k, (c[0] + c[1] + c[2]) / 3.0) > 0, seen);
             }
-            EXPECT_GE(light.importance(from) > 0, any);
+            EXPECT_GE(light.facingIrradiance(from) > 0, any);
         }
     };
     // A plane; one that is bent a little, convex and concave
@@ -181,10 +181,9 @@ TEST(MeshLight, InItsPlaneItSendsNothing) {
     const MeshLight light({{{Vec3d{0, 0, 1}, Vec3d{1, 0, 1}, Vec3d{0, 1, 1}}, Rgb(1.0f), true}});
     for (Vec3d from : {Vec3d{0.2, 0.2, 1}, Vec3d{3, 3, 1}, Vec3d{0, 0, 1}, Vec3d{0, 1, 1},
                        Vec3d{0.5, 0.5, 1}, Vec3d{0.5, 0, 1}, Vec3d{2, 0, 1}}) {
-        std::uint32_t triangle = 0;
-        EXPECT_EQ(light.sample(from, 0.3, 0.6, triangle).weight, Rgb(0.0f));
+        EXPECT_EQ(light.sample(from, 0.3, 0.6).weight, Rgb(0.0f));
         EXPECT_EQ(light.pdf(from, 0, {0.3, 0.3, 1}), 0);
-        EXPECT_EQ(light.importance(from), 0);
+        EXPECT_EQ(light.facingIrradiance(from), 0);
     }
 }
 
@@ -198,14 +197,13 @@ TEST(MeshLight, TakesTheEndsOfRandomNumbers) {
             const Vec3d from = direction(random) * (i % 2 ? 0.5 * scale : 1e4 * scale);
             for (double u0 : {0.0, 0x1p-53, 0.5, belowOne})
                 for (double u1 : {0.0, 0x1p-53, 0.5, belowOne}) {
-                    std::uint32_t triangle = 0;
-                    const LightSample s = light.sample(from, u0, u1, triangle);
+                    const LightSample s = light.sample(from, u0, u1);
                     if (s.pdf == 0 && s.weight == Rgb(0.0f)) continue;
                     ++lit;
                     ASSERT_NEAR(length(s.direction), 1, 1e-12);
                     ASSERT_TRUE(s.weight[0] > 0 && s.weight.isFinite());
                     ASSERT_TRUE(s.pdf > 0 && std::isfinite(s.pdf));
-                    const auto& c = light.triangles()[triangle].corner;
+                    const auto& c = light.triangles()[s.emitter].corner;
                     Box3d box;
                     for (Vec3d corner : c) box.add(corner);
                     const Vec3d off = from + s.direction * s.distance - box.centre();
@@ -266,9 +264,8 @@ TEST(MeshLight, LeavesOutWhatCannotShine) {
 
     for (const Triangles& none : {Triangles{}, Triangles{triangles[0], triangles[2]}}) {
         const MeshLight dark(none);
-        std::uint32_t triangle = 0;
-        EXPECT_EQ(dark.sample({0, 0, 1}, 0.5, 0.5, triangle).weight, Rgb(0.0f));
-        EXPECT_EQ(dark.importance({0, 0, 1}), 0);
+        EXPECT_EQ(dark.sample({0, 0, 1}, 0.5, 0.5).weight, Rgb(0.0f));
+        EXPECT_EQ(dark.facingIrradiance({0, 0, 1}), 0);
         EXPECT_EQ(dark.power(), 0);
     }
 }
@@ -308,7 +305,7 @@ TEST(MeshLight, PowerAndCentre) {
     for (Triangle& t : square) t.bothSides = true;
     EXPECT_NEAR(MeshLight(square).power(), 8 * 5 * pi, 1e-12);
     // From afar the importance is the irradiance: area / distance^2, mean over channels
-    EXPECT_NEAR(MeshLight(square).importance({1, 1, 1000}) / (4 * 8 / 3.0 * 1e-6), 1, 0.01);
+    EXPECT_NEAR(MeshLight(square).facingIrradiance({1, 1, 1000}) / (4 * 8 / 3.0 * 1e-6), 1, 0.01);
 }
 
 TEST(LightSet, HoldsEmissiveSurfaces) {
@@ -324,10 +321,9 @@ TEST(LightSet, HoldsEmissiveSurfaces) {
     EXPECT_EQ(none.meshIndex(), -1);
     EXPECT_EQ(none.mesh(), nullptr);
 
-    std::uint32_t triangle = 0;
     const Vec3d from{0.4, 0.3, 1};
     const LightSample s = lights.sample(1, from, 0.2, 0.7),
-                      same = lights.mesh()->sample(from, 0.2, 0.7, triangle);
+                      same = lights.mesh()->sample(from, 0.2, 0.7);
     EXPECT_EQ(s.direction, same.direction);
     EXPECT_EQ(s.weight, same.weight);
     EXPECT_EQ(lights.pdf(1, from, s.direction), 0);

@@ -90,14 +90,30 @@ defect "similar media absorb less under an albedo grid" 'SimilarMedium.*' "" \
 # ---- light
 
 defect "sun's irradiance without the cosine" 'Sun.*' "sun" \
-    lib/woodcock/light/light.cpp \
+    lib/woodcock/light/sun.cpp \
     'irradiance_ * static_cast<float>(1 / (pi * sinHalf_ * sinHalf_))' \
     'irradiance_ * static_cast<float>(1 / (2 * pi * oneMinusCos_))'
 
 defect "sphere's solid angle as if it were flat" 'SphereLight.*' "local lights" \
-    lib/woodcock/light/light.cpp \
+    lib/woodcock/light/sphere_light.cpp \
     's.weight = radiance * static_cast<float>(1 / s.pdf);' \
     's.weight = radiance * static_cast<float>(pi * sin2);'
+
+defect "spot's soft edge is straight" 'SpotLight.*' "spots" \
+    lib/woodcock/light/spot_light.cpp \
+    'return x * x * (3 - 2 * x);' 'return x;'
+
+defect "spread keeps the radiance instead of the power" 'Spread.*' "rectangles" \
+    lib/woodcock/light/spread.cpp \
+    'std::max(0.0, tangent_ - tangent) / rest_' 'std::max(0.0, tangent_ - tangent) / tangent_'
+
+defect "rectangle's sampling ends at a corner too early" 'SeenRectangle.*' "rectangles" \
+    lib/woodcock/light/seen_rectangle.cpp \
+    'h0 + u1 * (h1 - h0)' 'h0 + 0.99 * u1 * (h1 - h0)'
+
+defect "quarter of a profile repeated instead of mirrored" 'IesProfile.*' "photometric profiles" \
+    lib/woodcock/light/ies_profile.cpp \
+    'add(180 - angle), add(180 + angle);' 'add(90 + angle), add(180 + angle);'
 
 defect "image sampled evenly in angle" 'EnvironmentMap.*' "environment images" \
     lib/woodcock/light/environment_map.cpp \

@@ -56,9 +56,9 @@ TEST(BuildEmission, SamplesSeeWhatRaysHit) {
     for (int i = 0; i < 3000; ++i) {
         const auto r = [&] { return 6 * random.uniform() - 3; };
         const Vec3d from{r(), r(), r()};
-        std::uint32_t triangle = 0;
         const double u0 = random.uniform();
-        const LightSample s = light.sample(from, u0, random.uniform(), triangle);
+        const LightSample s = light.sample(from, u0, random.uniform());
+        const std::uint32_t triangle = s.emitter;
         SurfaceHit hit;
         if (!(s.pdf > 0) || !surfaces.geometry.intersect(from, s.direction, infinity, nullptr, hit))
             continue;

@@ -46,7 +46,7 @@ TEST(ParseErrors, NameTheNearestKnownKey) {
     EXPECT_EQ(
         lightMistake("type = \"point\"\nposition = [0, 0, 0]\nradius = 1"),
         "scene.toml:6:1: unknown key 'radius' in a [[light]] of type point; known keys: type, "
-        "position, intensity, power");
+        "position, intensity, power, ies, direction, look_at, roll, up");
 }
 
 TEST(ParseErrors, ReportTheFirstUnknownKeyOfTheFile) {
@@ -179,7 +179,8 @@ TEST(ParseErrors, OfPaths) {
 
 TEST(ParseErrors, OfLights) {
     EXPECT_EQ(lightMistake("type = \"sunn\""),
-              "scene.toml:4:8: unknown light type 'sunn'; known: sun, point, sphere, environment");
+              "scene.toml:4:8: unknown light type 'sunn'; known: sun, point, spot, sphere, "
+              "rectangle, disk, environment");
     EXPECT_EQ(lightMistake("radiance = 1"),
               "scene.toml:3:1: light[0] has no type; give one, such as type = \"sun\"");
     EXPECT_EQ(lightMistake("type = \"sun\""),

@@ -145,5 +145,44 @@ TEST_F(CyclesFire, IsRefusedByNameWhereCyclesDiffers) {
         "test.toml:4:13: Cycles cannot express the background 293 of the temperature grid 'air'");
 }
 
+TEST(CyclesScene, LampsHaveBlendersUnits) {
+    const auto lamp = [](const std::string& lines) {
+        return written(
+            "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nsigma_s = 1\n"
+            "[[light]]\n" +
+            lines)["lights"][0];
+    };
+    const auto spot = lamp(
+        "type = \"spot\"\nposition = [1, 2, 3]\ndirection = [0, 0, -2]\npower = [8, 4, 2]\n"
+        "cone = 90\nblend = 0.3\n");
+    EXPECT_NEAR(spot["power"].get<double>(), 8, 1e-5);
+    EXPECT_NEAR(spot["colour"][1].get<double>(), 0.5, 1e-6);
+    EXPECT_NEAR(spot["cone"].get<double>(), pi / 2, 1e-12);
+    EXPECT_EQ(spot["blend"], 0.3);
+    EXPECT_EQ(spot["direction"], (std::vector<double>{0, 0, -1}));
+
+    // Cycles: radiance = power / (4 area). It shines along -z of its matrix, by rows.
+    const auto rectangle = lamp(
+        "type = \"rectangle\"\nsize = [2, 1]\nradiance = 3\nspread = 60\n"
+        "transform = { translate = [1, 2, 3], scale = [2, 1, 1] }\n");
+    EXPECT_EQ(rectangle["shape"], "RECTANGLE");
+    EXPECT_EQ(rectangle["size"], (std::vector<double>{4, 1}));
+    EXPECT_NEAR(rectangle["power"].get<double>(), 4 * 4 * 3, 1e-4);
+    EXPECT_NEAR(rectangle["spread"].get<double>(), pi / 3, 1e-12);
+    EXPECT_EQ(rectangle["matrix"][1][2], -1);
+    EXPECT_EQ(rectangle["matrix"][0][0], 1);
+    EXPECT_EQ(rectangle["matrix"][2][3], 3);
+    const auto disk = lamp("type = \"disk\"\nradius = 2\n");
+    EXPECT_EQ(disk["size"], (std::vector<double>{4, 4}));
+    EXPECT_NEAR(disk["power"].get<double>(), 4 * 4 * pi, 1e-4);
+
+    const auto refused = [&](const std::string& lines, const std::string& words) {
+        expectError(ErrorKind::Input, words, [&] { lamp(lines); });
+    };
+    refused("type = \"disk\"\ntwo_sided = true\n", "both sides");
+    refused("type = \"spot\"\nposition = [1, 2, 3]\ndirection = [0, 0, -2]\ncone = 0.5\n",
+            "cone of 0.5 degrees");
+}
+
 }  // namespace
 }  // namespace woodcock::test

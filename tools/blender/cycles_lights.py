@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lights: suns and points as Blender's own, spheres as meshes, environments as the world."""
+"""Lights: suns, points, spots and areas as Blender's own, spheres as meshes, environments as the
+world."""
 import bpy
 from mathutils import Matrix, Vector
 
@@ -28,7 +29,36 @@ def add_point(scene, name, light):
     point.energy = light["power"]
     point.color = light["colour"]
     point.shadow_soft_size = 0.0
-    place(scene, name, point, Matrix.Translation(light["position"]))
+    if light["ies"]:
+        nodes = Nodes(point)
+        profile = nodes.add("ShaderNodeTexIES", {"mode": "EXTERNAL", "filepath": light["ies"]})
+        emission = nodes.add("ShaderNodeEmission", Color=(1, 1, 1),
+                             Strength=profile.outputs["Fac"])
+        output = nodes.add("ShaderNodeOutputLight")
+        nodes.tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    place(scene, name, point, Matrix(light["matrix"]))
+
+
+def add_spot(scene, name, light):
+    spot = bpy.data.lights.new(name, "SPOT")
+    spot.energy = light["power"]
+    spot.color = light["colour"]
+    spot.shadow_soft_size = 0.0
+    spot.spot_size = light["cone"]
+    spot.spot_blend = light["blend"]
+    direction = Vector(light["direction"])
+    matrix = direction.to_track_quat("-Z", "Y").to_matrix().to_4x4()
+    place(scene, name, spot, Matrix.Translation(light["position"]) @ matrix)
+
+
+def add_area(scene, name, light):
+    area = bpy.data.lights.new(name, "AREA")
+    area.energy = light["power"]
+    area.color = light["colour"]
+    area.shape = light["shape"]
+    area.size, area.size_y = light["size"]
+    area.spread = light["spread"]
+    place(scene, name, area, Matrix(light["matrix"])).visible_camera = light["visible"]
 
 
 def add_sphere(scene, name, light):
@@ -95,7 +125,8 @@ def add_world(scene, environments):
 
 
 def add(scene, lights):
-    kinds = {"sun": add_sun, "point": add_point, "sphere": add_sphere}
+    kinds = {"sun": add_sun, "point": add_point, "spot": add_spot, "sphere": add_sphere,
+             "area": add_area}
     for i, light in enumerate(lights):
         if light["type"] in kinds:
             kinds[light["type"]](scene, "light%d" % i, light)

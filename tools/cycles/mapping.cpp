@@ -45,6 +45,17 @@ CyclesColour cyclesPoint(Rgb intensity) {
     return point;
 }
 
+CyclesColour cyclesArea(Rgb radiance, double area) {
+    CyclesColour light = cyclesColour(radiance);
+    light.strength = static_cast<float>(light.strength * (4 * area));
+    return light;
+}
+
+Affine3d cyclesLamp(const Affine3d& worldFromLight) {
+    const auto& [x, y, z] = worldFromLight.column;
+    return {{normalize(x), normalize(z), -normalize(y)}, worldFromLight.translation};
+}
+
 Affine3d cyclesImageFromWorld(const scene::EnvironmentDescription& environment) {
     // The light's -z, its image's centre, becomes +x, its +y +z.
     const Affine3d cyclesFromLight{{Vec3d{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}}, {}};

@@ -53,8 +53,19 @@ struct CyclesColour {
 };
 CyclesColour cyclesColour(Rgb light);
 
-/// Of a point light: power, 4 pi times the intensity.
+/// Of a point light, and of a spot along its axis: power, 4 pi times the intensity.
 CyclesColour cyclesPoint(Rgb intensity);
+
+/// Of an area light: power, 4 area times the radiance. (An even emitter of that radiance really has
+/// pi area times it.)
+CyclesColour cyclesArea(Rgb radiance, double area);
+
+/// A lamp's world matrix, of unit axes: it shines along its -z. `worldFromLight` shines towards +y;
+/// its scale is left out.
+Affine3d cyclesLamp(const Affine3d& worldFromLight);
+
+/// Blender's spots are no narrower than a degree.
+constexpr double cyclesNarrowestCone = 1;
 
 /// Turns a world direction to where Cycles looks it up in an environment image: the image's centre
 /// is towards +x, its top +z and its left +y there.

@@ -152,9 +152,12 @@ private:
 
 // ---- lights
 
-json lightJson(const scene::SunDescription& sun, const std::string& place) {
+/// A light as a description for Blender. `placeOf`: where the value of a member was written.
+template <class PlaceOf>
+json lightJson(const scene::SunDescription& sun, const PlaceOf& placeOf) {
     if (sun.visible)
-        throw cyclesRefusal(place, "a sun that the camera sees; leave out its 'visible'");
+        throw cyclesRefusal(placeOf(sun.visible),
+                            "a sun that the camera sees; leave out its 'visible'");
     const CyclesColour light = cyclesColour(sun.irradiance);
     return {{"type", "sun"},
             {"direction", toJson(normalize(sun.direction))},
@@ -162,7 +165,8 @@ json lightJson(const scene::SunDescription& sun, const std::string& place) {
             {"colour", toJson(light.colour)},
             {"angle", sun.angularDiameter * pi / 180}};
 }
-json lightJson(const scene::EnvironmentDescription& environment, const std::string&) {
+template <class PlaceOf>
+json lightJson(const scene::EnvironmentDescription& environment, const PlaceOf&) {
     json light{{"type", "environment"},
                {"radiance", toJson(environment.radiance)},
                {"visible", environment.visible},
@@ -173,14 +177,35 @@ json lightJson(const scene::EnvironmentDescription& environment, const std::stri
     }
     return light;
 }
-json lightJson(const scene::PointDescription& point, const std::string&) {
+template <class PlaceOf>
+json lightJson(const scene::PointDescription& point, const PlaceOf&) {
     const CyclesColour light = cyclesPoint(point.intensity);
+    Affine3d axes = point.axes();
+    axes.translation = point.position;
+    json ies = nullptr;
+    if (!point.ies.empty()) ies = std::filesystem::absolute(point.ies).string();
     return {{"type", "point"},
-            {"position", toJson(point.position)},
+            {"matrix", toJson(cyclesLamp(axes))},
             {"power", light.strength},
-            {"colour", toJson(light.colour)}};
+            {"colour", toJson(light.colour)},
+            {"ies", ies}};
 }
-json lightJson(const scene::SphereDescription& sphere, const std::string&) {
+template <class PlaceOf>
+json lightJson(const scene::SpotDescription& spot, const PlaceOf& placeOf) {
+    if (spot.cone < cyclesNarrowestCone)
+        throw cyclesRefusal(placeOf(spot.cone), "a spot's cone of {} degrees: Blender's least is 1",
+                            spot.cone);
+    const CyclesColour light = cyclesPoint(spot.intensity);
+    return {{"type", "spot"},
+            {"position", toJson(spot.position)},
+            {"direction", toJson(normalize(spot.direction))},
+            {"power", light.strength},
+            {"colour", toJson(light.colour)},
+            {"cone", spot.cone * pi / 180},
+            {"blend", spot.blend}};
+}
+template <class PlaceOf>
+json lightJson(const scene::SphereDescription& sphere, const PlaceOf&) {
     const CyclesColour light = cyclesColour(sphere.radiance);
     return {{"type", "sphere"},
             {"position", toJson(sphere.position)},
@@ -188,6 +213,34 @@ json lightJson(const scene::SphereDescription& sphere, const std::string&) {
             {"strength", light.strength},
             {"colour", toJson(light.colour)},
             {"visible", sphere.visible}};
+}
+
+/// `shape`: Blender's name. `areaOfOne`: that of a shape as wide and as deep as 1.
+template <class PlaceOf>
+json flatJson(const scene::FlatDescription& flat, const char* shape, double sizeX, double sizeZ,
+              double areaOfOne, const PlaceOf& placeOf) {
+    if (flat.twoSided)
+        throw cyclesRefusal(placeOf(flat.twoSided),
+                            "an area light that shines to both sides; two of them do");
+    const double width = sizeX * length(flat.worldFromLight.column[0]);
+    const double depth = sizeZ * length(flat.worldFromLight.column[2]);
+    const CyclesColour light = cyclesArea(flat.radiance, areaOfOne * width * depth);
+    return {{"type", "area"},
+            {"shape", shape},
+            {"size", {width, depth}},
+            {"matrix", toJson(cyclesLamp(flat.worldFromLight))},
+            {"power", light.strength},
+            {"colour", toJson(light.colour)},
+            {"spread", flat.spread * pi / 180},
+            {"visible", flat.visible}};
+}
+template <class PlaceOf>
+json lightJson(const scene::RectangleDescription& r, const PlaceOf& placeOf) {
+    return flatJson(r, "RECTANGLE", r.size[0], r.size[1], 1, placeOf);
+}
+template <class PlaceOf>
+json lightJson(const scene::DiskDescription& disk, const PlaceOf& placeOf) {
+    return flatJson(disk, "ELLIPSE", 2 * disk.radius, 2 * disk.radius, pi / 4, placeOf);
 }
 
 // ---- camera and settings
@@ -262,10 +315,15 @@ std::string cyclesScene(const scene::SceneDescription& scene, const scene::Loade
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         VolumeWriter(scene, loaded, i).addTo(volumes);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const std::string place =
-            scene::findPlace(scene.places, fmt::format("light[{}].visible", i));
-        lights.push_back(std::visit([&](const auto& light) { return lightJson(light, place); },
-                                    scene.lights[i].light));
+        lights.push_back(std::visit(
+            [&](const auto& light) {
+                return lightJson(light, [&](const auto& member) {
+                    return scene::findPlace(
+                        scene.places,
+                        fmt::format("light[{}].{}", i, scene::keyName(light, member)));
+                });
+            },
+            scene.lights[i].light));
     }
     const json out{{"volumes", std::move(volumes)},
                    {"lights", std::move(lights)},

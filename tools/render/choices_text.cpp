@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "woodcock/scene/keys/sections.h"
+
 namespace woodcock::tool {
 
 namespace {
@@ -13,8 +15,10 @@ std::string describe(const scene::SunDescription& sun) {
                      : "a sun";
 }
 std::string describe(const scene::EnvironmentDescription&) { return "an even sky"; }
-std::string describe(const scene::PointDescription&) { return "a point light"; }
-std::string describe(const scene::SphereDescription&) { return "a sphere light"; }
+template <class L>
+std::string describe(const L&) {
+    return fmt::format("a {} light", scene::keysOf<L>().tag);
+}
 
 void describeVolumes(const Openings& open, const scene::SceneDescription& complete,
                      std::vector<std::string>& parts) {

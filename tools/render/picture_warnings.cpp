@@ -15,15 +15,9 @@ namespace woodcock::tool {
 
 namespace {
 
-Rgb brightnessOf(const scene::SunDescription& sun) { return sun.irradiance; }
-Rgb brightnessOf(const scene::EnvironmentDescription& environment) { return environment.radiance; }
-Rgb brightnessOf(const scene::PointDescription& point) { return point.intensity; }
-Rgb brightnessOf(const scene::SphereDescription& sphere) { return sphere.radiance; }
-
 bool anyLightShines(const scene::SceneDescription& scene) {
-    return std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& light) {
-        return std::visit([](const auto& l) { return brightnessOf(l).maximum() > 0; }, light.light);
-    });
+    return std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const auto& light) { return light.brightness().maximum() > 0; });
 }
 
 struct Brightest {

@@ -1,94 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <limits>
+#include <concepts>
+#include <string>
 #include <variant>
 
-#include "woodcock/base/affine.h"
-#include "woodcock/base/spectrum.h"
-#include "woodcock/light/environment_map.h"
+#include "woodcock/light/disk_light.h"
+#include "woodcock/light/environment.h"
+#include "woodcock/light/light_sample.h"
 #include "woodcock/light/mesh_light.h"
+#include "woodcock/light/point_light.h"
+#include "woodcock/light/rectangle_light.h"
+#include "woodcock/light/sphere_light.h"
+#include "woodcock/light/spot_light.h"
+#include "woodcock/light/sun.h"
 
 namespace woodcock::light {
 
-/// Light that arrives at a point from one direction, drawn by a light's own sampling.
-struct LightSample {
-    Vec3d direction;  ///< from the point towards the light, unit length
-    double distance = std::numeric_limits<double>::infinity();
-    Rgb weight;      ///< radiance / pdf; of a delta light, the irradiance perpendicular to the
-                     ///< direction
-    double pdf = 0;  ///< per steradian; 0: a delta light, which no other sampling can find
-    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t emitter = none;  ///< of a MeshLight: the triangle
+/// What every kind of light answers. Points and directions are in world space.
+template <class L>
+concept LightKind = requires(const L& l, const ScatterPoint& at, Vec3d v, const Box3d& bounds) {
+    { l.traits() } -> std::same_as<LightTraits>;
+    /// At a point, by u in [0, 1)^2; of weight 0 where no light is found.
+    { l.sample(v, 0.0, 0.0) } -> std::same_as<LightSample>;
+    /// Density, per steradian, with which sample() at a point draws a direction; 0 of delta lights.
+    { l.pdf(v, v) } -> std::convertible_to<double>;
+    /// Importance: what the light could add to the radiance that leaves `at`, unoccluded, averaged
+    /// over channels. 0 only where sample() finds nothing.
+    { l.importance(at) } -> std::convertible_to<double>;
+    /// Roughly the radiance, largest channel, that it makes in a scattering medium of such bounds.
+    { l.typicalRadiance(bounds) } -> std::convertible_to<double>;
+};
+/// A kind that rays can meet on their way: where a ray first does, outside of the light.
+template <class L>
+concept MeetsRays = requires(const L& l, Vec3d v) {
+    { l.meet(v, v) } -> std::same_as<LightHit>;
+};
+/// A kind that may be infinitely far away: the radiance that arrives from a direction. Such a kind
+/// says in its traits whether it is `distant`.
+template <class L>
+concept Distant = requires(const L& l, Vec3d v) {
+    { l.distantRadiance(v) } -> std::same_as<Rgb>;
+};
+/// A local kind that does not shine everywhere: narrows [t0, t1] to where it can shine on a ray.
+template <class L>
+concept Narrow = requires(const L& l, Vec3d v, double& t) {
+    l.narrow(v, v, t, t);
+};
+/// A kind of which floats may not hold a number: says so in a sentence, or nothing.
+template <class L>
+concept MayHaveAFlaw = requires(const L& l) {
+    { l.flaw() } -> std::same_as<std::string>;
 };
 
-/// Parallel rays, or a disc of uniform radiance in the sky.
-class Sun {
+/// A light of any kind. Nothing outside of this room asks which kind it is.
+class Light : public std::variant<Sun, Environment, PointLight, SpotLight, SphereLight,
+                                  RectangleLight, DiskLight, MeshLight> {
 public:
-    /// `travel`: the direction in which its light goes (world). `irradiance`: on a surface
-    /// perpendicular to it.
-    Sun(Vec3d travel, Rgb irradiance, double angularDiameterDegrees, bool visible);
+    using variant::variant;
 
-    bool delta() const { return sinHalf_ == 0; }
-    bool visible() const { return visible_; }
-    Rgb irradiance() const { return irradiance_; }
-    Vec3d towards() const { return towards_; }
-
-    LightSample sample(double u0, double u1) const;
-    double pdf(Vec3d direction) const;    ///< 0 outside the disc and for delta
-    Rgb radiance(Vec3d direction) const;  ///< of the disc; 0 for delta
-
-private:
-    Vec3d towards_;
-    Rgb irradiance_;
-    double sinHalf_, oneMinusCos_;  // of half the angular diameter
-    bool visible_;
-};
-
-/// Radiance from all around: a constant, or a lat-long image times one.
-class Environment {
-public:
-    Environment(Rgb radiance, bool visible) : scale_(radiance), visible_(visible) {}
-    Environment(EnvironmentMap map, Rgb scale, const Affine3d& worldFromLight, bool visible);
-
-    bool constant() const { return map_.empty(); }
-    bool visible() const { return visible_; }
-    const EnvironmentMap& map() const { return map_; }
-    Rgb meanRadiance() const;  ///< over the sphere
-
-    Rgb radiance(Vec3d direction) const;
-    LightSample sample(double u0, double u1) const;  ///< of the image; constants need none
-    double pdf(Vec3d direction) const;
-
-private:
-    EnvironmentMap map_;
-    Rgb scale_;
-    Affine3d worldFromLight_, lightFromWorld_;
-    bool visible_;
-};
-
-struct PointLight {
-    Vec3d position;
-    Rgb intensity;  ///< power per solid angle
-
-    LightSample sample(Vec3d from) const;
-};
-
-/// A sphere that emits uniform radiance outwards and lets other light pass. It emits nothing
-/// inwards.
-struct SphereLight {
-    Vec3d position;
-    double radius;
-    Rgb radiance;
-    bool visible = true;
-
-    LightSample sample(Vec3d from, double u0, double u1) const;  ///< weight 0 from inside
+    LightTraits traits() const;
+    LightSample sample(Vec3d from, double u0, double u1) const;
     double pdf(Vec3d from, Vec3d direction) const;
-    /// Distance at which a ray from outside enters the sphere; infinity when the ray misses it.
-    double hit(Vec3d origin, Vec3d direction) const;
+    double importance(const ScatterPoint& at) const;
+    double typicalRadiance(const Box3d& bounds) const;
+    bool meetsRays() const;
+    LightHit meet(Vec3d origin, Vec3d direction) const;  ///< a miss where it does not meet rays
+    Rgb distantRadiance(Vec3d direction) const;          ///< 0 where it is not distant
+    void narrow(Vec3d origin, Vec3d direction, double& t0, double& t1) const;
+    std::string flaw() const;
 };
-
-using Light = std::variant<Sun, Environment, PointLight, SphereLight, MeshLight>;
 
 }  // namespace woodcock::light

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "woodcock/light/light.h"
 #include "woodcock/light/spherical_triangle.h"
 
 namespace woodcock::light {
@@ -137,7 +136,7 @@ Rgb MeshLight::radianceAt(std::uint32_t triangle, Vec3d position, bool front) co
     return radianceAt_(triangle, b1, b2, front);
 }
 
-LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& triangle) const {
+LightSample MeshLight::sample(Vec3d from, double u0, double u1) const {
     LightSample s;
     if (tree_.nodes.empty()) return s;
     std::uint32_t node = 0;
@@ -156,7 +155,7 @@ LightSample MeshLight::sample(Vec3d from, double u0, double u1, std::uint32_t& t
     const SphericalTriangle seen(t.corner, from);
     const double solidAngle = litSolidAngle(t, seen);
     if (!(solidAngle > 0)) return s;
-    triangle = tree_.nodes[node].emitter;
+    const std::uint32_t triangle = tree_.nodes[node].emitter;
     double distance = 0;
     s.direction = sampleDirection(t, seen, from, u0, u1, distance);
     if (!(distance > 0 && std::isfinite(distance))) return s;
@@ -184,8 +183,15 @@ double MeshLight::pdf(Vec3d from, std::uint32_t triangle, Vec3d position) const 
     return picked * density(t, from, solidAngle, length(position - from));
 }
 
-double MeshLight::importance(Vec3d from) const {
+double MeshLight::facingIrradiance(Vec3d from) const {
     return tree_.nodes.empty() ? 0 : importance(0, from);
+}
+
+double MeshLight::importance(const ScatterPoint& at) const {
+    const Vec3d d = centre_ - at.position;
+    const double distance = length(d);
+    const double p = distance > 0 ? at.phaseTowards(d / distance) : 0;
+    return facingIrradiance(at.position) * (0.5 * p + 0.5 / (4 * pi));
 }
 
 }  // namespace woodcock::light

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "woodcock/base/spectrum.h"
+#include "woodcock/light/light_sample.h"
 #include "woodcock/light/light_tree.h"
 
 namespace woodcock::light {
-
-struct LightSample;
 
 /// All emissive triangles of a scene as one light: a triangle is chosen through a tree by power,
 /// distance and orientation (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
@@ -35,16 +34,23 @@ public:
 
     std::span<const Triangle> triangles() const { return triangles_; }
 
-    /// A sample at `from` (world). Its weight is 0 where no triangle can be seen; else `triangle`
-    /// is the chosen one.
-    LightSample sample(Vec3d from, double u0, double u1, std::uint32_t& triangle) const;
+    LightTraits traits() const { return {.name = "an emissive surface"}; }
+    /// A sample at `from` (world). Its weight is 0 where no triangle can be seen; else its
+    /// `emitter` is the chosen one.
+    LightSample sample(Vec3d from, double u0, double u1) const;
+    /// 0: a direction does not say which triangle it meets. The other pdf() takes that.
+    double pdf(Vec3d, Vec3d) const { return 0; }
     /// Density, per steradian, with which sample() at `from` finds `position` on this triangle; 0
     /// where the triangle sends nothing to `from`.
     double pdf(Vec3d from, std::uint32_t triangle, Vec3d position) const;
 
-    /// Importance: roughly the irradiance (mean over channels) at a point that faces the light. 0
-    /// only where no triangle can be seen.
-    double importance(Vec3d from) const;
+    double importance(const ScatterPoint& at) const;
+    double typicalRadiance(const Box3d& bounds) const {
+        return radianceOfLocalLight(centre_, power_ / (4 * pi), bounds);
+    }
+    /// Roughly the irradiance (mean over channels) at a point that faces the light. 0 only where no
+    /// triangle can be seen.
+    double facingIrradiance(Vec3d from) const;
     Vec3d centre() const { return centre_; }  ///< weighted by power
     double power() const { return power_; }   ///< of the largest channel
 

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
+#include "woodcock/light/light.h"
 #include "woodcock/medium/medium.h"
 #include "woodcock/render/equiangular.h"
 
@@ -38,17 +40,21 @@ struct Flight {
     float time = 0;
     const MediumSummary* medium = nullptr;
 
-    Equiangular equiangular(Vec3d lightPosition) const {
+    /// Distances at which a local light may shine on the medium.
+    Equiangular equiangular(const light::Light& light, Vec3d lightPosition) const {
         double t0 = 0, t1 = tMax;
         if (!medium->unbounded && !grid::clip({origin, direction}, medium->bounds, t0, t1))
             return {};
-        return {origin, direction, lightPosition, t0, t1, length(medium->bounds.size()) * 1e-9};
+        const double entry = t0;
+        light.narrow(origin, direction, t0, t1);
+        return {origin, direction, lightPosition, t0, t1, length(medium->bounds.size()) * 1e-9,
+                entry};
     }
     /// The density, per world unit, with which tracking would find its event at `t` if the medium
     /// were homogeneous.
     double density(const Equiangular& e, double t) const {
         const double sigma = medium->meanExtinction;
-        return sigma * std::exp(-sigma * std::max(0.0, t - e.t0()));
+        return sigma * std::exp(-sigma * std::max(0.0, t - e.entry()));
     }
 };
 
@@ -60,10 +66,10 @@ struct FlightShare {
     bool all = true;  ///< the event's alone: nothing was chosen on its flight
     Flight flight = {};
     double t = 0;
-    /// The event's part of the light from a local light at `position` (world).
-    double operator()(Vec3d position) const {
-        if (all) return 1;
-        const Equiangular e = flight.equiangular(position);
+    /// The event's part of the light from a light; `position`: absent where it is not local.
+    double operator()(const light::Light& light, const std::optional<Vec3d>& position) const {
+        if (all || !position) return 1;
+        const Equiangular e = flight.equiangular(light, *position);
         const double other = e.pdf(t);
         const double own = flight.density(e, t);
         return own + other > 0 ? own / (own + other) : 1;

@@ -9,12 +9,7 @@ namespace {
 
 /// Whether a flight can meet light, so that following it finds what next-event estimation does not.
 bool flightsMeetLight(const Scene& scene, const Needs& needs) {
-    bool meet = needs.surfaces || needs.emission;
-    for (const light::Light& light : scene.lights.lights()) {
-        const auto* sun = std::get_if<light::Sun>(&light);
-        meet |= std::holds_alternative<light::Environment>(light) || (sun && !sun->delta());
-    }
-    return meet;
+    return needs.surfaces || needs.emission || !scene.lights.distant().empty();
 }
 
 }  // namespace

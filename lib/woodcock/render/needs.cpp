@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
-#include "woodcock/render/local_light.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
@@ -25,11 +24,9 @@ Needs findNeeds(const Scene& scene) {
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
-        const light::Light& light = scene.lights.lights()[static_cast<std::size_t>(i)];
-        const std::optional<Vec3d> p = localLightPosition(light);
-        if (!p) continue;  // equiangular sampling needs a place
+        const Vec3d p = *scene.lights.traits(i).position;
         n.localLights |=
-            n.scattering && length(*p - max(bounds.lower, min(bounds.upper, *p))) < reach;
+            n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) < reach;
     }
     return n;
 }

@@ -92,18 +92,9 @@ private:
     }
 
     void checkLight(const light::Light& light) {
-        if (const auto* point = std::get_if<light::PointLight>(&light))
-            checkLocalLight("a point light", point->position, point->intensity.maximum());
-        if (const auto* sphere = std::get_if<light::SphereLight>(&light))
-            checkLocalLight("a sphere light", sphere->position,
-                            pi * sphere->radius * sphere->radius * sphere->radiance.maximum());
-        if (const auto* sun = std::get_if<light::Sun>(&light); sun && !sun->delta()) {
-            const double radiance = sun->radiance(sun->towards()).maximum();
-            if (!std::isfinite(radiance) || !std::isfinite(sun->pdf(sun->towards())))
-                add("a sun is so narrow that the radiance of its disc is beyond the largest float, "
-                    "{:g}; give angular_diameter = 0 for parallel rays",
-                    largestFloat);
-        }
+        const light::LightTraits traits = light.traits();
+        if (traits.position) checkLocalLight(traits.name, *traits.position, traits.intensity);
+        if (std::string flaw = light.flaw(); !flaw.empty()) found_.push_back(std::move(flaw));
     }
 
     /// Rays end at local lights, so that only their light can be lost. `power` is per steradian.

@@ -10,28 +10,50 @@
 namespace woodcock::scene {
 namespace {
 
-light::Light buildLight(const SunDescription& sun, light::EnvironmentMap&&) {
+light::Light buildLight(const SunDescription& sun, LoadedLight&&) {
     return light::Sun(sun.direction, sun.irradiance, sun.angularDiameter, sun.visible);
 }
-light::Light buildLight(const EnvironmentDescription& environment, light::EnvironmentMap&& map) {
-    if (map.empty()) return light::Environment(environment.radiance, environment.visible);
-    return light::Environment(std::move(map), environment.radiance, worldFromLight(environment),
-                              environment.visible);
+light::Light buildLight(const EnvironmentDescription& environment, LoadedLight&& loaded) {
+    if (loaded.map.empty()) return light::Environment(environment.radiance, environment.visible);
+    return light::Environment(std::move(loaded.map), environment.radiance,
+                              worldFromLight(environment), environment.visible);
 }
-light::Light buildLight(const PointDescription& point, light::EnvironmentMap&&) {
-    return light::PointLight{point.position, point.intensity};
+light::Light buildLight(const PointDescription& point, LoadedLight&& loaded) {
+    if (!loaded.profile) return light::PointLight{point.position, point.intensity};
+    // The lamp's y, where it shines, is -z of the profile, its z is +y there.
+    const auto& [x, y, z] = point.axes().column;
+    return light::PointLight{point.position, point.intensity, std::move(loaded.profile),
+                             Affine3d{{x, z, -y}, {}}.inverse()};
 }
-light::Light buildLight(const SphereDescription& sphere, light::EnvironmentMap&&) {
+light::Light buildLight(const SpotDescription& spot, LoadedLight&&) {
+    return light::SpotLight(spot.position, spot.direction, spot.intensity, spot.cone, spot.blend);
+}
+light::Light buildLight(const SphereDescription& sphere, LoadedLight&&) {
     return light::SphereLight{sphere.position, sphere.radius, sphere.radiance, sphere.visible};
 }
 
-light::LightSet buildLights(const SceneDescription& description,
-                            std::vector<light::EnvironmentMap> maps, BuiltSurfaces& surfaces) {
+light::FlatLight flatLight(const FlatDescription& description, double sizeX, double sizeZ) {
+    light::FlatLight flat = light::FlatLight::placed(description.worldFromLight, sizeX, sizeZ);
+    flat.radiance = description.radiance;
+    flat.spread = light::Spread(description.spread);
+    flat.twoSided = description.twoSided;
+    flat.visible = description.visible;
+    return flat;
+}
+light::Light buildLight(const RectangleDescription& rectangle, LoadedLight&&) {
+    return light::RectangleLight{flatLight(rectangle, rectangle.size[0], rectangle.size[1])};
+}
+light::Light buildLight(const DiskDescription& disk, LoadedLight&&) {
+    return light::DiskLight{flatLight(disk, 2 * disk.radius, 2 * disk.radius)};
+}
+
+light::LightSet buildLights(const SceneDescription& description, std::vector<LoadedLight> loaded,
+                            BuiltSurfaces& surfaces) {
     std::vector<light::Light> lights;
-    maps.resize(description.lights.size());  // lights that were chosen after loading have no image
-    for (size_t i = 0; i < maps.size(); ++i)
+    loaded.resize(description.lights.size());  // lights that were chosen after loading have no file
+    for (size_t i = 0; i < loaded.size(); ++i)
         lights.push_back(
-            std::visit([&](const auto& light) { return buildLight(light, std::move(maps[i])); },
+            std::visit([&](const auto& light) { return buildLight(light, std::move(loaded[i])); },
                        description.lights[i].light));
     if (!surfaces.emitters.empty())
         lights.push_back(
@@ -97,7 +119,7 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
         if (notes) notes->push_back(std::move(note));
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
     return {buildMedium(description, loaded, ""),
-            buildLights(description, std::move(loaded.environmentMaps), surfaces), camera,
+            buildLights(description, std::move(loaded.lights), surfaces), camera,
             std::move(surfaces.set), std::move(surfaces.interiorMedia)};
 }
 
@@ -111,14 +133,9 @@ bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {
 }
 
 bool anythingGlows(const SceneDescription& scene) {
-    const auto isSeen = [](const LightDescription& light) {
-        if (const auto* sun = std::get_if<SunDescription>(&light.light)) return sun->visible;
-        if (const auto* sphere = std::get_if<SphereDescription>(&light.light))
-            return sphere->visible;
-        return false;
-    };
     return anyVolumeOrSurfaceGlows(scene) ||
-           std::any_of(scene.lights.begin(), scene.lights.end(), isSeen);
+           std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const LightDescription& light) { return light.glows(); });
 }
 
 bool environmentIsHidden(const SceneDescription& scene) {

@@ -20,6 +20,7 @@
 #include "woodcock/grid/field_source.h"
 #include "woodcock/mesh/faceted_mesh.h"
 #include "woodcock/render/approximations.h"
+#include "woodcock/scene/light_descriptions.h"
 
 namespace woodcock::scene {
 
@@ -98,51 +99,6 @@ struct VolumeDescription {
     std::optional<Background> background = {};
     bool repair = false;  ///< NaN, infinite and negative voxels become zero instead of an error
     bool operator==(const VolumeDescription&) const = default;
-};
-
-enum class UpAxis { Y, Z };
-
-/// Where the sun stands, in degrees: azimuth 0 is -z (y up) or +y (z up), 90 is +x.
-struct SunPlace {
-    double elevation = 0, azimuth = 0;
-    UpAxis up = UpAxis::Y;
-    bool operator==(const SunPlace&) const = default;
-
-    /// The way its light travels.
-    Vec3d direction() const;
-};
-
-struct SunDescription {
-    Vec3d direction{0, -1, 0};           ///< the way its light travels, of any length
-    Rgb irradiance{1.0f};                ///< on a surface perpendicular to it
-    double angularDiameter = 0;          ///< degrees; 0: parallel rays
-    bool visible = false;                ///< to camera rays (needs an angular diameter)
-    std::optional<SunPlace> place = {};  ///< where `direction` follows from it: so it is written
-    bool operator==(const SunDescription&) const = default;
-};
-struct EnvironmentDescription {
-    Rgb radiance{1.0f};                ///< multiplies the image where there is one
-    std::filesystem::path image = {};  ///< lat-long, scene-linear; empty: constant
-    UpAxis up = UpAxis::Y;             ///< Y: the image's centre is towards -z; Z: towards +y
-    double rotation = 0;               ///< degrees about the up axis, counter-clockwise from above
-    bool visible = true;               ///< to camera rays
-    bool operator==(const EnvironmentDescription&) const = default;
-};
-struct PointDescription {
-    Vec3d position;
-    Rgb intensity{1.0f};  ///< radiance x area: power per solid angle
-    bool operator==(const PointDescription&) const = default;
-};
-struct SphereDescription {
-    Vec3d position;
-    double radius = 1;
-    Rgb radiance{1.0f};
-    bool visible = true;  ///< to camera rays
-    bool operator==(const SphereDescription&) const = default;
-};
-struct LightDescription {
-    std::variant<SunDescription, PointDescription, SphereDescription, EnvironmentDescription> light;
-    bool operator==(const LightDescription&) const = default;
 };
 
 /// A colour, or an image times one.

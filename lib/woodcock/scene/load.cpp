@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/regular_file.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/vdb/load_field.h"
 #include "woodcock/image/read_image.h"
@@ -308,19 +309,37 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     return loaded;
 }
 
-light::EnvironmentMap loadMap(const LightDescription& light) {
-    const auto* environment = std::get_if<EnvironmentDescription>(&light.light);
-    if (!environment || environment->image.empty()) return {};
-    image::Image image = image::readImage(environment->image);
-    return {image.width, image.height, std::move(image.rgb)};
+template <class L>
+LoadedLight loadLight(const L&) {
+    return {};
+}
+LoadedLight loadLight(const EnvironmentDescription& environment) {
+    if (environment.image.empty()) return {};
+    image::Image image = image::readImage(environment.image);
+    return {.map = {image.width, image.height, std::move(image.rgb)}};
+}
+LoadedLight loadLight(const PointDescription& point) {
+    if (point.ies.empty()) return {};
+    constexpr std::uint64_t mostBytes = 1 << 24;  // 500 times as much as the largest files have
+    const std::string text = readRegularFile(point.ies, "photometric file", mostBytes);
+    return {.profile = std::make_shared<const light::IesProfile>(
+                light::IesProfile::read(text, point.ies.string()))};
 }
 
-void loadMaps(const SceneDescription& scene, LoadedScene& loaded) {
-    loaded.environmentMaps.clear();
+void loadLights(const SceneDescription& scene, LoadedScene& loaded) {
+    loaded.lights.clear();
     for (size_t i = 0; i < scene.lights.size(); ++i)
-        loaded.environmentMaps.push_back(
-            inPlace(findPlace(scene.places, fmt::format("light[{}].image", i)),
-                    [&] { return loadMap(scene.lights[i]); }));
+        std::visit(
+            [&]<class L>(const L& light) {
+                // The light's file is to blame, of which each type has one at most.
+                std::string place;
+                for (const Key<L>& key : keysOf<L>().keys)
+                    if (key.files && place.empty())
+                        place =
+                            findPlace(scene.places, fmt::format("light[{}].{}", i, key.info.name));
+                loaded.lights.push_back(inPlace(place, [&] { return loadLight(light); }));
+            },
+            scene.lights[i].light);
 }
 
 }  // namespace
@@ -330,7 +349,7 @@ LoadedScene loadScene(const SceneDescription& scene) {
     Loader loader(scene.render.storage, scene.render.lookup);
     for (size_t i = 0; i < scene.volumes.size(); ++i)
         loaded.volumes.push_back(loadVolume(scene, i, loader));
-    loadMaps(scene, loaded);
+    loadLights(scene, loaded);
     loaded.notes = loader.takeNotes();
     loaded.surfaces = loadSurfaces(scene, loaded.notes);
     loaded.textures = loadTextures(scene);
@@ -338,7 +357,7 @@ LoadedScene loadScene(const SceneDescription& scene) {
 }
 
 void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded) {
-    if (loaded.environmentMaps.size() != scene.lights.size()) loadMaps(scene, loaded);
+    if (loaded.lights.size() != scene.lights.size()) loadLights(scene, loaded);
 }
 
 }  // namespace woodcock::scene

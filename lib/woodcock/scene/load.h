@@ -8,6 +8,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/grid/field.h"
 #include "woodcock/light/environment_map.h"
+#include "woodcock/light/ies_profile.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/surface/texture.h"
@@ -40,11 +41,17 @@ struct LoadedVolume {
     UpAxis up = UpAxis::Y;  ///< Z where the file's metadata say that Blender wrote it
 };
 
+/// What a light reads from disk; most read nothing.
+struct LoadedLight {
+    light::EnvironmentMap map = {};                         ///< of an environment
+    std::shared_ptr<const light::IesProfile> profile = {};  ///< of a point
+};
+
 /// All that a scene reads from disk.
 struct LoadedScene {
-    std::vector<LoadedVolume> volumes;                   ///< one for each volume of the description
-    std::vector<light::EnvironmentMap> environmentMaps;  ///< one for each light; empty for most
-    std::vector<LoadedSurface> surfaces;                 ///< one for each surface
+    std::vector<LoadedVolume> volumes;    ///< one for each volume of the description
+    std::vector<LoadedLight> lights;      ///< one for each light
+    std::vector<LoadedSurface> surfaces;  ///< one for each surface
     std::vector<std::shared_ptr<const surface::TextureImage>>
         textures;                    ///< one for each material, or null
     std::vector<std::string> notes;  ///< what the user should know

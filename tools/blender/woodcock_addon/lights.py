@@ -27,27 +27,37 @@ def light_colour(light):
     return tint
 
 
-def area(light, placed, name, report):
-    """Sections of a surface that emits, and its material of this name."""
+def area(light, placed):
+    """A rectangle, a disk or an ellipse that shines along -z of the lamp."""
     width, depth = light.size, light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
-    if light.spread < 3.1415:
-        report("an area light's spread is left out")
-    report("an area light becomes a surface, which stands in the way of light")
     round_one = light.shape in ("DISK", "ELLIPSE")
-    # Woodcock's shapes lie in y = 0 and face +y, lights shine along -z.
+    # Woodcock's lights lie in y = 0 and shine towards +y.
     turned = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
     where = placed @ turned @ Matrix.Diagonal((width, 1, depth, 1))
     x, z = where.col[0].to_3d(), where.col[2].to_3d()
     size = x.cross(z).length * (0.25 * 3.141592653589793 if round_one else 1)
+    if abs(x.dot(z)) > 1e-6 * x.length * z.length:
+        raise Untranslatable("an area light that is sheared")
     radiance = colour(mapping.area_radiance(light_colour(light), light.energy, size))
-    material = Section("[[material]]").set("name", quoted(name))
-    material.set("type", quoted("emissive")).set("radiance", radiance)
-    surface = Section("[[surface]]").set("material", quoted(name))
+    section = Section("[[light]]").set("type", quoted("disk" if round_one else "rectangle"))
     if round_one:
-        surface.set("disk", {"radius": 0.5})
-    else:
-        surface.set("plane", {"size": [1, 1]})
-    return [material, surface.set("matrix", matrix(where)).set("camera_visible", False)]
+        section.set("radius", 0.5)
+    section.set("matrix", matrix(upright(where))).set("radiance", radiance)
+    if light.spread < 3.1415:
+        section.set("spread", light.spread * 57.29577951308232)
+    return [section.set("visible", False)]
+
+
+def upright(where):
+    """The same, with a normal that is perpendicular: a lamp's scale along it says nothing."""
+    x, z = where.col[0].to_3d(), where.col[2].to_3d()
+    normal = z.cross(x).normalized()
+    if normal.dot(where.col[1].to_3d()) < 0:
+        normal = -normal
+    made = where.copy()
+    for row in range(3):
+        made[row][1] = normal[row]
+    return made
 
 
 def light(light, placed, name, report):
@@ -55,7 +65,7 @@ def light(light, placed, name, report):
     if not getattr(light, "normalize", True):
         raise Untranslatable("a light whose power grows with its size")
     if light.type == "AREA":
-        return area(light, placed, name, report)
+        return area(light, placed)
     tint = light_colour(light)
     section = Section("[[light]]")
     if light.type == "SUN":
@@ -76,6 +86,14 @@ def light(light, placed, name, report):
         else:
             section.set("type", quoted("point")).set("position", position)
             section.set("intensity", colour(mapping.point_intensity(tint, light.energy)))
+    elif light.type == "SPOT":
+        direction = placed.to_3x3() @ Vector((0, 0, -1))
+        section.set("type", quoted("spot")).set("position", value(placed.translation))
+        section.set("direction", value(direction.normalized()))
+        section.set("intensity", colour(mapping.point_intensity(tint, light.energy)))
+        section.set("cone", light.spot_size * 57.29577951308232).set("blend", light.spot_blend)
+        if light.shadow_soft_size > 0:
+            report("a spot's radius is left out: its shadows are sharp")
     else:
         raise Untranslatable("lights of type %s" % light.type.lower())
     return [section]

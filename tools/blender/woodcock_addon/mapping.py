@@ -89,7 +89,7 @@ def sun_irradiance(version, colour, strength, angle):
 
 
 def point_intensity(colour, power):
-    """Of a point light without a radius: power per solid angle."""
+    """Of a point light without a radius, and of a spot along its axis: power per solid angle."""
     return [c * power / (4 * math.pi) for c in colour]
 
 
@@ -99,7 +99,8 @@ def sphere_radiance(colour, power, radius):
 
 
 def area_radiance(colour, power, area):
-    """Of an area light, to its front."""
+    """Of an area light, to its front. Cycles gives it 1 / (4 area) of its power, where an even
+    emitter of that power has 1 / (pi area). A spread keeps the power."""
     return [c * power / (4 * area) for c in colour]
 
 

@@ -60,14 +60,14 @@ void sun(Lab& lab) {
         const double half = degrees * pi / 360, cone = 2 * std::pow(std::sin(half / 2), 2);
         const std::string name = fmt::format("sun {} degrees wide", degrees);
         addCone(
-            lab, name, cone, 3, [&](double u, double v) { return light.sample(u, v); },
-            [&](Vec3d d) { return light.pdf(d); });
+            lab, name, cone, 3, [&](double u, double v) { return light.sample({}, u, v); },
+            [&](Vec3d d) { return light.pdf({}, d); });
         const double disc = 2 * pi * integrate(0, cone, 64, [&](double b) {
                                 return (1 - b) * light.radiance(around(axis, b, 1))[0];
                             });
         lab.add(exactCase("irradiance by its radiance, " + name, 3, disc, 3e-6));
     }
-    const light::LightSample s = light::Sun(-axis, Rgb(3.0f), 0, false).sample(0.3, 0.7);
+    const light::LightSample s = light::Sun(-axis, Rgb(3.0f), 0, false).sample({}, 0.3, 0.7);
     lab.add(
         exactCase("irradiance of parallel rays", 3, s.weight[0] * dot(s.direction, axis), 1e-6));
 }
@@ -84,7 +84,7 @@ void localLights(Lab& lab) {
             [&](Vec3d d) { return light.pdf(from, d); });
     }
     for (const double distance : {1e-3, 1.0, 1e5}) {
-        const light::LightSample s = light::PointLight{axis * distance, Rgb(5.0f)}.sample({});
+        const light::LightSample s = light::PointLight{axis * distance, Rgb(5.0f)}.sample({}, 0, 0);
         lab.add(
             exactCase(fmt::format("irradiance of a point {} away over its closed form", distance),
                       1, s.weight[0] * dot(s.direction, axis) * distance * distance / 5, 1e-6));
@@ -143,7 +143,7 @@ void environments(Lab& lab) {
         std::vector<double> shares;
         double total = 0;
         forEachPatch(image, 2, [&](double u, double v, double solidAngle) {
-            shares.push_back(light.pdf(turned.vector(towards(u, v))) * solidAngle);
+            shares.push_back(light.pdf({}, turned.vector(towards(u, v))) * solidAngle);
             total += shares.back();
         });
         // On both sides of the image's horizon, where the kink lies between rows.
@@ -162,7 +162,7 @@ void environments(Lab& lab) {
         Moments arriving;
         double worst = 0;
         for (int i = 0; i < n; ++i) {
-            const light::LightSample s = light.sample(random.uniform(), random.uniform());
+            const light::LightSample s = light.sample({}, random.uniform(), random.uniform());
             const Vec3d d = back.vector(s.direction);
             const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / pi;
             const double u = 0.5 + std::atan2(d.x, -d.z) / (2 * pi);
@@ -171,7 +171,7 @@ void environments(Lab& lab) {
             // Between two pixels, rounding decides.
             const auto clear = [](double at) { return std::abs(at - std::round(at)) > 1e-6; };
             if (clear(u * image.width) && clear(v * image.height))
-                worst = std::max(worst, std::abs(light.pdf(s.direction) / s.pdf - 1));
+                worst = std::max(worst, std::abs(light.pdf({}, s.direction) / s.pdf - 1));
         }
         lab.add(exactCase("integral of the density, " + name, 1, total, 1e-12));
         lab.add(cells.asCase("directions, " + name));

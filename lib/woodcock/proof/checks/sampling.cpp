@@ -155,7 +155,7 @@ void equiangular(Lab& lab) {
         orthonormalBasis(axis, side, other);
         const Vec3d origin{1, 2, 3};
         const render::Equiangular e(origin, axis, origin + axis * s.along + side * s.offset, s.t0,
-                                    s.t1, 1e-9);
+                                    s.t1, 1e-9, s.t0);
         const auto angle = [&](double t) { return std::atan((t - s.along) / s.offset); };
         const double start = angle(s.t0), range = angle(s.t1) - start;
         RandomStream random(lab.seed(name));

@@ -17,6 +17,7 @@ std::vector<Check> roughSurfaces();
 std::vector<Check> properties();
 std::vector<Check> sampling();
 std::vector<Check> lightSampling();
+std::vector<Check> lamps();
 std::vector<Check> extremes();
 std::vector<Check> emission();
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "woodcock/medium/phase.h"
-#include "woodcock/render/local_light.h"
 #include "woodcock/render/stages/roulette.h"
 
 namespace woodcock::render {
@@ -22,34 +21,32 @@ void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
     const double phase = medium::henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
-    if (const auto lightPosition =
-            localLightPosition(lights.lights()[static_cast<std::size_t>(chosen->light)]))
-        weight *= share(*lightPosition);
+    weight *= share(lights[chosen->light], lights.traits(chosen->light).position);
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
                      s.weight * static_cast<float>(weight), true))
         batch.shadows.back().emitter = s.emitter;
 }
 
 template <int N, bool Surfaces>
-void addSphereHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
-                   const FlightShare* share) {
-    for (int light : traced.scene.lights.local()) {
-        const auto* sphere = std::get_if<light::SphereLight>(
-            &traced.scene.lights.lights()[static_cast<std::size_t>(light)]);
-        if (!sphere || (!share && !sphere->visible)) continue;
+void addLightHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                  const FlightShare* share) {
+    const light::LightSet& lights = traced.scene.lights;
+    for (int light : lights.meetable()) {
+        const light::LightTraits& traits = lights.traits(light);
+        if (!share && !traits.visible) continue;
         const PathState<N, Surfaces>& p = batch.paths[i];
-        const double t = sphere->hit(p.origin, p.direction);
-        if (!std::isfinite(t)) continue;
+        const light::LightHit hit = lights[light].meet(p.origin, p.direction);
+        if (!std::isfinite(hit.distance)) continue;
         if (!share) p.result->film.glow = 1;
         double weight = 1;
         if (share)
             weight = hitWeight(p, [&] { return batch.choice.pdf(light, p.from, p.direction); }) *
-                     (*share)(sphere->position);
+                     (*share)(lights[light], traits.position);
         bool lightSampled = false;
         if constexpr (Surfaces)
             lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;
-        addShadowRay(traced, batch, i, p.origin, p.direction, t,
-                     sphere->radiance * static_cast<float>(weight), lightSampled);
+        addShadowRay(traced, batch, i, p.origin, p.direction, hit.distance,
+                     hit.radiance * static_cast<float>(weight), lightSampled);
     }
 }
 
@@ -82,8 +79,8 @@ bool addShadowRay(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
 #define INSTANTIATE(N, SURFACES)                                                                   \
     template void addNextEvent(const TracedScene&, Batch<N, SURFACES>&, std::size_t,               \
                                const EventNumbers&, const FlightShare&);                           \
-    template void addSphereHits(const TracedScene&, Batch<N, SURFACES>&, std::size_t,              \
-                                const FlightShare*);                                               \
+    template void addLightHits(const TracedScene&, Batch<N, SURFACES>&, std::size_t,               \
+                               const FlightShare*);                                                \
     template bool addShadowRay(const TracedScene&, Batch<N, SURFACES>&, std::size_t, Vec3d, Vec3d, \
                                double, Rgb, bool);
 INSTANTIATE(1, false)

@@ -12,11 +12,11 @@ template <int N, bool Surfaces>
 void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
                   const EventNumbers& u, const FlightShare& share);
 
-/// Adds sphere lights that the new direction hits, with the weight of multiple importance sampling
-/// that next-event estimation leaves. Where `share` is null, the camera sees them.
+/// Adds lights that the new direction meets, with the weight of multiple importance sampling that
+/// next-event estimation leaves. Where `share` is null, the camera sees them.
 template <int N, bool Surfaces>
-void addSphereHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
-                   const FlightShare* share);
+void addLightHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                  const FlightShare* share);
 
 /// Adds a shadow ray that brings `light` times the path's throughput; false: that is zero, and none
 /// was added. `mayPass`: transparent shadows apply to it.

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "woodcock/medium/phase.h"
-#include "woodcock/render/local_light.h"
 #include "woodcock/render/stages/light.h"
 
 namespace woodcock::render {
@@ -67,9 +66,7 @@ void addEquiangular(const TracedScene& traced, Batch<N, Surfaces>& batch, std::s
     const double scaled = pick * static_cast<double>(localLights.size());
     const int light =
         localLights[std::min(static_cast<std::size_t>(scaled), localLights.size() - 1)];
-    const auto lightPosition = localLightPosition(lights.lights()[static_cast<std::size_t>(light)]);
-    if (!lightPosition) return;
-    const Equiangular e = flight.equiangular(*lightPosition);
+    const Equiangular e = flight.equiangular(lights[light], *lights.traits(light).position);
     const double t = e.sample(u), pdf = e.pdf(t);
     if (!(pdf > 0)) return;
     const light::ScatterPoint at{p.origin + p.direction * t, p.direction, 0};

@@ -31,8 +31,7 @@ double enterMediumSet(const TracedScene& traced, PathState<N, Surfaces>& p) {
 template <int N, bool Surfaces>
 void escape(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, Surfaces>& p) {
     p.alive = false;
-    for (std::size_t i = 0; i < traced.scene.lights.lights().size(); ++i) {
-        const int light = static_cast<int>(i);
+    for (int light : traced.scene.lights.distant()) {
         const Rgb radiance = traced.scene.lights.distantRadiance(light, p.direction, seen(p));
         if (!(radiance.maximum() > 0)) continue;
         const Rgb arrived = toRgb(p.throughput) * radiance * tint(p) *
@@ -74,7 +73,7 @@ void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i
     p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;
     p.flight = u.flight;
     ++p.scatterings;
-    addSphereHits(traced, batch, i, &share);
+    addLightHits(traced, batch, i, &share);
     if (!surviveOrder(p, endless)) return;
     p.equiangular = u.equiangular, p.localLightPick = u.pick;
     if (traced.media.octavesEnd()) p.alive = false;

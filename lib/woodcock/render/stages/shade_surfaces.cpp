@@ -82,12 +82,11 @@ void lightSurface(const TracedScene& traced, Batch<N, true>& batch, std::size_t 
 /// that next-event estimation leaves out.
 template <int N>
 void addUnoccluded(const TracedScene& traced, Path<N>& p) {
-    for (const light::Light& light : traced.scene.lights.lights()) {
-        const auto* environment = std::get_if<light::Environment>(&light);
-        if (environment && environment->constant())
+    const light::LightSet& lights = traced.scene.lights;
+    for (int light : lights.distant())
+        if (!lights.traits(light).sampled)
             p.result->catcher.unlit +=
-                (toRgb(p.throughput) * tint(p) * environment->radiance(p.direction)).mean();
-    }
+                (toRgb(p.throughput) * tint(p) * lights[light].distantRadiance(p.direction)).mean();
 }
 
 SurfaceState::LightSampled lightSampledAfter(SurfaceState::LightSampled before,
@@ -133,7 +132,7 @@ void bounce(const TracedScene& traced, Batch<N, true>& batch, std::size_t i,
     ++s.bounces;
     if (caught) addUnoccluded(traced, p);
     const FlightShare wholly;
-    addSphereHits(traced, batch, i, &wholly);
+    addLightHits(traced, batch, i, &wholly);
     surviveBounce(p, brightness(p));
 }
 

@@ -35,7 +35,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
                                           : traced.surfaces->cameraPosition(p.origin),
                                       p.direction));
     if (options.depthLayers || options.featureLayers) sampleCameraLayers(traced, p);
-    addSphereHits(traced, batch, i, nullptr);
+    addLightHits(traced, batch, i, nullptr);
     if (traced.needs.emission) p.equiangular = u[3];
     if (traced.needs.localLights) {
         p.equiangular = u[3];

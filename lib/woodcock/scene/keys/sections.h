@@ -31,7 +31,13 @@ const KeyTable<SunDescription>& keysOf();
 template <>
 const KeyTable<PointDescription>& keysOf();
 template <>
+const KeyTable<SpotDescription>& keysOf();
+template <>
 const KeyTable<SphereDescription>& keysOf();
+template <>
+const KeyTable<RectangleDescription>& keysOf();
+template <>
+const KeyTable<DiskDescription>& keysOf();
 template <>
 const KeyTable<EnvironmentDescription>& keysOf();
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "woodcock/base/spectrum.h"
+#include "woodcock/base/vec.h"
+#include "woodcock/medium/phase.h"
+
+namespace woodcock::light {
+
+/// Light that arrives at a point from one direction, drawn by a light's own sampling.
+struct LightSample {
+    Vec3d direction;  ///< from the point towards the light, unit length
+    double distance = std::numeric_limits<double>::infinity();
+    Rgb weight;      ///< radiance / pdf; of a delta light, the irradiance perpendicular to the
+                     ///< direction
+    double pdf = 0;  ///< per steradian; 0: a delta light, which no other sampling can find
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t emitter = none;  ///< of a MeshLight: the triangle
+};
+
+/// Where a ray meets a light, and the radiance that it brings back along the ray.
+struct LightHit {
+    double distance = std::numeric_limits<double>::infinity();  ///< infinity: it misses
+    Rgb radiance;
+};
+
+/// A point that scatters light, as light selection needs it.
+struct ScatterPoint {
+    Vec3d position;
+    Vec3d forward;  ///< unit: the way the path came along
+    double g;
+
+    /// The phase function's density, per steradian, towards a unit vector.
+    double phaseTowards(Vec3d towards) const {
+        return medium::henyeyGreenstein(dot(forward, towards), g);
+    }
+};
+
+/// What the path tracer has to know of a light before it asks for samples.
+struct LightTraits {
+    /// "a point light": for messages.
+    const char* name = "a light";
+    /// World position of a local light; equiangular sampling aims at it. Absent: the light is
+    /// infinitely far away, or is the scene's surfaces.
+    std::optional<Vec3d> position = {};
+    /// Next-event estimation samples it. False: the phase function samples it perfectly by itself.
+    bool sampled = true;
+    /// Rays that escape meet its radiance: an environment, the disc of a sun.
+    bool distant = false;
+    bool visible = false;  ///< to camera rays, where rays can meet it
+    /// Of a local light: the most power per solid angle, largest channel.
+    double intensity = 0;
+};
+
+/// Roughly the radiance that a local light makes in a scattering medium of such bounds: by the
+/// irradiance at its centre, from at least a quarter of its diagonal away.
+inline double radianceOfLocalLight(Vec3d position, double intensity, const Box3d& bounds) {
+    const double size = length(bounds.size()) / 4;
+    const double d = std::max(size, length(bounds.centre() - position));
+    return d > 0 ? intensity / (d * d) / (4 * pi) : 0;
+}
+
+}  // namespace woodcock::light
