@@ -53,7 +53,11 @@ for scene in "${scenes[@]}"; do
         "$woodcock" render "$ladder/$scene.toml" -o "$out/$scene.$seed.exr" --seed $seed -q \
             "${spp[@]}"
         "$woodcock" cycles "$ladder/$scene.toml" -o "$out/$scene.cycles.$seed.exr" --seed $seed \
-            "${cycles[@]}" "${spp[@]}" 2>"$out/$scene.log" || { cat "$out/$scene.log" >&2; exit 1; }
+            "${cycles[@]}" "${spp[@]}" 2>"$out/$scene.log" || {
+            grep -q 'is the first that has' "$out/$scene.log" || { cat "$out/$scene.log" >&2; exit 1; }
+            printf '%-12s %s\n' "$scene" 'left out: this Blender has no such phase function'
+            continue 2
+        }
     done
     row=$("$build/tests/mean_ratio" "$out/$scene".{1,2}.exr "$out/$scene".cycles.{1,2}.exr) || failed=1
     how=$(sed -n 's/^info: Blender \(.*\): [0-9]* samples in \(.*\)$/\1 \2/p' "$out/$scene.log")

@@ -126,6 +126,7 @@ TEST(FlatLight, IsPlacedLikeTheShapes) {
 /// Beyond every lit place the importance is 0, and it is no less where light arrives.
 TEST(FlatLight, ImportanceNeglectsNothing) {
     RandomStream random(6);
+    const medium::PhaseFunction narrow = medium::HenyeyGreenstein(0.9);
     for (const double spread : {180.0, 60.0, 5.0})
         for (const bool twoSided : {false, true}) {
             FlatLight flat = facingUp();
@@ -135,7 +136,7 @@ TEST(FlatLight, ImportanceNeglectsNothing) {
             for (int i = 0; i < 3000; ++i) {
                 const auto r = [&] { return 8 * random.uniform() - 4; };
                 const Vec3d from{r(), r(), r() * std::pow(0.1, i % 5)};
-                const ScatterPoint at{from, normalize(Vec3d{r(), r(), r()}), 0.9};
+                const ScatterPoint at{from, normalize(Vec3d{r(), r(), r()}), &narrow};
                 const double u = random.uniform(), v = random.uniform();
                 const bool litByRectangle = rectangle.sample(from, u, v).weight[0] > 0;
                 const bool litByDisk = disk.sample(from, u, v).weight[0] > 0;

@@ -39,7 +39,8 @@ TEST(LightSet, PickProbabilitiesSumToOneAndNeglectNoLight) {
         const auto r = [&] { return 2 * random.uniform() - 1; };
         Vec3d position{20 * r(), 20 * r(), 20 * r()};
         if (i == 0) position = {0, 5, 0};  // inside the sphere
-        lights.pickProbabilities({position, normalize(Vec3d{r(), r(), r()}), 0.999 * r()}, p);
+        const medium::PhaseFunction any = medium::HenyeyGreenstein(0.999 * r());
+        lights.pickProbabilities({position, normalize(Vec3d{r(), r(), r()}), &any}, p);
         EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1, 1e-6);
         for (float v : p) EXPECT_GT(v, 0);
     }
@@ -48,20 +49,23 @@ TEST(LightSet, PickProbabilitiesSumToOneAndNeglectNoLight) {
 TEST(LightSet, PicksFollowWhatEachLightWouldSend) {
     const LightSet lights({PointLight{{0, 0, 2}, Rgb(4.0f)}, PointLight{{0, 3, 0}, Rgb(27.0f)}});
     std::vector<float> p(2);
-    lights.pickProbabilities({{}, {1, 0, 0}, 0.7}, p);  // 4 / 2^2 and 27 / 3^2, at the same angle
+    const medium::PhaseFunction narrow = medium::HenyeyGreenstein(0.7);
+    const medium::PhaseFunction wide = medium::HenyeyGreenstein(0.5);
+    lights.pickProbabilities({{}, {1, 0, 0}, &narrow},
+                             p);  // 4 / 2^2 and 27 / 3^2, at the same angle
     EXPECT_NEAR(p[0], 0.25, 1e-6);
     const auto phase = [](double cosine) { return std::pow(1.25 - cosine, -1.5); };  // g = 0.5
-    lights.pickProbabilities({{}, {0, 0, 1}, 0.5}, p);
+    lights.pickProbabilities({{}, {0, 0, 1}, &wide}, p);
     EXPECT_NEAR(p[0] / p[1], phase(1) / phase(0) / 3, 1e-5);
 }
 
 TEST(LightSet, DarkLightsAreNotPickedAndAllDarkIsZero) {
     const LightSet lights({PointLight{{0, 0, 2}, Rgb(0.0f)}, PointLight{{0, 3, 0}, Rgb(1.0f)}});
     std::vector<float> p(2);
-    lights.pickProbabilities({{}, {0, 0, 1}, 0}, p);
+    lights.pickProbabilities({{}, {0, 0, 1}}, p);
     EXPECT_EQ(p, (std::vector<float>{0, 1}));
     LightSet({PointLight{{0, 0, 2}, Rgb(0.0f)}, Sun({1, 0, 0}, Rgb(0.0f), 1, true)})
-        .pickProbabilities({{}, {0, 0, 1}, 0}, p);
+        .pickProbabilities({{}, {0, 0, 1}}, p);
     EXPECT_EQ(p, (std::vector<float>{0, 0}));
 }
 

@@ -332,10 +332,11 @@ TEST(LightSet, HoldsEmissiveSurfaces) {
               none.typicalRadiance({{0, 0, 0}, {1, 1, 1}}));
 
     std::vector<float> p(2);
-    lights.pickProbabilities({from, {0, 0, 1}, 0.999}, p);
+    const medium::PhaseFunction narrow = medium::HenyeyGreenstein(0.999);
+    lights.pickProbabilities({from, {0, 0, 1}, &narrow}, p);
     EXPECT_GT(p[1], 0);
     EXPECT_NEAR(p[0] + p[1], 1, 1e-6);
-    lights.pickProbabilities({{0.4, 0.3, -1}, {0, 0, 1}, 0}, p);  // behind it
+    lights.pickProbabilities({{0.4, 0.3, -1}, {0, 0, 1}}, p);  // behind it
     EXPECT_EQ(p, (std::vector<float>{1, 0}));
 }
 

@@ -143,9 +143,7 @@ TEST(MediumPart, FarFromItsGridIsBackground) {
 TEST(MediumPart, RefusesWhatHasNoMeaning) {
     MediumPart::Description d;
     d.box = {{0, 0, 0}, {1, 1, 1}};
-    d.g = 1;
-    expectError(ErrorKind::Input, "g is 1", [&] { MediumPart{d}; });
-    d.g = 0, d.worldFromIndex.column[1] = {};
+    d.worldFromIndex.column[1] = {};
     expectError(ErrorKind::Input, "singular", [&] { MediumPart{d}; });
     d.worldFromIndex = {}, d.scattering = {1, -1, 1};
     expectError(ErrorKind::Input, "sigma_s is -1", [&] { MediumPart{d}; });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/medium/media.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/expect_mean.h"
 #include "woodcock/medium/octaves.h"
 #include "woodcock/medium/tracking.h"
@@ -44,7 +45,7 @@ TEST(SimilarMedium, HasLessScatteringAndTheSameAbsorption) {
             const Vec3d p = ray.origin + ray.direction * (ray.tMax / 2);
             Rgb t, s;
             for (const MediumPart& part : similar.parts) {
-                EXPECT_EQ(part.g(), 0);
+                EXPECT_EQ(part.phase().value(1), PhaseFunction().value(1));
                 t += part.sigmaT(p), s += part.sigmaS(p);
             }
             const Vec3d truthT = similarSigmaT(plain, p), truthS = similarSigmaS(plain, p);
@@ -54,6 +55,23 @@ TEST(SimilarMedium, HasLessScatteringAndTheSameAbsorption) {
             }
         }
     }
+}
+
+/// Of any phase function, its mean cosine counts; of a table, that of each colour.
+TEST(SimilarMedium, ReducesByTheMeanCosineOfAnyPhaseFunction) {
+    MediumPart::Description d;
+    d.box = {{0, 0, 0}, {1, 1, 1}};
+    d.scattering = Rgb(2.0f);
+    d.phase = MieDroplets(10);
+    const auto reduced = [&] { return similarMedium({{MediumPart(d)}}).parts[0]; };
+    EXPECT_NEAR(reduced().scattering()[0], 2 * (1 - MieDroplets(10).meanCosine()), 1e-6);
+    d.phase = PhaseTable({{-1, 1}, {{1, 1}, {0, 1}, {1, 0}}}, true);  // mean cosines 0, 1/3, -1/3
+    EXPECT_NEAR(reduced().scattering()[0], 2, 1e-6);
+    EXPECT_NEAR(reduced().scattering()[1], 4 / 3.0, 1e-6);
+    EXPECT_NEAR(reduced().scattering()[2], 8 / 3.0, 1e-6);
+    d.albedo = std::make_shared<grid::Field>(
+        mixedGrid(5, 3, {0.5f, 0.25f, 1}).field(grid::Storage::Float));
+    expectError(ErrorKind::Usage, "similarity needs one loss for all colours", reduced);
 }
 
 /// Both walks through it, against the midpoint rule in fine steps.

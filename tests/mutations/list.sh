@@ -79,9 +79,9 @@ defect "every scattering is the first volume's" 'Distance.*' "" \
     'q.t = process.t(), q.part = process.index();' 'q.t = process.t(), q.part = 0;'
 
 defect "phase function samples the wrong side" 'Phase.*' "phase function" \
-    lib/woodcock/medium/phase.h \
-    'const double cosine = below < above ? 1 - below : above - 1;' \
-    'const double cosine = below < above ? below - 1 : 1 - above;'
+    lib/woodcock/medium/phase/turn.h \
+    'return below < above ? 1 - below : above - 1;' \
+    'return below < above ? below - 1 : 1 - above;'
 
 defect "similar media absorb less under an albedo grid" 'SimilarMedium.*' "" \
     lib/woodcock/medium/similar_medium.cpp \
@@ -124,14 +124,13 @@ defect "image sampled evenly in angle" 'EnvironmentMap.*' "environment images" \
 
 defect "phase sign flipped for lights" 'Slab.*:Furnace.*:PointLight.*' "table of slabs" \
     $light \
-    'henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g)' \
-    'henyeyGreenstein(dot(p.from.forward, s.direction), -p.from.g)'
+    'phaseDensity(p, dot(p.from.forward, s.direction), s.weight)' \
+    'phaseDensity(p, -dot(p.from.forward, s.direction), s.weight)'
 
 defect "all octaves come through the first one's medium" 'Octaves.*' "" \
     lib/woodcock/render/media_table.cpp \
-    'return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves_),
-            medium::octave::phase(i)};' \
-    'return {1, medium::octave::total(octaves_), medium::octave::phase(i)};'
+    'return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves_)};' \
+    'return {1, medium::octave::total(octaves_)};'
 
 defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
     $media \

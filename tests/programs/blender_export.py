@@ -77,6 +77,9 @@ if hasattr(bpy.types, "ShaderNodeVolumeCoefficients"):  # from 4.5 on
     mist.filepath = smoke.filepath
     mist.render.clipping = 0
     made, shader = material("mist", "ShaderNodeVolumeCoefficients", "Volume", Anisotropy=-0.3)
+    shader.phase = "DRAINE"
+    shader.inputs["Alpha"].default_value = 3  # a socket that is there from now on
+    print("MIST")
     grid = made.node_tree.nodes.new("ShaderNodeAttribute")
     grid.attribute_name = "density"
     for name, amount in (("Scatter", (4, 2, 1)), ("Absorption", (0.5, 1, 2)),

@@ -14,6 +14,16 @@ class Mapping(unittest.TestCase):
         for a, b in zip(found, expected, strict=True):
             self.assertAlmostEqual(a, b, places=12)
 
+    def test_phase_functions(self):
+        self.assertEqual(mapping.phase_value("Anisotropy", 1.0, -0.999, 0.999), 0.999)
+        for _, sockets in mapping.PHASES.values():
+            for socket, (key, lower, upper) in sockets.items():
+                inside = (lower + min(upper, 60)) / 2
+                self.assertEqual(mapping.phase_value(socket, inside, lower, upper), inside)
+        with self.assertRaises(ValueError) as refused:
+            mapping.phase_value("Diameter", 0.5, 1.5, 50.0)
+        self.assertIn("Diameter 0.5", str(refused.exception))
+
     def test_principled_volume(self):
         colour = (0.5, 0.7, 0.9)
         for absorption, sigma_a in (((0, 0, 0), (1, 0.6, 0.2)),

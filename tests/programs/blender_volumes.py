@@ -36,6 +36,7 @@ class Computing:
     def __init__(self):
         self.sigma_s = self.sigma_a = (0,) * 3
         self.g = []
+        self.phases = []
         self.kinds = []
 
     def multiply_add(self, a, b, c):
@@ -61,13 +62,17 @@ class Computing:
         self.sigma_a = [a + b for a, b in zip(self.sigma_a, sigma_a)]
         if "Anisotropy" in inputs:
             self.g.append(inputs["Anisotropy"])
+        if kind != "ShaderNodeVolumeAbsorption":
+            self.phases.append((settings, {key: inputs[key] for key in inputs if key in (
+                "Anisotropy", "Alpha", "Diameter", "IOR", "Backscatter")}))
         return types.SimpleNamespace(outputs=[kind])
 
 
 def described(sigma_s, sigma_a):
     """As Woodcock writes it."""
     density = max(s + a for s, a in zip(sigma_s, sigma_a))
-    return {"sigma_s": sigma_s, "sigma_a": sigma_a, "density": density, "g": 0.4,
+    return {"sigma_s": sigma_s, "sigma_a": sigma_a, "density": density,
+            "phase": {"type": "", "inputs": {"Anisotropy": 0.4}},
             "scatter_colour": [s / density for s in sigma_s],
             "absorb_colour": [1 - a / density for a in sigma_a],
             "scatters": max(sigma_s) > 0, "absorbs": max(sigma_a) > 0}
@@ -112,6 +117,21 @@ class Media(unittest.TestCase):
             cycles_volumes.medium(nodes, description, Value(3.0), Value(albedo))
             self.near(nodes.sigma_s, (1.5, 1.05, 5.4))
             self.near(nodes.sigma_a, (4.5, 4.95, 0.6))
+
+    def test_other_phase_functions_come_with_4_3(self):
+        mie = dict(described([1, 1, 1], [0.5, 0, 0]),
+                   phase={"type": "MIE", "inputs": {"Diameter": 20.0}})
+        for _ in self.both_versions():
+            bpy.app.version = (4, 3, 0)
+            nodes = Computing()
+            cycles_volumes.medium(nodes, mie)
+            self.assertEqual(nodes.phases, [({"phase": "MIE"}, {"Diameter": 20.0})])
+            bpy.app.version = (4, 2, 9)
+            with self.assertRaises(Refused) as refused:
+                cycles_volumes.medium(Computing(), mie)
+            self.assertIn("MIE", str(refused.exception))
+            cycles_volumes.medium(Computing(), described([1, 1, 1], [0, 0, 0]))
+            bpy.app.version = (5, 0, 0)
 
     def test_nothing_is_no_shader(self):
         for _ in self.both_versions():

@@ -6,6 +6,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_estimate.h"
 #include "woodcock/proof/oracles/closed_forms.h"
+#include "woodcock/proof/oracles/phase_functions.h"
 #include "woodcock/proof/oracles/quadrature.h"
 #include "woodcock/proof/support/render_scene.h"
 
@@ -86,6 +87,34 @@ TEST(Octaves, OfASlabInTheSunHaveAForm) {
             expectAgrees(seen(-3, 1), {below, below / 2, 0}, 1e-2);
         }
     }
+}
+
+/// The same of Draine's function: octave i is mixed with isotropic scattering, c^i of it is left.
+TEST(Octaves, OfOtherPhaseFunctionsAreMixedWithIsotropicScattering) {
+    constexpr double mu = 0.6;
+    constexpr int octaves = 3;
+    double above = 0, below = 0, amount = 1;
+    const auto phase = [&](double cosine) {
+        return amount * oracle::draine(cosine, 0.6, 5) + (1 - amount) / (4 * pi);
+    };
+    for (int i = 0; i < octaves; ++i, amount /= 2) {
+        const double k = amount / mu, p = albedo * irradiance * amount;
+        above += p * phase(-mu) * -std::expm1(-depth * (1 + k)) / (1 + k);
+        below += p * phase(mu) * std::exp(-depth) * std::expm1(depth * (1 - k)) / (1 - k);
+    }
+    const auto seen = [&](double y, double towards) {
+        return mean(sceneFrom(fmt::format("[[volume]]\n"
+                                          "box = {{ min = [-1e6, 0, -1e6], max = [1e6, 1, 1e6] }}\n"
+                                          "scale = {}\nalbedo = {}\n"
+                                          "phase = {{ type = \"draine\", g = 0.6, alpha = 5 }}\n"
+                                          "[[light]]\ntype = \"sun\"\ndirection = [0.8, -{}, 0]\n"
+                                          "irradiance = [{}, 1, 0]\n",
+                                          depth, albedo, mu, irradiance) +
+                              pencilCamera({0, y, 0}, {0, towards, 0})),
+                    octaves, {}, 64, 1);
+    };
+    expectAgrees(seen(3, -1), {above, above / 2, 0}, 1e-2);
+    expectAgrees(seen(-3, 1), {below, below / 2, 0}, 1e-2);
 }
 
 /// What no light sampling finds: the flight after the event does.

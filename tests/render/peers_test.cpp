@@ -156,7 +156,8 @@ TEST_F(Peers, OverlapInRedAndBlueByBruteForce) {
         for (const MediumPart& part : scene.medium.parts) {
             const double scattering = part.scattering()[c];
             physics.volumes.push_back({&density, part.description().worldFromIndex,
-                                       part.absorption()[c], scattering, part.g(), scattering});
+                                       part.absorption()[c], scattering, part.phase().meanCosine(),
+                                       scattering});
         }
         BruteScene averaged = physics;
         for (std::size_t i = 0; i < averaged.volumes.size(); ++i)

@@ -117,7 +117,7 @@ TEST(BuildSurfaces, MediaAndPriorities) {
     ASSERT_EQ(inside.parts.size(), 2u);
     EXPECT_EQ(inside.parts[0].scattering(), Rgb(7));
     EXPECT_EQ(inside.parts[1].absorption(), Rgb(1, 2, 3));
-    EXPECT_EQ(inside.parts[1].g(), 0.5);
+    EXPECT_EQ(inside.parts[1].phase().meanCosine(), 0.5);
     // All of the sphere, which is stretched.
     const Box3d box = inside.parts[1].worldBounds();
     for (const double y : {-5.0, 5.0}) EXPECT_TRUE(box.contains({0, y, 0}));

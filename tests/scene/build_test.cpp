@@ -69,7 +69,7 @@ TEST(BuildScene, DensityWithScaleAndAlbedo) {
     ASSERT_EQ(b.scene.medium.parts.size(), 1u);
     expectNear(sigmaT(b.scene.medium, inside), Rgb(3, 6, 12));
     expectNear(sigmaS(b.scene.medium, inside), Rgb(1.5f, 6, 3));
-    EXPECT_EQ(b.scene.medium.parts[0].g(), 0.5);
+    EXPECT_EQ(b.scene.medium.parts[0].phase().meanCosine(), 0.5);
     EXPECT_EQ(sigmaT(b.scene.medium, {-5, 0, 0}), Rgb(0));
 }
 

@@ -117,7 +117,7 @@ TEST(ParseSurface, MediumByCoefficients) {
               (InteriorDescription{Rgb(1), Rgb(3), 0}));
     EXPECT_EQ(
         surface("sphere = {}\nmaterial = \"glass\"\nmedium = { emission = [1, 2, 3] }").interior,
-        (InteriorDescription{Rgb(0), Rgb(0), 0, Rgb(1, 2, 3)}));
+        (InteriorDescription{Rgb(0), Rgb(0), 0, {}, Rgb(1, 2, 3)}));
 }
 
 TEST(ParseSurface, MediumByColourAtADistance) {

@@ -46,7 +46,7 @@ void addSurfaces(SceneDescription& scene) {
     ball.name = "ball \"1\"";
     ball.shape = SphereShape{{1.0 / 3, -1e7, 0}, 1.0 / 7};
     ball.material = "glass";
-    ball.interior = {Rgb(0.1f, 1e-12f, 3e12f), Rgb(0.7f), 0.1f, Rgb(0.1f, 0, 1.0f / 3)};
+    ball.interior = {Rgb(0.1f, 1e-12f, 3e12f), Rgb(0.7f), 0.1f, {}, Rgb(0.1f, 0, 1.0f / 3)};
     ball.priority = -5;
     SurfaceDescription mesh;
     mesh.shape = MeshShape{"dir/a $5.obj", {}};

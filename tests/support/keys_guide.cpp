@@ -59,6 +59,7 @@ std::vector<KeyList> allKeys() {
                 CameraDescription, RenderDescription, OutputDescription>();
     for (KeyList& list : listsOfKinds(MaterialDescription().material)) all.push_back(list);
     for (KeyList& list : listsOfKinds(LightDescription().light)) all.push_back(list);
+    for (KeyList& list : listsOfKinds(PhaseDescription())) all.push_back(list);
     return all;
 }
 

@@ -48,6 +48,29 @@ TEST(CyclesScene, ScatteringsBecomeBounces) {
     EXPECT_EQ(none["absorb_colour"], (std::vector<float>{0, 0, 0}));
 }
 
+/// Whose sockets are those of Blender's nodes that scatter.
+TEST(CyclesScene, PhaseFunctionsBecomeThoseOfCycles) {
+    const auto phase = [](const std::string& keys) {
+        std::string fog = fogScene;
+        fog.replace(fog.find("g = 0.3"), 7, keys);
+        return written(fog)["volumes"][0]["phase"];
+    };
+    const auto made = [](const char* text) { return nlohmann::json::parse(text); };
+    EXPECT_EQ(phase("g = 0.25"), made(R"({"type": "", "inputs": {"Anisotropy": 0.25}})"));
+    EXPECT_EQ(phase("phase = { type = \"isotropic\" }"),
+              made(R"({"type": "", "inputs": {"Anisotropy": 0.0}})"));
+    EXPECT_EQ(phase("phase = { type = \"henyey_greenstein\", g = 0.5 }"),
+              made(R"({"type": "", "inputs": {"Anisotropy": 0.5}})"));
+    EXPECT_EQ(phase("phase = { type = \"rayleigh\" }"),
+              made(R"({"type": "RAYLEIGH", "inputs": {}})"));
+    EXPECT_EQ(phase("phase = { type = \"draine\", g = 0.5, alpha = 3 }"),
+              made(R"({"type": "DRAINE", "inputs": {"Anisotropy": 0.5, "Alpha": 3.0}})"));
+    EXPECT_EQ(phase("phase = { type = \"mie\", diameter = 7 }"),
+              made(R"({"type": "MIE", "inputs": {"Diameter": 7.0}})"));
+    EXPECT_EQ(phase("phase = { type = \"fournier_forand\", ior = 1.1, backscatter = 0.02 }"),
+              made(R"({"type": "FOURNIER_FORAND", "inputs": {"IOR": 1.1, "Backscatter": 0.02}})"));
+}
+
 TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
     const std::string fog = fogScene;
     const auto refused = [&](const std::string& text, const std::vector<std::string>& said) {
@@ -57,6 +80,9 @@ TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
     std::string forward = fog;
     forward.replace(forward.find("g = 0.3"), 7, "g = 0.9999");
     refused(forward, {"test.toml:5:", "Cycles cannot express", "0.9999", "0.999"});
+    forward.replace(forward.find("g = 0.9999"), 10,
+                    "phase = { type = \"two_lobe\", g = 0.5, g2 = -0.5, mix = 0.5 }");
+    refused(forward, {"test.toml:5:", "Cycles cannot express", "type two_lobe"});
     refused(
         fog + "[[light]]\ntype = \"sun\"\nelevation = 40\nangular_diameter = 5\nvisible = true\n",
         {"test.toml:19:", "a sun that the camera sees"});

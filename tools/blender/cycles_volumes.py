@@ -7,6 +7,18 @@ from cycles_nodes import Nodes, Refused
 from mapping import voxel_offset
 
 
+def phase_of(description):
+    """Settings and sockets of a node that scatters, for its phase function."""
+    phase = description["phase"]
+    inputs = {name.replace(" ", "_"): value for name, value in phase["inputs"].items()}
+    if not phase["type"]:
+        return {}, inputs
+    if bpy.app.version < (4, 3, 0):
+        raise Refused("Blender %s has no phase function %s; 4.3 is the first that has others than "
+                      "Henyey-Greenstein" % (bpy.app.version_string, phase["type"]))
+    return {"phase": phase["type"]}, inputs
+
+
 def coefficients(nodes, description, density=None, albedo=None):
     """Sockets of shaders that scatter and absorb, by Volume Coefficients: sigma_s and sigma_a as
     they are. The sockets `density` (a number, or a colour) and `albedo` multiply them."""
@@ -22,9 +34,9 @@ def coefficients(nodes, description, density=None, albedo=None):
     if density is not None:
         sigma_s = nodes.multiply_add(density, sigma_s, (0, 0, 0))
         sigma_a = nodes.multiply_add(density, sigma_a, (0, 0, 0))
-    return [nodes.add("ShaderNodeVolumeCoefficients", Scatter_Coefficients=sigma_s,
-                      Absorption_Coefficients=sigma_a,
-                      Anisotropy=description["g"]).outputs[0]]
+    settings, inputs = phase_of(description)
+    return [nodes.add("ShaderNodeVolumeCoefficients", settings, Scatter_Coefficients=sigma_s,
+                      Absorption_Coefficients=sigma_a, **inputs).outputs[0]]
 
 
 def scatter_absorption(nodes, description, density=None, albedo=None):
@@ -46,8 +58,9 @@ def scatter_absorption(nodes, description, density=None, albedo=None):
             [a - s for a, s in zip(description["absorb_colour"], description["scatter_colour"])])
     parts = []
     if description["scatters"]:
-        parts.append(nodes.add("ShaderNodeVolumeScatter", Color=scatter_colour, Density=amount,
-                               Anisotropy=description["g"]).outputs[0])
+        settings, inputs = phase_of(description)
+        parts.append(nodes.add("ShaderNodeVolumeScatter", settings, Color=scatter_colour,
+                               Density=amount, **inputs).outputs[0])
     if description["absorbs"]:
         parts.append(nodes.add("ShaderNodeVolumeAbsorption", Color=absorb_colour,
                                Density=amount).outputs[0])

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/cycles/mapping.h"
 #include "woodcock/base/error.h"
+#include "woodcock/scene/keys/sections.h"
 
 namespace woodcock::tool {
 
@@ -29,10 +31,12 @@ inline nlohmann::json emissionJson(Rgb emission, const std::string& grid = "") {
 }
 
 /// Without scattering, what would scatter is lost to the camera.
-inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters,
+inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, const CyclesPhase& phase, bool scatters,
                                  Rgb emission = Rgb(0)) {
     if (!scatters) sigmaA += sigmaS, sigmaS = Rgb(0);
     const CyclesMedium medium = cyclesMedium(sigmaA, sigmaS);
+    nlohmann::json inputs = nlohmann::json::object();
+    for (const auto& [socket, value] : phase.inputs) inputs[socket] = value;
     return {{"sigma_a", toJson(medium.sigmaA)},
             {"sigma_s", toJson(medium.sigmaS)},
             {"density", medium.density},
@@ -40,7 +44,7 @@ inline nlohmann::json mediumJson(Rgb sigmaA, Rgb sigmaS, float g, bool scatters,
             {"absorb_colour", toJson(medium.absorbColour)},
             {"scatters", medium.scatters()},
             {"absorbs", medium.absorbs()},
-            {"g", g},
+            {"phase", {{"type", phase.type}, {"inputs", inputs}}},
             {"emission", emissionJson(emission)}};
 }
 
@@ -49,6 +53,20 @@ template <class... A>
 Error cyclesRefusal(const std::string& place, fmt::format_string<A...> text, A&&... args) {
     return inputError("{}{}Cycles cannot express {}", place, place.empty() ? "" : ": ",
                       fmt::format(text, std::forward<A>(args)...));
+}
+
+/// The phase function of `d`, a volume or an interior, whose member's place in the scene is
+/// place(member). Throws where Cycles has none like it.
+template <class D, class Place>
+CyclesPhase phaseFor(const D& d, Place place) {
+    const auto phase = cyclesPhase(d.g, d.phase);
+    if (!phase)
+        throw cyclesRefusal(place(d.phase), "a phase function of type {}", scene::tagOf(*d.phase));
+    for (const auto& [socket, value] : phase->inputs)
+        if (socket == "Anisotropy" && std::abs(value) > double{cyclesLargestG})
+            throw cyclesRefusal(d.phase ? place(d.phase) : place(d.g),
+                                "a g of {:.6g}: it clamps g to +-{}", value, cyclesLargestG);
+    return *phase;
 }
 
 }  // namespace woodcock::tool

@@ -30,6 +30,39 @@ Rgb cyclesEmissionWithin(Rgb emission, double ior) {
     return emission * static_cast<float>(1 / (ior * ior));
 }
 
+namespace {
+
+std::optional<CyclesPhase> henyeyGreenstein(float g) {
+    return CyclesPhase{"", {{"Anisotropy", g}}};
+}
+
+std::optional<CyclesPhase> phaseOf(const scene::IsotropicPhase&) { return henyeyGreenstein(0); }
+std::optional<CyclesPhase> phaseOf(const scene::HenyeyGreensteinPhase& p) {
+    return henyeyGreenstein(p.g);
+}
+std::optional<CyclesPhase> phaseOf(const scene::RayleighPhase&) {
+    return CyclesPhase{"RAYLEIGH", {}};
+}
+std::optional<CyclesPhase> phaseOf(const scene::DrainePhase& p) {
+    return CyclesPhase{"DRAINE", {{"Anisotropy", p.g}, {"Alpha", p.alpha}}};
+}
+std::optional<CyclesPhase> phaseOf(const scene::MiePhase& p) {
+    return CyclesPhase{"MIE", {{"Diameter", p.diameter}}};
+}
+std::optional<CyclesPhase> phaseOf(const scene::FournierForandPhase& p) {
+    return CyclesPhase{"FOURNIER_FORAND", {{"IOR", p.ior}, {"Backscatter", p.backscatter}}};
+}
+std::optional<CyclesPhase> phaseOf(const scene::TwoLobePhase&) { return std::nullopt; }
+std::optional<CyclesPhase> phaseOf(const scene::TablePhase&) { return std::nullopt; }
+
+}  // namespace
+
+std::optional<CyclesPhase> cyclesPhase(float g,
+                                       const std::optional<scene::PhaseDescription>& phase) {
+    if (!phase) return henyeyGreenstein(g);
+    return std::visit([](const auto& p) { return phaseOf(p); }, *phase);
+}
+
 int cyclesBounces(std::optional<int> events) {
     return std::min(events.value_or(cyclesMostBounces + 1) - 1, cyclesMostBounces);
 }

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "woodcock/base/affine.h"
 #include "woodcock/base/spectrum.h"
@@ -39,6 +42,17 @@ Rgb cyclesEmissionWithin(Rgb emission, double ior);
 
 /// Cycles clamps g to this, either way.
 constexpr float cyclesLargestG = 0.999f;
+
+/// A phase function as the nodes that scatter take it: `type` as Blender names it, and the sockets.
+/// Without a type it is Henyey-Greenstein, which all versions have; the others come with 4.3.
+struct CyclesPhase {
+    std::string type;
+    std::vector<std::pair<std::string, double>> inputs;
+};
+/// Of a volume or an interior: of `phase`, else of Henyey-Greenstein with `g`. Null where Cycles
+/// has no such phase function.
+std::optional<CyclesPhase> cyclesPhase(float g,
+                                       const std::optional<scene::PhaseDescription>& phase);
 
 /// The most bounces of any kind that Blender counts.
 constexpr int cyclesMostBounces = 1024;

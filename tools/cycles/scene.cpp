@@ -30,9 +30,6 @@ public:
           scatters_(scene.render.maxScatterings != 0) {}
 
     void addTo(json& list) const {
-        if (std::abs(volume_.g) > cyclesLargestG)
-            throw cyclesRefusal(place(volume_.g), "a g of {}: it clamps g to +-{}", volume_.g,
-                                cyclesLargestG);
         if (!volume_.inside.empty())
             throw cyclesRefusal(place(volume_.inside), "a volume inside the surface '{}'",
                                 volume_.inside);
@@ -66,8 +63,11 @@ private:
                                  scene::keyName(*volume_.blackbody, member)));
     }
 
+    CyclesPhase phase() const {
+        return phaseFor(volume_, [&](const auto& member) { return place(member); });
+    }
     json fileJson(const scene::LoadedField& field, Rgb sigmaA, Rgb sigmaS) const {
-        json grid = mediumJson(sigmaA, sigmaS, volume_.g, scatters_);
+        json grid = mediumJson(sigmaA, sigmaS, phase(), scatters_);
         grid["file"] = std::filesystem::absolute(volume_.file).string();
         grid["matrix"] = toJson(volume_.worldFromObject);
         grid["object_from_index"] = toJson(field.objectFromIndex);
@@ -136,7 +136,7 @@ private:
         if (c.sigmaS) list.push_back(gridJson(loaded_.sigmaS, none, c.sigmaS->scale));
     }
     void add(json& list, const scene::HomogeneousBox& c) const {
-        json box = mediumJson(c.sigmaA, c.sigmaS, volume_.g, scatters_,
+        json box = mediumJson(c.sigmaA, c.sigmaS, phase(), scatters_,
                               volume_.emission ? volume_.emission->scale : Rgb(0));
         box["box"] = {toJson(c.box.lower), toJson(c.box.upper)};
         box["matrix"] = toJson(volume_.worldFromObject);

@@ -139,7 +139,8 @@ json surfaceJson(const scene::SceneDescription& scene, const scene::LoadedScene&
              {"instances", json::array()}};
     if (surface.interior)
         out["medium"] = mediumJson(
-            surface.interior->sigmaA, surface.interior->sigmaS, surface.interior->g,
+            surface.interior->sigmaA, surface.interior->sigmaS,
+            phaseFor(*surface.interior, [&](const auto&) { return place(surface.interior); }),
             scene.render.maxScatterings != 0,
             cyclesEmissionWithin(surface.interior->emission, scene::natureOf(scene, index).ior));
     for (const Affine3d& instance : mesh.instances)

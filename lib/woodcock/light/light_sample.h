@@ -32,12 +32,10 @@ struct LightHit {
 struct ScatterPoint {
     Vec3d position;
     Vec3d forward;  ///< unit: the way the path came along
-    double g;
+    const medium::PhaseFunction* phase = &medium::isotropicScattering;
 
     /// The phase function's density, per steradian, towards a unit vector.
-    double phaseTowards(Vec3d towards) const {
-        return medium::henyeyGreenstein(dot(forward, towards), g);
-    }
+    double phaseTowards(Vec3d towards) const { return phase->value(dot(forward, towards)); }
 };
 
 /// What the path tracer has to know of a light before it asks for samples.

@@ -11,8 +11,6 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     const double determinant = d_.worldFromIndex.determinant();
     if (!std::isfinite(determinant) || determinant == 0)
         throw inputError("a volume's transform is singular: its determinant is {}", determinant);
-    if (!(std::abs(d_.g) < 1))
-        throw inputError("g is {}; it must lie strictly between -1 and 1", d_.g);
     indexFromWorld_ = d_.worldFromIndex.inverse();
     albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
     takeCoefficients();
@@ -70,7 +68,7 @@ MediumPart MediumPart::with(const Coefficients& coefficients) const {
     MediumPart part = *this;
     part.d_.absorption = coefficients.absorption;
     part.d_.scattering = coefficients.scattering;
-    part.d_.g = coefficients.g;
+    part.d_.phase = coefficients.phase;
     part.loss_ = coefficients.loss;
     part.takeCoefficients();
     if (largestExtinction_ > 0)
@@ -115,7 +113,8 @@ Rgb MediumPart::sigmaS(Vec3d world, float time) const {
 
 bool MediumPart::chromatic() const {
     return !isGrey(d_.absorption) || !isGrey(d_.scattering) ||
-           (d_.field && d_.field->channels() == 3) || (d_.albedo && d_.albedo->channels() == 3);
+           (scatters() && d_.phase.chromatic()) || (d_.field && d_.field->channels() == 3) ||
+           (d_.albedo && d_.albedo->channels() == 3);
 }
 
 Box3d Medium::worldBounds() const {

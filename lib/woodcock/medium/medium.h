@@ -12,6 +12,7 @@
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
 #include "woodcock/medium/emission.h"
+#include "woodcock/medium/phase.h"
 
 namespace woodcock::medium {
 
@@ -29,7 +30,7 @@ public:
         Rgb scattering{1.0f};                       ///< sigma_s where f (and albedo) is 1
         std::shared_ptr<const grid::Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
         Affine3d albedoWorldFromIndex;
-        double g = 0;
+        PhaseFunction phase = {};
         double majorantScale = 1;      ///< > 1 loosens the majorants; see MajorantGrid::Options
         int majorantSmallestLog2 = 1;  ///< coarsens them
     };
@@ -38,7 +39,7 @@ public:
     /// The coefficients that a part may change while it keeps field and place.
     struct Coefficients {
         Rgb absorption{0.0f}, scattering{0.0f};
-        double g = 0;
+        PhaseFunction phase = {};
         /// sigma_a where the albedo is 0, over `scattering`; see similar_medium.h.
         float loss = 1;
     };
@@ -47,7 +48,7 @@ public:
     MediumPart with(const Coefficients& coefficients) const;
 
     const Description& description() const { return d_; }
-    double g() const { return d_.g; }
+    const PhaseFunction& phase() const { return d_.phase; }
     /// sigma_t where f is 1; an upper bound where extinctionVaries().
     const Rgb& extinction() const { return extinction_; }
     /// The weight of each channel in a decision for all channels at once; see collide() in

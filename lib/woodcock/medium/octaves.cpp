@@ -8,6 +8,7 @@ Medium octaveMedium(const Medium& medium, int i) {
     for (const MediumPart& part : medium.parts) {
         MediumPart::Coefficients c;
         c.absorption = part.extinction() * static_cast<float>(octave::extinction(i));
+        c.phase = part.phase().towardsIsotropic(octave::phase(i));
         dimmed.parts.push_back(part.with(c));
     }
     return dimmed;

@@ -9,7 +9,8 @@
 namespace woodcock::medium {
 
 /// Multiple scattering as a sum of single scatterings, "octaves": of octave i, sigma_s is
-/// multiplied by a^i, the extinction towards the light by b^i, and the phase function's g by c^i.
+/// multiplied by a^i, the extinction towards the light by b^i, and the phase function's g by c^i
+/// (PhaseFunction::towardsIsotropic).
 /// Wrenninge, Kulla and Lundqvist 2013, "Oz: The Great and Volumetric", with their a = b = c = 1/2;
 /// also Hillaire 2016, "Physically Based Sky, Atmosphere and Cloud Rendering in Frostbite". The
 /// paper requires a <= b, or energy would be created.
@@ -29,7 +30,8 @@ inline int draw(int n, double u) {
 }  // namespace octave
 
 /// The medium that light of octave i passes after its scattering: it only absorbs, with b^i
-/// sigma_t. It shares the fields and their bounds. Emission is left out.
+/// sigma_t. Its parts have the phase functions of that scattering. It shares the fields and their
+/// bounds. Emission is left out.
 Medium octaveMedium(const Medium& medium, int i);
 
 }  // namespace woodcock::medium

@@ -1,45 +1,96 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <concepts>
+#include <memory>
+#include <string>
+#include <variant>
 
-#include "woodcock/base/vec.h"
+#include "woodcock/base/spectrum.h"
+#include "woodcock/medium/phase/draine.h"
+#include "woodcock/medium/phase/fournier_forand.h"
+#include "woodcock/medium/phase/henyey_greenstein.h"
+#include "woodcock/medium/phase/mie.h"
+#include "woodcock/medium/phase/phase_table.h"
+#include "woodcock/medium/phase/rayleigh.h"
+#include "woodcock/medium/phase/two_lobes.h"
 
 namespace woodcock::medium {
 
-/// Henyey-Greenstein with mean cosine g in (-1, 1): value per steradian for the cosine between the
-/// way the light travelled before and after. Integrates to one over the sphere. Henyey and
-/// Greenstein 1941, eq. 2; the denominator 1 + g^2 - 2 g cos is written without the cancellation
-/// that would lose all digits near g = +-1.
-inline double henyeyGreenstein(double cosine, double g) {
-    const double d = g >= 0 ? (1 - g) * (1 - g) + 2 * g * (1 - cosine)
-                            : (1 + g) * (1 + g) - 2 * g * (1 + cosine);
-    return (1 - g) * (1 + g) / (4 * pi * d * std::sqrt(d));
-}
+/// How a medium scatters light: the density, per steradian, with which it turns light by an angle.
+/// Each integrates to one over the sphere. Cosines are between the way that light travelled before
+/// and after. A value of one of a closed set of kinds; phase/ has a file for each.
+///
+/// A kind has value(cosine), sample(u) in proportion to it, and meanCosine(). The kind that has a
+/// column for each colour channel is `chromatic`: it is sampled by a mixture of the channels, and
+/// weights carry the difference.
+class PhaseFunction {
+public:
+    using Kind = std::variant<HenyeyGreenstein, TwoLobes, Rayleigh, Draine, MieDroplets,
+                              FournierForand, PhaseTable>;
 
-struct PhaseSample {
-    Vec3d direction;  ///< the way the light path continues, unit length
-    double pdf;       ///< per steradian: the phase function itself
+    /// Isotropic.
+    PhaseFunction() : PhaseFunction(HenyeyGreenstein(0)) {}
+    template <class K>
+        requires(!std::same_as<K, PhaseFunction> && !std::is_arithmetic_v<K> &&
+                 std::constructible_from<Kind, K>)
+    PhaseFunction(K kind) : kind_(std::make_shared<const Kind>(std::move(kind))) {
+        if constexpr (std::same_as<K, HenyeyGreenstein>)
+            g_ = std::get<HenyeyGreenstein>(*kind_).g();
+        else if constexpr (std::same_as<K, PhaseTable>)
+            chromatic_ = std::get<PhaseTable>(*kind_).chromatic();
+        henyeyGreenstein_ = std::same_as<K, HenyeyGreenstein>;
+    }
+
+    /// Of a chromatic function the mean of the channels.
+    double value(double cosine) const {
+        return henyeyGreenstein_ ? henyeyGreenstein(cosine, g_) : valueOfKind(cosine);
+    }
+    /// Samples a direction around unit vector `forward` in proportion to value(), by u in [0, 1)^2.
+    PhaseSample sample(Vec3d forward, double u0, double u1) const {
+        return henyeyGreenstein_ ? sampleHenyeyGreenstein(forward, g_, u0, u1)
+                                 : sampleKind(forward, u0, u1);
+    }
+    double meanCosine() const;
+
+    // ---- for each colour channel
+
+    bool chromatic() const { return chromatic_; }
+    /// The density of each channel.
+    Rgb values(double cosine) const;
+    Rgb meanCosines() const;
+    /// How light of `throughput` is scattered by a chromatic function: the density of sampling, in
+    /// which each channel counts in proportion to its throughput, and each channel's value over it.
+    /// So no weight carries more than the sum of the channels; see collide() in tracking.cpp for
+    /// the same choice among distances.
+    struct Mixed {
+        double density;
+        Rgb weight;
+    };
+    Mixed mixed(double cosine, Rgb throughput) const;
+    /// Samples a direction by the density of mixed().
+    PhaseSample sampleMixed(Vec3d forward, Rgb throughput, double u0, double u1) const;
+
+    /// A function whose mean cosine is `factor`, in [0, 1], times this one's. Henyey-Greenstein's
+    /// lobes become wider, with g times the factor. Any other kind is mixed with isotropic
+    /// scattering.
+    PhaseFunction towardsIsotropic(double factor) const;
+
+    /// The kind as scene files have it, such as "two_lobe".
+    const char* name() const;
+    const Kind& kind() const { return *kind_; }
+
+private:
+    double valueOfKind(double cosine) const;
+    PhaseSample sampleKind(Vec3d forward, double u0, double u1) const;
+
+    std::shared_ptr<const Kind> kind_;
+    double g_ = 0;  // of Henyey-Greenstein, which is by far the most common: it is inlined
+    bool henyeyGreenstein_ = true, chromatic_ = false;
+    double isotropic_ = 0;  // the share of isotropic scattering
 };
 
-/// Samples a direction around unit vector `forward` in proportion to the phase function, by u in
-/// [0,1)^2. The inverted CDF is expanded in s = 2u-1 so that g may be zero or of any small size,
-/// and 1 - cos and 1 + cos are computed separately so that g may come close to +-1.
-inline PhaseSample sampleHenyeyGreenstein(Vec3d forward, double g, double u0, double u1) {
-    const double s = 2 * u0 - 1;
-    const double q = 1 + g * s;
-    const double below =
-        (1 - s) * (1 - g) * (1 - g) * (1 + g / 2 + g / 2 * s) / (q * q);  // 1 - cos
-    const double above =
-        (1 + s) * (1 + g) * (1 + g) * (1 - g / 2 + g / 2 * s) / (q * q);  // 1 + cos
-    const double cosine = below < above ? 1 - below : above - 1;
-    const double sine = std::sqrt(std::max(0.0, below * above));
-    const double phi = 2 * pi * u1;
-    Vec3d x, y;
-    orthonormalBasis(forward, x, y);
-    const Vec3d d = x * (sine * std::cos(phi)) + y * (sine * std::sin(phi)) + forward * cosine;
-    const double width = (1 - g) * (1 + g);
-    return {d / std::sqrt(dot(d, d)), q * q * q / (4 * pi * width * width)};
-}
+/// For whatever has a direction and no medium.
+inline const PhaseFunction isotropicScattering;
 
 }  // namespace woodcock::medium

@@ -32,8 +32,7 @@ MediaTable::MediaTable(const Scene& scene, const Needs& needs, const Approximati
 MediaTable::Onward MediaTable::onward(std::int64_t scatterings, RandomStream& random) const {
     if (octaves_ == 0) return {setAfter(scatterings + 1)};
     const int i = medium::octave::draw(octaves_, random.uniform());
-    return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves_),
-            medium::octave::phase(i)};
+    return {static_cast<std::uint8_t>(1 + i), medium::octave::total(octaves_)};
 }
 
 }  // namespace woodcock::render

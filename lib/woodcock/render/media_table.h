@@ -31,17 +31,20 @@ public:
     std::uint8_t setAfter(std::int64_t scatterings) const {
         return similarityAfter_ && scatterings >= *similarityAfter_ ? 1 : 0;
     }
-    /// How a path goes on after its next scattering: through which set of media, with g times
-    /// `phase`, and with the scattered light times `amount`.
+    /// How a path goes on after its next scattering: through which set of media, and with the
+    /// scattered light times `amount`.
     struct Onward {
         std::uint8_t mediumSet;
-        double amount = 1, phase = 1;
+        double amount = 1;
     };
     /// With octaves, draws one in proportion to its amount. Light of octave i is a^i x sigma_s x
     /// phase(c^i g) x transmittance of b^i sigma_t. It is found by next-event estimation and by the
     /// following flight, which ends where it leaves the medium.
     Onward onward(std::int64_t scatterings, RandomStream& random) const;
 
+    /// The set of media that a path goes on through has the phase functions of the scattering
+    /// before. Else the medium that scatters has them.
+    bool phasesOfSetOnward() const { return octaves_ > 0; }
     /// There are sets beside the scene's own.
     bool replaces() const { return replaces_; }
     /// Octaves end with next-event estimation: their flights meet no light.

@@ -89,15 +89,12 @@ private:
             case FlightEnd::Lost:
                 p.alive = false;
                 break;
-            case FlightEnd::Scatters: {
-                const medium::Medium& medium = *traced_.media[p.medium].medium;
+            case FlightEnd::Scatters:
                 if (traced_.mayScatter(p.scatterings))
-                    scatter(traced_, batch_, i, walk.t,
-                            medium.parts[static_cast<std::size_t>(walk.part)].g());
+                    scatter(traced_, batch_, i, walk.t, static_cast<std::size_t>(walk.part));
                 else
                     p.alive = false;
                 break;
-            }
             case FlightEnd::AtSurface:
                 if constexpr (Surfaces) meetSurface(traced_, batch_, i);
                 break;

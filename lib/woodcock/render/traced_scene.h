@@ -37,6 +37,15 @@ struct TracedScene {
     std::uint32_t mediumAround(std::uint8_t mediumSet, const MediumStack& inside) const {
         return media.number(mediumSet, surfaces->medium(inside));
     }
+    /// The medium around a path, as that set of media has it.
+    template <int N, bool Surfaces>
+    const MediumSummary& mediumAround(const PathState<N, Surfaces>& p,
+                                      std::uint8_t mediumSet) const {
+        if constexpr (Surfaces)
+            return media[mediumAround(mediumSet, p.surfaces.way.inside())];
+        else
+            return media[media.number(mediumSet, 0)];
+    }
     /// Whether a path that has scattered so often may do so again.
     bool mayScatter(std::int64_t scatterings) const {
         return !options.maxScatterings || scatterings < *options.maxScatterings;

@@ -60,6 +60,11 @@ std::vector<size_t> volumesOfParts(const SceneDescription& description, const Lo
 std::vector<std::string> coarsenForCamera(const SceneDescription& description,
                                           const camera::Camera& camera, LoadedScene& loaded);
 
+/// The phase function of a volume or an interior: `phase`, else Henyey-Greenstein with `g`. `table`
+/// is what was loaded for it.
+medium::PhaseFunction buildPhase(float g, const std::optional<PhaseDescription>& phase,
+                                 const std::optional<medium::PhaseTable>& table);
+
 struct BuiltSurfaces {
     std::shared_ptr<const surface::SurfaceSet> set;  ///< null: none
     std::vector<medium::Medium> interiorMedia;       ///< as of Scene

@@ -132,7 +132,39 @@ double pixelWidth(const camera::Camera& camera, int height, const Box3d& box) {
     return distance * 2 * std::tan(camera.fovY * pi / 360) / height;
 }
 
+struct PhaseOf {
+    const std::optional<medium::PhaseTable>& table;
+
+    medium::PhaseFunction operator()(const IsotropicPhase&) const { return {}; }
+    medium::PhaseFunction operator()(const HenyeyGreensteinPhase& p) const {
+        return medium::HenyeyGreenstein(p.g);
+    }
+    medium::PhaseFunction operator()(const TwoLobePhase& p) const {
+        return medium::TwoLobes(p.g, p.g2, p.mix);
+    }
+    medium::PhaseFunction operator()(const RayleighPhase&) const { return medium::Rayleigh(); }
+    medium::PhaseFunction operator()(const DrainePhase& p) const {
+        return medium::Draine(p.g, p.alpha);
+    }
+    medium::PhaseFunction operator()(const MiePhase& p) const {
+        return medium::MieDroplets(p.diameter);
+    }
+    medium::PhaseFunction operator()(const FournierForandPhase& p) const {
+        return medium::FournierForand(p.ior, p.backscatter);
+    }
+    medium::PhaseFunction operator()(const TablePhase&) const {
+        if (!table) throw usageError("the table of a phase function has not been loaded");
+        return *table;
+    }
+};
+
 }  // namespace
+
+medium::PhaseFunction buildPhase(float g, const std::optional<PhaseDescription>& phase,
+                                 const std::optional<medium::PhaseTable>& table) {
+    if (!phase) return medium::HenyeyGreenstein(g);
+    return std::visit(PhaseOf{table}, *phase);
+}
 
 medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
                            std::string_view inside) {
@@ -141,7 +173,7 @@ medium::Medium buildMedium(const SceneDescription& description, const LoadedScen
         const VolumeDescription& volume = description.volumes[i];
         if (volume.inside != inside) continue;
         for (Part part : activeParts(volume, loaded.volumes[i])) {
-            part.g = volume.g;
+            part.phase = buildPhase(volume.g, volume.phase, loaded.volumes[i].phase);
             part.majorantScale = description.render.majorantScale;
             medium.parts.emplace_back(std::move(part));
         }

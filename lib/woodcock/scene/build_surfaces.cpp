@@ -337,7 +337,7 @@ private:
             part.box = space;
             part.absorption = interior.sigmaA;
             part.scattering = interior.sigmaS;
-            part.g = interior.g;
+            part.phase = buildPhase(interior.g, interior.phase, loaded_.interiorPhases[index]);
             medium.parts.emplace_back(std::move(part));
         }
         if (interior.emission.maximum() > 0) {

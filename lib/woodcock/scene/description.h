@@ -84,6 +84,45 @@ enum class Background { Clip, Endless };
 /// Their names in scene files, in the same order.
 inline const std::array<std::string, 2> backgroundNames{"clip", "endless"};
 
+// The kinds of phase functions; see the classes of the same names in medium/phase.
+
+struct IsotropicPhase {
+    bool operator==(const IsotropicPhase&) const = default;
+};
+struct HenyeyGreensteinPhase {
+    float g = 0;
+    bool operator==(const HenyeyGreensteinPhase&) const = default;
+};
+struct TwoLobePhase {
+    float g = 0, g2 = 0;
+    double mix = 0;  ///< the second's part
+    bool operator==(const TwoLobePhase&) const = default;
+};
+struct RayleighPhase {
+    bool operator==(const RayleighPhase&) const = default;
+};
+struct DrainePhase {
+    float g = 0;
+    double alpha = 0;
+    bool operator==(const DrainePhase&) const = default;
+};
+struct MiePhase {
+    double diameter = 20;  ///< micrometres
+    bool operator==(const MiePhase&) const = default;
+};
+struct FournierForandPhase {
+    double ior = 1.33, backscatter = 0.1;
+    bool operator==(const FournierForandPhase&) const = default;
+};
+struct TablePhase {
+    std::filesystem::path file;  ///< see medium::readPhaseTable()
+    bool normalise = false;
+    bool operator==(const TablePhase&) const = default;
+};
+using PhaseDescription =
+    std::variant<IsotropicPhase, HenyeyGreensteinPhase, TwoLobePhase, RayleighPhase, DrainePhase,
+                 MiePhase, FournierForandPhase, TablePhase>;
+
 struct VolumeDescription {
     std::filesystem::path file;  ///< empty for a HomogeneousBox
     std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
@@ -91,8 +130,9 @@ struct VolumeDescription {
     /// none.
     std::optional<GridCoefficient> emission = {};
     std::optional<BlackbodyDescription> blackbody = {};
-    float g = 0;               ///< mean cosine of Henyey-Greenstein, in (-1, 1)
-    Affine3d worldFromObject;  ///< applied after the grid's own transform
+    float g = 0;                                 ///< mean cosine of Henyey-Greenstein, in (-1, 1)
+    std::optional<PhaseDescription> phase = {};  ///< in place of Henyey-Greenstein
+    Affine3d worldFromObject;                    ///< applied after the grid's own transform
     std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all
     grid::Storage storage = grid::Storage::Auto;
     /// Absent: Clip, and Endless inside of a surface.
@@ -187,7 +227,8 @@ struct FacetShape {
 struct InteriorDescription {
     Rgb sigmaA{0.0f}, sigmaS{0.0f};  ///< per world unit
     float g = 0;
-    Rgb emission{0.0f};  ///< radiance per world unit
+    std::optional<PhaseDescription> phase = {};  ///< in place of Henyey-Greenstein with g
+    Rgb emission{0.0f};                          ///< radiance per world unit
     bool operator==(const InteriorDescription&) const = default;
 };
 

@@ -243,9 +243,22 @@ void requireDarkBackground(const grid::VdbFile& file, const LoadedField& emissio
                 emission.grid, file.path.string(), emission.field->background(c));
 }
 
+/// The table that the phase function of `d` names; `path` is that of d's keys.
+template <class D>
+std::optional<medium::PhaseTable> loadPhase(const SceneDescription& scene, const D& d,
+                                            const std::string& path) {
+    const auto* table = d.phase ? std::get_if<TablePhase>(&*d.phase) : nullptr;
+    if (!table) return std::nullopt;
+    const std::string place =
+        findPlace(scene.places,
+                  fmt::format("{}.{}.{}", path, keyName(d, d.phase), keyName(*table, table->file)));
+    return inPlace(place, [&] { return medium::readPhaseTable(table->file, table->normalise); });
+}
+
 LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader) {
     const VolumeDescription& volume = scene.volumes[index];
     LoadedVolume loaded;
+    loaded.phase = loadPhase(scene, volume, fmt::format("volume[{}]", index));
     if (std::holds_alternative<HomogeneousBox>(volume.coefficients)) return loaded;
     const auto placeOf = [&](const auto& member) {
         return findPlace(scene.places,
@@ -353,6 +366,14 @@ LoadedScene loadScene(const SceneDescription& scene) {
     loaded.notes = loader.takeNotes();
     loaded.surfaces = loadSurfaces(scene, loaded.notes);
     loaded.textures = loadTextures(scene);
+    for (size_t i = 0; i < scene.surfaces.size(); ++i) {
+        loaded.interiorPhases.emplace_back();
+        const SurfaceDescription& surface = scene.surfaces[i];
+        if (surface.interior)
+            loaded.interiorPhases.back() =
+                loadPhase(scene, *surface.interior,
+                          fmt::format("surface[{}].{}", i, keyName(surface, surface.interior)));
+    }
     return loaded;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "woodcock/grid/field.h"
 #include "woodcock/light/environment_map.h"
 #include "woodcock/light/ies_profile.h"
+#include "woodcock/medium/phase/phase_table.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/surface/texture.h"
@@ -38,6 +40,7 @@ struct LoadedVolume {
     float hottest = 0;
     std::string
         velocities;  ///< the first grid of the file that means them and is not used; or empty
+    std::optional<medium::PhaseTable> phase;  ///< of a TablePhase
     UpAxis up = UpAxis::Y;  ///< Z where the file's metadata say that Blender wrote it
 };
 
@@ -52,6 +55,8 @@ struct LoadedScene {
     std::vector<LoadedVolume> volumes;    ///< one for each volume of the description
     std::vector<LoadedLight> lights;      ///< one for each light
     std::vector<LoadedSurface> surfaces;  ///< one for each surface
+    /// One for each surface: of a TablePhase of its interior.
+    std::vector<std::optional<medium::PhaseTable>> interiorPhases;
     std::vector<std::shared_ptr<const surface::TextureImage>>
         textures;                    ///< one for each material, or null
     std::vector<std::string> notes;  ///< what the user should know

@@ -146,6 +146,9 @@ private:
             table.erase(key);  // or the old key would keep its place in the file
             table.insert(key, std::move(node));
         });
+        // Each says how a medium scatters: what is set takes the other's place.
+        if (key == "phase") table.erase("g");
+        if (key == "g" && table.contains("phase")) table.erase("phase");
     }
 
     void replace(toml::array& array, size_t index) const {

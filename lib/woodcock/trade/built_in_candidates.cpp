@@ -82,7 +82,8 @@ SceneFacts sceneFacts(const scene::SceneDescription& description, const render::
         for (const medium::MediumPart& part : medium->parts) {
             facts.grids |= part.field() != nullptr;
             facts.scattering |= part.scatters();
-            if (part.scatters()) facts.largestG = std::max(facts.largestG, std::abs(part.g()));
+            if (part.scatters())
+                facts.largestG = std::max(facts.largestG, std::abs(part.phase().meanCosine()));
         }
     facts.mostScatterings =
         description.render.maxScatterings.value_or(std::numeric_limits<int>::max());

@@ -32,7 +32,7 @@ medium::MediumPart part(const ScalingCloud& cloud, double extinction, const Scal
     d.worldFromIndex = Affine3d::translate(moved) * cloud.worldFromIndex;
     d.scattering = Rgb(static_cast<float>(extinction * view.albedo));
     d.absorption = Rgb(static_cast<float>(extinction * (1 - view.albedo)));
-    d.g = view.g;
+    d.phase = medium::HenyeyGreenstein(view.g);
     d.majorantSmallestLog2 = view.majorantSmallestLog2;
     return medium::MediumPart(d);
 }

@@ -124,7 +124,7 @@ class Exporter:
             grid, scale, intensity, tint = medium.blackbody
             section.set("blackbody", {"temperature": quoted(grid), "scale": scale,
                                       "intensity": intensity, "colour": colour(tint)})
-        section.set("g", medium.g).set("matrix", matrix(drawn))
+        section.set(*medium.phase).set("matrix", matrix(drawn))
         self.sections.append(section)
 
     def add_mesh(self, shown, placed):
@@ -147,8 +147,9 @@ class Exporter:
         volume = shader_of(material, "Volume")
         media = media_of(volume, (), report) if volume else []
         surface = materials.translate(material, report) if material else ("diffuse", {}, False)
-        if len(media) > 1 and len({m.g for m in media if max(m.sigma_s) > 0}) > 1:
-            raise Untranslatable("media of different anisotropy in one mesh")
+        scattering = [m.phase for m in media if max(m.sigma_s) > 0]
+        if any(phase != scattering[0] for phase in scattering):
+            raise Untranslatable("media of different phase functions in one mesh")
         box = meshes.box_of(mesh)
         if surface is None and not media:
             return
@@ -278,9 +279,9 @@ class Exporter:
 def medium_keys(media, ior=1):
     keys = {"sigma_a": colour([sum(m.sigma_a[c] for m in media) for c in range(3)]),
             "sigma_s": colour([sum(m.sigma_s[c] for m in media) for c in range(3)])}
-    scattering = [m.g for m in media if max(m.sigma_s) > 0]
+    scattering = [m.phase for m in media if max(m.sigma_s) > 0]
     if scattering:
-        keys["g"] = scattering[0]
+        keys.update(scattering[:1])
     emission = [sum(m.emission.factor[c] for m in media if m.emission) for c in range(3)]
     if max(emission) > 0:
         keys["emission"] = colour(mapping.emission_within(emission, ior))

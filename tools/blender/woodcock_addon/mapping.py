@@ -62,6 +62,25 @@ def clamped_g(g):
     return 0.0 if abs(g) < 1e-3 else g
 
 
+# Of Blender's names of phase functions: Woodcock's, and a key for each socket, with the values that
+# Woodcock takes.
+PHASES = {"RAYLEIGH": ("rayleigh", {}),
+          "DRAINE": ("draine", {"Anisotropy": ("g", -LARGEST_G, LARGEST_G),
+                                "Alpha": ("alpha", 0.0, math.inf)}),
+          "MIE": ("mie", {"Diameter": ("diameter", 1.5, 50.0)}),
+          "FOURNIER_FORAND": ("fournier_forand", {"IOR": ("ior", 1.001, 1.999),
+                                                  "Backscatter": ("backscatter", 1e-4, 0.4999)})}
+
+
+def phase_value(socket, value, lower, upper):
+    """What Cycles makes of a socket's value; ValueError where Woodcock has no such thing."""
+    if socket == "Anisotropy":
+        return clamped_g(value)
+    if not lower <= value <= upper:
+        raise ValueError("%s %g, which is not between %g and %g" % (socket, value, lower, upper))
+    return value
+
+
 def max_scatterings(volume_bounces, max_bounces):
     """m bounces allow m + 1 scatterings: light is sampled at the last one too. The same holds for
     surfaces."""

@@ -2,17 +2,19 @@
 """Volume shaders: sigma_a, sigma_s and what they emit."""
 from . import mapping
 from .sockets import Product, Untranslatable, named, product, scalar, source
+from .toml_text import quoted
 
 
 class Medium:
     """sigma = factor x grid; `albedo_grid` multiplies sigma_s, and what it takes is absorbed.
-    `emission` is a Product, `blackbody` (grid, scale, intensity, colour), or None."""
+    `emission` is a Product, `blackbody` (grid, scale, intensity, colour), or None. `phase` is a key
+    of a scene file with its value: g, or phase."""
 
-    def __init__(self, sigma_s, sigma_a, grid=None, albedo_grid=None, g=0.0, emission=None,
-                 blackbody=None):
+    def __init__(self, sigma_s, sigma_a, grid=None, albedo_grid=None, phase=("g", 0.0),
+                 emission=None, blackbody=None):
         self.sigma_s, self.sigma_a = sigma_s, sigma_a
         self.grid, self.albedo_grid = (grid, albedo_grid) if self.dims() else (None, None)
-        self.g, self.emission, self.blackbody = g, emission, blackbody
+        self.phase, self.emission, self.blackbody = phase, emission, blackbody
 
     def scaled(self, factor):
         emission, blackbody = self.emission, self.blackbody
@@ -21,7 +23,7 @@ class Medium:
         if blackbody:
             blackbody = (*blackbody[:3], [c * factor for c in blackbody[3]])
         return Medium([x * factor for x in self.sigma_s], [x * factor for x in self.sigma_a],
-                      self.grid, self.albedo_grid, self.g, emission, blackbody)
+                      self.grid, self.albedo_grid, self.phase, emission, blackbody)
 
     def dims(self):
         """Whether it scatters or absorbs."""
@@ -72,8 +74,22 @@ def media_of(node, grids, report):
     return [] if medium.empty() else [medium]
 
 
-def g_of(node):
-    return mapping.clamped_g(scalar(node.inputs["Anisotropy"], "an anisotropy"))
+def phase_of(node):
+    """The key that says the phase function, g or phase, with its value."""
+    kind = getattr(node, "phase", "HENYEY_GREENSTEIN")
+    if kind == "HENYEY_GREENSTEIN":
+        return "g", mapping.clamped_g(scalar(node.inputs["Anisotropy"], "an anisotropy"))
+    if kind not in mapping.PHASES:
+        raise Untranslatable("the phase function %s" % kind)
+    name, sockets = mapping.PHASES[kind]
+    keys = {"type": quoted(name)}
+    for socket, (key, lower, upper) in sockets.items():
+        value = scalar(node.inputs[socket], "the %s of a phase function" % socket)
+        try:
+            keys[key] = mapping.phase_value(socket, value, lower, upper)
+        except ValueError as problem:
+            raise Untranslatable("the phase function %s with %s" % (kind, problem))
+    return "phase", keys
 
 
 def glow(colour, strength, grids, report):
@@ -133,7 +149,7 @@ def principled(node, grids, report):
     if colour.grid and (max(absorb) > 0 or max(colour.factor) > 1):
         raise Untranslatable("a colour grid with an absorption colour or a colour above 1")
     sigma_s, sigma_a = mapping.principled_volume(colour.factor, density.factor[0], absorb)
-    return Medium(sigma_s, sigma_a, density.grid, colour.grid, g_of(node),
+    return Medium(sigma_s, sigma_a, density.grid, colour.grid, phase_of(node),
                   glow(node.inputs["Emission Color"], node.inputs["Emission Strength"], grids,
                        report), blackbody(node, grids, report))
 
@@ -144,11 +160,9 @@ def emission(node, grids, report):
 
 
 def scatter(node, grids, report):
-    if getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
-        raise Untranslatable("the phase function %s" % node.phase)
     density = product(node.inputs["Density"]).times(product(node.inputs["Color"]))
     return Medium(mapping.volume_scatter(density.factor, 1), [0.0] * 3, density.grid, None,
-                  g_of(node))
+                  phase_of(node))
 
 
 def absorption(node, grids, report):
@@ -162,5 +176,5 @@ def coefficients(node, grids, report):
     sigma_a = product(node.inputs["Absorption Coefficients"])
     if sigma_s.grid != sigma_a.grid and max(sigma_s.factor) > 0 and max(sigma_a.factor) > 0:
         raise Untranslatable("coefficients of different grids in one shader")
-    return Medium(sigma_s.factor, sigma_a.factor, sigma_s.grid or sigma_a.grid, None, g_of(node),
+    return Medium(sigma_s.factor, sigma_a.factor, sigma_s.grid or sigma_a.grid, None, phase_of(node),
                   glow(node.inputs["Emission Coefficients"], None, grids, report))

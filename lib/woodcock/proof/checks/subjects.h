@@ -16,6 +16,7 @@ std::vector<Check> surfacesTogether();
 std::vector<Check> roughSurfaces();
 std::vector<Check> properties();
 std::vector<Check> sampling();
+std::vector<Check> phaseFunctions();
 std::vector<Check> lightSampling();
 std::vector<Check> lamps();
 std::vector<Check> extremes();

@@ -55,7 +55,7 @@ medium::MediumPart Volume::part(Rgb absorption, Rgb scattering, double g) const 
     d.worldFromIndex = worldFromIndex;
     d.absorption = absorption * static_cast<float>(sigma);
     d.scattering = scattering * static_cast<float>(sigma);
-    d.g = g;
+    d.phase = medium::HenyeyGreenstein(g);
     return medium::MediumPart(std::move(d));
 }
 

@@ -67,10 +67,37 @@ struct Redistribution {
     Values unresolved;
 };
 
-Redistribution redistribution(const Directions& d, double g) {
+/// P_l(mu) for all l < count.
+Values legendre(double mu, std::size_t count) {
+    Values p{1, mu};
+    for (std::size_t l = 2; l < count; ++l) {
+        const auto n = static_cast<double>(l);
+        p.push_back(((2 * n - 1) * mu * p[l - 1] - (n - 1) * p[l - 2]) / n);
+    }
+    return p;
+}
+
+/// Averaged over azimuth, P_l of the angle between two directions is the product of P_l of both.
+void fillFromMoments(Redistribution& r, const Directions& d, const Values& moments) {
     const std::size_t n = d.mu.size();
-    Redistribution r{Matrix(n), Matrix(n), Values(n, 1)};
+    std::vector<Values> p;
+    for (const double mu : d.mu) p.push_back(legendre(mu, moments.size()));
     for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+            for (std::size_t l = 0; l < moments.size(); ++l) {
+                const double term =
+                    (2 * static_cast<double>(l) + 1) * moments[l] * p[i][l] * p[j][l];
+                r.forward(i, j) += term;
+                r.backward(i, j) += l % 2 == 0 ? term : -term;
+            }
+}
+
+Redistribution redistribution(const Directions& d, const Layer& layer) {
+    const std::size_t n = d.mu.size();
+    const double g = layer.g;
+    Redistribution r{Matrix(n), Matrix(n), Values(n, 1)};
+    if (!layer.moments.empty()) fillFromMoments(r, d, layer.moments);
+    for (std::size_t i = 0; i < n && layer.moments.empty(); ++i)
         for (std::size_t j = 0; j <= i; ++j) {
             r.forward(i, j) = r.forward(j, i) = azimuthMeanOfHenyeyGreenstein(d.mu[i], d.mu[j], g);
             r.backward(i, j) = r.backward(j, i) =
@@ -161,7 +188,7 @@ Stack stackOf(const Layer& layer, const Directions& d) {
     double depth = layer.opticalDepth;
     for (; depth > 0x1p-12 * grazing; depth /= 2) ++doublings;
 
-    const Redistribution p = redistribution(d, layer.g);
+    const Redistribution p = redistribution(d, layer);
     Uniform uniform = thinLayer(d, p, layer.albedo, depth);
     for (int k = 1; k <= doublings; ++k) {
         uniform = doubled(uniform, d);
@@ -219,6 +246,8 @@ void check(const Slab& slab, const Values& mu, std::size_t nodes) {
         if (!(l.albedo >= 0 && l.albedo <= 1))
             throw usageError("albedo {}; must be in [0, 1]", l.albedo);
         if (!(std::abs(l.g) < 1)) throw usageError("g {}; must be in (-1, 1)", l.g);
+        if (!l.moments.empty() && !(std::abs(l.moments[0] - 1) < 1e-9))
+            throw usageError("moment 0 is {}; must be 1", l.moments[0]);
     }
 }
 

@@ -12,12 +12,16 @@
 
 namespace woodcock::oracle {
 
-/// Homogeneous, with Henyey-Greenstein scattering. Layers of equal albedo and g are equal if their
-/// optical depths are, however extinction varies inside them.
+/// Homogeneous, with Henyey-Greenstein scattering, or any other by its Legendre moments. Layers of
+/// equal albedo and scattering are equal if their optical depths are, however extinction varies
+/// inside them.
 struct Layer {
     double opticalDepth;  ///< along the normal; 0 or more, finite
     double albedo;        ///< of single scattering, in [0, 1]
     double g;             ///< mean cosine, in (-1, 1)
+    /// Of the phase function, in place of g: the means of P_l, from l = 0 on, which is 1. With more
+    /// moments than twice the nodes, more nodes are needed.
+    std::vector<double> moments = {};
 };
 
 struct Slab {

@@ -40,7 +40,8 @@ medium::Medium PlainMedium::medium(double majorantScale, int smallestLog2,
         medium::MediumPart::Description d;
         if (p.grid) d.field = std::make_shared<grid::Field>(p.grid->field(storage));
         d.box = p.box, d.worldFromIndex = p.worldFromIndex;
-        d.absorption = p.absorption, d.scattering = p.scattering, d.g = p.g;
+        d.absorption = p.absorption, d.scattering = p.scattering,
+        d.phase = medium::HenyeyGreenstein(p.g);
         if (p.albedo) d.albedo = std::make_shared<grid::Field>(p.albedo->field(storage));
         d.albedoWorldFromIndex = p.albedoWorldFromIndex;
         d.majorantScale = majorantScale, d.majorantSmallestLog2 = smallestLog2;

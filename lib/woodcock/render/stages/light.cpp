@@ -8,6 +8,23 @@
 
 namespace woodcock::render {
 
+namespace {
+
+/// The density with which the path's last scattering would have sampled a direction at this cosine.
+/// Multiplies `light` by the phase function over it: no change but in colour.
+template <int N, bool Surfaces>
+double phaseDensity(const PathState<N, Surfaces>& p, double cosine, Rgb& light) {
+    if constexpr (N == 3)
+        if (p.from.phase->chromatic()) {
+            const auto mixed = p.from.phase->mixed(cosine, toRgb(p.throughput));
+            light = light * mixed.weight;
+            return mixed.density;
+        }
+    return p.from.phase->value(cosine);
+}
+
+}  // namespace
+
 template <int N, bool Surfaces>
 void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
                   const EventNumbers& u, const FlightShare& share) {
@@ -15,10 +32,9 @@ void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
     const light::LightSet& lights = traced.scene.lights;
     const auto chosen = batch.choice.choose(p.from, u.pick);
     if (!chosen) return;
-    const light::LightSample s =
-        lights.sample(chosen->light, p.from.position, u.light[0], u.light[1]);
+    light::LightSample s = lights.sample(chosen->light, p.from.position, u.light[0], u.light[1]);
     if (!(s.weight.maximum() > 0)) return;
-    const double phase = medium::henyeyGreenstein(dot(p.from.forward, s.direction), p.from.g);
+    const double phase = phaseDensity(p, dot(p.from.forward, s.direction), s.weight);
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
     weight *= share(lights[chosen->light], lights.traits(chosen->light).position);

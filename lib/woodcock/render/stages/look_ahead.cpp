@@ -69,16 +69,19 @@ void addEquiangular(const TracedScene& traced, Batch<N, Surfaces>& batch, std::s
     const Equiangular e = flight.equiangular(lights[light], *lights.traits(light).position);
     const double t = e.sample(u), pdf = e.pdf(t);
     if (!(pdf > 0)) return;
-    const light::ScatterPoint at{p.origin + p.direction * t, p.direction, 0};
+    const light::ScatterPoint at{p.origin + p.direction * t, p.direction};
     const double lightU = scaled - std::floor(scaled);
     const light::LightSample s = lights.sample(light, at.position, lightU, p.random.uniform());
     if (!(s.weight.maximum() > 0)) return;
     const MediaTable::Onward onward = traced.media.onward(p.scatterings, p.random);
     const double cosine = dot(at.forward, s.direction);
     Rgb scattered;  // sum over parts of sigma_s x phase
-    for (const medium::MediumPart& part : flight.medium->medium->parts)
-        scattered += part.sigmaS(at.position, p.time) *
-                     static_cast<float>(medium::henyeyGreenstein(cosine, part.g() * onward.phase));
+    const auto& parts = flight.medium->medium->parts;
+    const auto& scatterers = traced.media.phasesOfSetOnward()
+                                 ? traced.mediumAround(p, onward.mediumSet).medium->parts
+                                 : parts;
+    for (std::size_t k = 0; k < parts.size(); ++k)
+        scattered += parts[k].sigmaS(at.position, p.time) * scatterers[k].phase().values(cosine);
     // Balance heuristic against the event, over the density of this point and light.
     const double weight =
         onward.amount * static_cast<double>(localLights.size()) / (pdf + flight.density(e, t));

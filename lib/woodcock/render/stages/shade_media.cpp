@@ -17,13 +17,28 @@ bool inEndlessMedium(const TracedScene& traced, const PathState<N, Surfaces>& p)
     return true;
 }
 
-/// Makes the path go on through the media that approximations choose, and returns the factor of g.
+/// Makes the path go on through the media that approximations choose.
 template <int N, bool Surfaces>
-double enterMediumSet(const TracedScene& traced, PathState<N, Surfaces>& p) {
+void enterMediumSet(const TracedScene& traced, PathState<N, Surfaces>& p) {
     const MediaTable::Onward onward = traced.media.onward(p.scatterings, p.random);
     p.mediumSet = onward.mediumSet;
     p.throughput *= static_cast<float>(onward.amount);
-    return onward.phase;
+}
+
+/// Samples the path's next direction. Weights the path where the phase function differs between the
+/// channels.
+template <int N, bool Surfaces>
+medium::PhaseSample turn(PathState<N, Surfaces>& p, const medium::PhaseFunction& phase,
+                         const EventNumbers& u) {
+    if constexpr (N == 3)
+        if (phase.chromatic()) {
+            const Rgb before = toRgb(p.throughput);
+            const medium::PhaseSample s =
+                phase.sampleMixed(p.direction, before, u.phase[0], u.phase[1]);
+            p.throughput *= phase.mixed(dot(p.direction, s.direction), before).weight;
+            return s;
+        }
+    return phase.sample(p.direction, u.phase[0], u.phase[1]);
 }
 
 }  // namespace
@@ -44,7 +59,7 @@ void escape(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, S
 
 template <int N, bool Surfaces>
 void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i, double t,
-             double g) {
+             std::size_t part) {
     PathState<N, Surfaces>& p = batch.paths[i];
     const Needs& needs = traced.needs;
     ++batch.counters.scatterings;
@@ -58,8 +73,13 @@ void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i
     const EventNumbers u = drawNumbers(p);
     // The share that equiangular sampling of this flight leaves to this event; see addEquiangular.
     const FlightShare share{.all = !needs.localLights, .flight = traced.flightOf(p), .t = t};
-    if (traced.media.replaces()) g *= enterMediumSet(traced, p);
-    p.from = {position, p.direction, g};
+    const auto phaseOf = [&](const MediumSummary& m) { return &m.medium->parts[part].phase(); };
+    const medium::PhaseFunction* phase = phaseOf(traced.media[p.medium]);
+    if (traced.media.replaces()) {
+        enterMediumSet(traced, p);
+        if (traced.media.phasesOfSetOnward()) phase = phaseOf(traced.mediumAround(p, p.mediumSet));
+    }
+    p.from = {position, p.direction, phase};
     if constexpr (Surfaces) {
         SurfaceState& s = p.surfaces;
         s.way.leaveSurface();
@@ -68,8 +88,7 @@ void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i
     }
     if (needs.lightSampling) addNextEvent(traced, batch, i, u, share);
 
-    const medium::PhaseSample s =
-        medium::sampleHenyeyGreenstein(p.direction, g, u.phase[0], u.phase[1]);
+    const medium::PhaseSample s = turn(p, *phase, u);
     p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;
     p.flight = u.flight;
     ++p.scatterings;
@@ -81,7 +100,8 @@ void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i
 
 #define INSTANTIATE(N, SURFACES)                                                            \
     template void escape(const TracedScene&, Batch<N, SURFACES>&, PathState<N, SURFACES>&); \
-    template void scatter(const TracedScene&, Batch<N, SURFACES>&, std::size_t, double, double);
+    template void scatter(const TracedScene&, Batch<N, SURFACES>&, std::size_t, double,     \
+                          std::size_t);
 INSTANTIATE(1, false)
 INSTANTIATE(1, true)
 INSTANTIATE(3, false)

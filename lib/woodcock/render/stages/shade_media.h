@@ -11,10 +11,10 @@ namespace woodcock::render {
 template <int N, bool Surfaces>
 void escape(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, Surfaces>& p);
 
-/// Scatters path i at distance `t` of its flight, by a phase function of mean cosine `g`: adds
-/// next-event estimation, and gives the path its next flight or ends it.
+/// Scatters path i at distance `t` of its flight, by that part of the medium: adds next-event
+/// estimation, and gives the path its next flight or ends it.
 template <int N, bool Surfaces>
 void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i, double t,
-             double g);
+             std::size_t part);
 
 }  // namespace woodcock::render

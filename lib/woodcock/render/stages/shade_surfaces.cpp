@@ -113,7 +113,7 @@ void bounce(const TracedScene& traced, Batch<N, true>& batch, std::size_t i,
     s.way.goOnFromHit(crossing.near);
     p.mediumSet = traced.media.setAfter(p.scatterings);
     if (crossing.bsdf.smooth()) {
-        p.from = {p.origin, p.direction, 0};
+        p.from = {p.origin, p.direction};
         if (traced.needs.lightSampling) lightSurface(traced, batch, i, u, crossing, out, caught);
     }
 

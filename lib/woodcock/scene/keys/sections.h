@@ -27,6 +27,25 @@ template <>
 const KeyTable<Box3d>& keysOf();
 
 template <>
+const KeyTable<IsotropicPhase>& keysOf();
+template <>
+const KeyTable<HenyeyGreensteinPhase>& keysOf();
+template <>
+const KeyTable<TwoLobePhase>& keysOf();
+template <>
+const KeyTable<RayleighPhase>& keysOf();
+template <>
+const KeyTable<DrainePhase>& keysOf();
+template <>
+const KeyTable<MiePhase>& keysOf();
+template <>
+const KeyTable<FournierForandPhase>& keysOf();
+template <>
+const KeyTable<TablePhase>& keysOf();
+/// The value of a key `phase`: a table with the kind's `type` and keys.
+Value<PhaseDescription> phaseFunction();
+
+template <>
 const KeyTable<SunDescription>& keysOf();
 template <>
 const KeyTable<PointDescription>& keysOf();

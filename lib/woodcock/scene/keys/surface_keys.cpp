@@ -88,7 +88,8 @@ std::vector<Key<S>> contentKeys() {
     return {
         key({.name = "medium",
              .doc = "what it holds: `{ sigma_a, sigma_s, g }`, or `{ scale, albedo, g }`, or `{ "
-                    "colour, distance }`, to which you may add `sigma_s` and `g`. `emission` goes "
+                    "colour, distance }`, to which you may add `sigma_s` and `g`. `phase` may "
+                    "stand in place of `g`. `emission` goes "
                     "with any of them, or alone",
              .fallback = "vacuum",
              .comment = "1/unit",
@@ -213,6 +214,8 @@ std::vector<Key<I>> interiorKeys() {
                 colour(zeroToOne).type, "[0.1, 0.2, 0.3]", dyed),
         instead("distance", "beside `colour`, in world units", number(positive).type, "2", dyed),
         key({.name = "g", .doc = "mean cosine of scattering"}, &I::g, meanCosine()),
+        key({.name = "phase", .doc = "instead of `g`: another phase function, as of a volume"},
+            &I::phase, phaseFunction()),
         key({.name = "emission",
              .doc = "radiance per world unit. Within glass of index n it looks n^2 times darker "
                     "from outside"},
@@ -243,7 +246,8 @@ void checkInterior(const TomlTable& table, I& interior) {
     const auto colour = table.find("colour"), distance = table.find("distance");
     if (distance && !colour)
         throw distance->error("needs a colour beside it: what light becomes over that distance");
-    if (table.keys().empty() || (table.has("g") && table.keys().size() == 1))
+    if (table.keys().empty() ||
+        ((table.has("g") || table.has("phase")) && table.keys().size() == 1))
         throw table.error(
             "holds nothing; give sigma_a and sigma_s, scale and albedo, colour and distance, or "
             "emission, or leave it out");
@@ -256,6 +260,7 @@ std::vector<Exclusion> interiorExclusions() {
     std::vector<Exclusion> all = coefficientExclusions();
     for (const char* key : {"sigma_a", "scale", "albedo"})
         all.push_back({"colour", key, "both say how much the medium absorbs"});
+    all.push_back({"phase", "g", "both say how the medium scatters"});
     return all;
 }
 

@@ -166,12 +166,15 @@ std::vector<Key<V>> fieldKeys() {
 std::vector<Key<V>> volumeKeys() {
     return joined(
         coefficientKeys(),
-        std::vector{key({.name = "g",
-                         .doc = "mean cosine of scattering (Henyey-Greenstein): 0 all around, "
-                                "above forwards, below backwards",
-                         .fallback = "0; 0.6 where a VDB is rendered without a scene file",
-                         .comment = "mean cosine"},
-                        &V::g, meanCosine())},
+        std::vector{
+            key({.name = "g",
+                 .doc = "mean cosine of scattering (Henyey-Greenstein): 0 all around, "
+                        "above forwards, below backwards",
+                 .fallback = "0; 0.6 where a VDB is rendered without a scene file",
+                 .comment = "mean cosine"},
+                &V::g, meanCosine()),
+            key({.name = "phase", .doc = "instead of `g`: another phase function, see below"},
+                &V::phase, phaseFunction())},
         placementKeys(&V::worldFromObject, "volume",
                       "`{ translate, rotate, scale }`, after the grid's own transform. sigma stays "
                       "per *world* unit, so a volume made larger is denser to look through"),
@@ -226,6 +229,7 @@ std::vector<Exclusion> exclusions() {
     std::vector<Exclusion> all = coefficientExclusions();
     all.push_back({"box", "file", "a volume is either read from a file or a homogeneous box"});
     all.push_back({"transform", "matrix", "both place the volume"});
+    all.push_back({"phase", "g", "both say how the volume scatters"});
     return all;
 }
 
