@@ -55,6 +55,14 @@ class Mapping(unittest.TestCase):
         self.near(mapping.principled_blackbody(-5, 1, (1, 1, 1))[2], (1, 1, 1))
         self.assertEqual(mapping.principled_blackbody(-5, 1, (1, 1, 1))[0], 0)
 
+    def test_sky(self):
+        self.near(mapping.sun_place((0, 1, 1)), (45, 0))
+        self.near(mapping.sun_place((2, 0, 0)), (0, 90))
+        self.near(mapping.sun_place((-3, 0, 3)), (45, -90))
+        self.near(mapping.sun_place((1, 1, -1)), (0, 45))
+        self.assertEqual(mapping.sun_place((0, 0, 1))[0], 90)
+        self.assertAlmostEqual(mapping.sky_strength(1), 0.0091994, places=7)
+
     def test_object_density(self):
         def scaled(x, y, z):
             return [[x, 0, 0, 5], [0, y, 0, 6], [0, 0, z, 7], [0, 0, 0, 1]]

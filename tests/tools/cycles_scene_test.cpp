@@ -8,6 +8,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/tools/fog_scene.h"
 #include "woodcock/base/temp_dir.h"
+#include "woodcock/image/read_image.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/scene_file.h"
@@ -169,6 +170,31 @@ TEST_F(CyclesFire, IsRefusedByNameWhereCyclesDiffers) {
     refused(
         "temperature = \"air\"",
         "test.toml:4:13: Cycles cannot express the background 293 of the temperature grid 'air'");
+}
+
+TEST(CyclesScene, ASkyIsAnImageAndASun) {
+    const std::string text =
+        "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nsigma_s = 1\n"
+        "[[light]]\ntype = \"sky\"\nelevation = 30\nazimuth = 90\nstrength = 0.5\n";
+    const auto lights = written(text)["lights"];
+    ASSERT_EQ(lights.size(), 2u);
+    EXPECT_EQ(lights[0]["type"], "environment");
+    EXPECT_EQ(lights[0]["image"], "sky0.exr");
+    EXPECT_EQ(lights[0]["radiance"], (std::vector<float>{0.5, 0.5, 0.5}));
+    EXPECT_EQ(lights[1]["type"], "sun");
+    EXPECT_NEAR(lights[1]["direction"][0].get<double>(), -std::sqrt(0.75), 1e-12);
+    EXPECT_NEAR(lights[1]["direction"][1].get<double>(), -0.5, 1e-12);
+    EXPECT_NEAR(lights[1]["angle"].get<double>(), 0.53 * pi / 180, 1e-12);
+    EXPECT_EQ(written(text + "sun = false\n")["lights"].size(), 1u);
+
+    const TempDir dir;
+    tool::writeCyclesSkies(dir.path(), parseSceneText(text, "test.toml", ""));
+    const image::Image sky = image::readImage(dir / "sky0.exr");
+    ASSERT_EQ(sky.width, 2 * sky.height);
+    const Rgb ground = sky.at(0, sky.height - 1);
+    EXPECT_EQ(sky.at(sky.width / 2, sky.height - 5), ground);
+    EXPECT_GT(sky.at(sky.width / 2, sky.height / 3).minimum(),
+              2 * sky.at(0, sky.height / 3).maximum());
 }
 
 TEST(CyclesScene, LampsHaveBlendersUnits) {

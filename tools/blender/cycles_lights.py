@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lights: suns, points, spots and areas as Blender's own, spheres as meshes, environments as the
 world."""
+import os
+
 import bpy
 from mathutils import Matrix, Vector
 
@@ -93,8 +95,8 @@ def add_sphere(scene, name, light):
     placed.visible_shadow = False
 
 
-def add_world(scene, environments):
-    """All environments in one world."""
+def add_world(scene, environments, directory):
+    """All environments in one world. Images without a full path lie in the directory."""
     world = bpy.data.worlds.new("world")
     scene.world = world
     nodes = Nodes(world)
@@ -103,7 +105,9 @@ def add_world(scene, environments):
         colour = light["radiance"]
         strength = 1.0
         if light["image"]:
-            image = bpy.data.images.load(light["image"])
+            image = bpy.data.images.load(os.path.join(directory, light["image"]))
+            if not os.path.isabs(light["image"]):
+                image.pack()  # the directory does not stay
             image.colorspace_settings.name = "Non-Color"  # numbers as they are
             direction = nodes.add("ShaderNodeTexCoord").outputs["Generated"]
             turned = nodes.add("ShaderNodeMapping", {"vector_type": "POINT"}, Vector=direction,
@@ -124,10 +128,11 @@ def add_world(scene, environments):
         nodes.tree.links.new(nodes.sum(backgrounds), output.inputs["Surface"])
 
 
-def add(scene, lights):
+def add(scene, lights, directory):
     kinds = {"sun": add_sun, "point": add_point, "spot": add_spot, "sphere": add_sphere,
              "area": add_area}
     for i, light in enumerate(lights):
         if light["type"] in kinds:
             kinds[light["type"]](scene, "light%d" % i, light)
-    add_world(scene, [light for light in lights if light["type"] == "environment"])
+    add_world(scene, [light for light in lights if light["type"] == "environment"],
+              directory)

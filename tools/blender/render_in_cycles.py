@@ -125,7 +125,7 @@ def build(description, directory):
     interpolation = cycles_volumes.chosen_interpolation(description["render"]["interpolation"])
     for i, volume in enumerate(description["volumes"]):
         cycles_volumes.add(scene, "volume%d" % i, volume, interpolation)
-    cycles_lights.add(scene, description["lights"])
+    cycles_lights.add(scene, description["lights"], directory)
     for i, surface in enumerate(description["surfaces"]):
         cycles_surfaces.add(scene, "surface%d" % i, surface, directory)
     return {"mode": mode, "interpolation": interpolation}

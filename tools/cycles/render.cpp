@@ -105,6 +105,7 @@ CyclesResult renderWithCycles(const scene::SceneDescription& scene,
     writeScripts(directory);
     writeWholeFile(directory / "scene.json", text);
     writeCyclesMeshes(directory.string(), scene, loaded);
+    writeCyclesSkies(directory.string(), scene);
     const auto onLine = [&](const std::string& line) {
         spdlog::debug("{}", line);
         if (const auto fraction = fractionIn(line)) options.onProgress(*fraction);

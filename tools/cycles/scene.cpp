@@ -8,8 +8,11 @@
 #include "tools/cycles/json.h"
 #include "tools/cycles/surfaces.h"
 #include "woodcock/grid/vdb/file.h"
+#include "woodcock/image/film.h"
+#include "woodcock/image/write_exr.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/sky.h"
 
 namespace woodcock::tool {
 
@@ -152,6 +155,8 @@ private:
 
 // ---- lights
 
+std::string skyFile(std::size_t light) { return fmt::format("sky{}.exr", light); }
+
 /// A light as a description for Blender. `placeOf`: where the value of a member was written.
 template <class PlaceOf>
 json lightJson(const scene::SunDescription& sun, const PlaceOf& placeOf) {
@@ -243,6 +248,34 @@ json lightJson(const scene::DiskDescription& disk, const PlaceOf& placeOf) {
     return flatJson(disk, "ELLIPSE", 2 * disk.radius, 2 * disk.radius, pi / 4, placeOf);
 }
 
+/// The radiance from all around, as an image beside the description (writeCyclesSkies), and a sun.
+template <class PlaceOf>
+json lightJson(const scene::SkyDescription& sky, const PlaceOf& placeOf) {
+    scene::SkyParts parts = scene::partsOf(sky);
+    json environment = lightJson(parts.environment, placeOf);
+    environment["image"] = skyFile(placeOf.light);
+    environment["image_from_world"] = toJson(cyclesImageFromWorld(parts.environment));
+    if (!parts.sun) return json::array({environment});
+    if (parts.sun->visible)
+        spdlog::warn("light[{}]: Cycles does not show the sun's disc to the camera", placeOf.light);
+    parts.sun->visible = false;
+    return json::array({environment, lightJson(*parts.sun, placeOf)});
+}
+
+/// Where the members of a light were written.
+template <class L>
+struct PlacesOfLight {
+    const scene::Places& places;
+    std::size_t light;  ///< its index
+    const L& described;
+
+    template <class Member>
+    std::string operator()(const Member& member) const {
+        return scene::findPlace(
+            places, fmt::format("light[{}].{}", light, scene::keyName(described, member)));
+    }
+};
+
 // ---- camera and settings
 
 json cameraJson(const scene::SceneDescription& scene) {
@@ -306,6 +339,20 @@ json renderJson(const scene::SceneDescription& scene, const CyclesSettings& sett
 
 }  // namespace
 
+void writeCyclesSkies(const std::filesystem::path& directory,
+                      const scene::SceneDescription& scene) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const auto* sky = std::get_if<scene::SkyDescription>(&scene.lights[i].light);
+        if (!sky) continue;
+        const image::Image image = scene::partsOf(*sky).image;
+        image::Film film(image.width, image.height, {0, 0, image.width, image.height});
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                film.add(x, y, image::FilmSample{.radiance = image.at(x, y), .alpha = 1});
+        image::writeExr(directory / skyFile(i), film, {}, {});
+    }
+}
+
 std::string cyclesScene(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
                         const CyclesSettings& settings) {
     if (scene.render.approximations.transparentShadows)
@@ -315,15 +362,13 @@ std::string cyclesScene(const scene::SceneDescription& scene, const scene::Loade
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         VolumeWriter(scene, loaded, i).addTo(volumes);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        lights.push_back(std::visit(
-            [&](const auto& light) {
-                return lightJson(light, [&](const auto& member) {
-                    return scene::findPlace(
-                        scene.places,
-                        fmt::format("light[{}].{}", i, scene::keyName(light, member)));
-                });
+        json light = std::visit(
+            [&]<class L>(const L& described) -> json {
+                return lightJson(described, PlacesOfLight<L>{scene.places, i, described});
             },
-            scene.lights[i].light));
+            scene.lights[i].light);
+        if (!light.is_array()) light = json::array({std::move(light)});
+        for (json& part : light) lights.push_back(std::move(part));
     }
     const json out{{"volumes", std::move(volumes)},
                    {"lights", std::move(lights)},

@@ -130,6 +130,17 @@ std::string TomlValue::text() const {
     return value->get();
 }
 
+std::string TomlValue::timeText(std::string_view expected) const {
+    if (const auto* date = node_->as_date())
+        return fmt::format("{:04}-{:02}-{:02}", date->get().year, date->get().month,
+                           date->get().day);
+    if (const auto* time = node_->as_time())
+        return fmt::format("{:02}:{:02}:{:02}", time->get().hour, time->get().minute,
+                           time->get().second);
+    if (!isText()) throw wrongType(expected);
+    return text();
+}
+
 TomlValue TomlValue::element(size_t i) const {
     return {*node_->as_array()->get(i), fmt::format("{}[{}]", name_, i)};
 }

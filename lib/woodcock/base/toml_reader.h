@@ -65,6 +65,9 @@ public:
     std::uint64_t count() const;  ///< a non-negative integer
     bool flag() const;
     std::string text() const;  ///< not empty
+    /// Of a date or a time of day, as TOML writes it: "2026-06-21", "14:30:00"; or of a string that
+    /// stands for one. `expected` describes it in messages.
+    std::string timeText(std::string_view expected) const;
     Vec3d vector() const;
     Rgb colour(NumberRange range) const;  ///< from a number or [r, g, b]
     Vec3d exactColour(NumberRange range) const;

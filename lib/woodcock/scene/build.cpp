@@ -6,6 +6,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/overrides.h"
+#include "woodcock/scene/sky.h"
 
 namespace woodcock::scene {
 namespace {
@@ -47,14 +48,25 @@ light::Light buildLight(const DiskDescription& disk, LoadedLight&&) {
     return light::DiskLight{flatLight(disk, 2 * disk.radius, 2 * disk.radius)};
 }
 
+template <class L>
+void addLights(std::vector<light::Light>& lights, const L& light, LoadedLight&& loaded) {
+    lights.push_back(buildLight(light, std::move(loaded)));
+}
+void addLights(std::vector<light::Light>& lights, const SkyDescription& sky, LoadedLight&&) {
+    SkyParts parts = partsOf(sky);
+    image::Image& image = parts.image;
+    lights.push_back(
+        buildLight(parts.environment, {.map = {image.width, image.height, std::move(image.rgb)}}));
+    if (parts.sun) lights.push_back(buildLight(*parts.sun, {}));
+}
+
 light::LightSet buildLights(const SceneDescription& description, std::vector<LoadedLight> loaded,
                             BuiltSurfaces& surfaces) {
     std::vector<light::Light> lights;
     loaded.resize(description.lights.size());  // lights that were chosen after loading have no file
     for (size_t i = 0; i < loaded.size(); ++i)
-        lights.push_back(
-            std::visit([&](const auto& light) { return buildLight(light, std::move(loaded[i])); },
-                       description.lights[i].light));
+        std::visit([&](const auto& light) { addLights(lights, light, std::move(loaded[i])); },
+                   description.lights[i].light);
     if (!surfaces.emitters.empty())
         lights.push_back(
             light::MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
@@ -140,9 +152,11 @@ bool anythingGlows(const SceneDescription& scene) {
 
 bool environmentIsHidden(const SceneDescription& scene) {
     bool hidden = true;
-    for (const LightDescription& light : foreseenLights(scene))
+    for (const LightDescription& light : foreseenLights(scene)) {
         if (const auto* environment = std::get_if<EnvironmentDescription>(&light.light))
             hidden &= !environment->visible;
+        if (const auto* sky = std::get_if<SkyDescription>(&light.light)) hidden &= !sky->visible;
+    }
     return hidden;
 }
 

@@ -9,6 +9,7 @@
 
 #include "woodcock/base/affine.h"
 #include "woodcock/base/spectrum.h"
+#include "woodcock/light/solar_position.h"
 
 namespace woodcock::scene {
 
@@ -49,6 +50,31 @@ struct EnvironmentDescription {
 
     Rgb brightness() const { return radiance; }
     bool glows() const { return false; }
+};
+
+/// Where on Earth a sky is seen, and when.
+struct SkyMoment {
+    light::EarthPlace place;
+    light::CivilTime time;
+    bool operator==(const SkyMoment&) const = default;
+};
+
+/// The clear sky of a light::SkyModel, and its sun.
+struct SkyDescription {
+    SunPlace place = {};                   ///< of the sun
+    std::optional<SkyMoment> moment = {};  ///< where `place` follows from it: so it is written
+    double turbidity = 3;
+    Rgb groundAlbedo{0.2f};
+    bool ground = true;      ///< seen below the horizon; else there is nothing
+    bool sun = true;         ///< beside the sky
+    double sunSize = 0.53;   ///< degrees
+    double sunStrength = 1;  ///< multiplies the sun alone
+    double strength = 0.03;  ///< multiplies the model's W / (m^2 sr)
+    bool visible = true;     ///< to camera rays
+    bool operator==(const SkyDescription&) const = default;
+
+    Rgb brightness() const { return Rgb(static_cast<float>(strength)); }
+    bool glows() const { return visible && sun && sunSize > 0; }
 };
 
 /// The axes of a lamp that shines along `direction` (world, of any length): its column y is that
@@ -127,7 +153,7 @@ concept IsLightDescription = std::equality_comparable<L> && requires(const L& l)
 /// A light of any type.
 struct LightDescription {
     std::variant<SunDescription, PointDescription, SpotDescription, SphereDescription,
-                 RectangleDescription, DiskDescription, EnvironmentDescription>
+                 RectangleDescription, DiskDescription, EnvironmentDescription, SkyDescription>
         light;
     bool operator==(const LightDescription&) const = default;
 

@@ -187,8 +187,10 @@ std::string writeScene(const SceneDescription& scene, const std::filesystem::pat
 std::string sceneDigest(const SceneDescription& scene) {
     SceneDescription content = scene;
     // However it is said where a sun stands.
-    for (LightDescription& light : content.lights)
+    for (LightDescription& light : content.lights) {
         if (auto* sun = std::get_if<SunDescription>(&light.light)) sun->place.reset();
+        if (auto* sky = std::get_if<SkyDescription>(&light.light)) sky->moment.reset();
+    }
     SceneWriter out(".", SceneWriter::Mode::Digest);
     write(out, content);
     return fmt::format("{:016x}", hashOf(out.text()));

@@ -107,15 +107,15 @@ def world(world, report):
     if output and source(output.inputs["Volume"]):
         report("the volume of the world is left out")
     shader = source(output.inputs["Surface"]) if output else None
-    return backgrounds(shader.node) if shader else []
+    return backgrounds(shader.node, report) if shader else []
 
 
-def backgrounds(node):
+def backgrounds(node, report):
     if node.type == "ADD_SHADER":
         found = []
         for socket in node.inputs:
             part = source(socket)
-            found += backgrounds(part.node) if part else []
+            found += backgrounds(part.node, report) if part else []
         return found
     if node.type != "BACKGROUND":
         raise Untranslatable("the shader '%s'" % node.name)
@@ -123,12 +123,27 @@ def backgrounds(node):
     fed = source(node.inputs["Color"])
     if fed and fed.node.type == "TEX_ENVIRONMENT":
         return [image(fed.node, strength)]
+    if fed and fed.node.type == "TEX_SKY":
+        return [sky(fed.node, strength, report)]
     tint = product(node.inputs["Color"]).constant("a background's colour")
     return [environment([c * strength for c in tint])]
 
 
 def environment(radiance):
     return Section("[[light]]").set("type", quoted("environment")).set("radiance", colour(radiance))
+
+
+def sky(node, strength, report):
+    if node.sky_type != "HOSEK_WILKIE":
+        raise Untranslatable("the sky model '%s'" % node.sky_type.lower().replace("_", " "))
+    if "Vector" in node.inputs and source(node.inputs["Vector"]):
+        raise Untranslatable("a sky that nodes turn")
+    elevation, azimuth = mapping.sun_place(node.sun_direction)
+    report("Cycles' sky goes on below the horizon; Woodcock has the ground there")
+    return (Section("[[light]]").set("type", quoted("sky")).set("elevation", elevation)
+            .set("azimuth", azimuth).set("up", quoted("z")).set("turbidity", node.turbidity)
+            .set("ground_albedo", node.ground_albedo).set("sun", False)
+            .set("strength", mapping.sky_strength(strength)))
 
 
 def image(node, strength):

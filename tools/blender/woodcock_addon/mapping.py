@@ -129,6 +129,18 @@ def environment_rotation(mapping_z):
     return -90.0 - math.degrees(mapping_z)
 
 
+def sun_place(direction):
+    """Elevation and azimuth in degrees (up = "z") of a Hosek-Wilkie sky's sun in this direction.
+    Cycles takes a sun below the horizon for one on it."""
+    x, y, z = direction
+    return max(math.degrees(math.atan2(z, math.hypot(x, y))), 0.0), math.degrees(math.atan2(x, y))
+
+
+def sky_strength(strength):
+    """Of a Hosek-Wilkie sky: Cycles multiplies the published numbers by 2 pi / 683."""
+    return strength * 2 * math.pi / 683
+
+
 def sensor_height(fit, sensor_width, sensor_height, width, height):
     """Height, in a camera's millimetres, of what a picture of width x height pixels shows."""
     if fit == "AUTO":

@@ -19,6 +19,7 @@ std::vector<Check> sampling();
 std::vector<Check> phaseFunctions();
 std::vector<Check> lightSampling();
 std::vector<Check> lamps();
+std::vector<Check> skies();
 std::vector<Check> extremes();
 std::vector<Check> emission();
 

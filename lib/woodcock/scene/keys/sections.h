@@ -78,6 +78,9 @@ template <>
 const KeyTable<MixDescription>& keysOf();
 
 template <>
+const KeyTable<SkyDescription>& keysOf();
+
+template <>
 const KeyTable<SurfaceDescription>& keysOf();
 template <>
 const KeyTable<SphereShape>& keysOf();
