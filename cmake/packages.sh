@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
     cmake ninja-build g++ ccache pkgconf
-    libopenvdb-dev libopenvdb-ax-dev libboost-iostreams-dev zlib1g-dev
+    libopenvdb-dev libopenvdb-ax-dev libboost-iostreams-dev libeigen3-dev zlib1g-dev
     libopenimageio-dev libopencolorio-dev
     libembree-dev libassimp-dev libnanovdb-dev libblosc-dev
     libtbb-dev libfmt-dev libspdlog-dev

@@ -46,10 +46,12 @@ TEST(Statistics, ChiSquareMatchesTheTables) {  // upper 5 % and 0.1 % points of 
 }
 
 TEST(Statistics, GaussLegendreIsExactForPolynomials) {
-    for (int n : {1, 2, 3, 5, 16, 64})
-        for (int power = 0; power < 2 * n; ++power)
-            EXPECT_NEAR(integrate(0, 1, n, [&](double x) { return std::pow(x, power); }),
-                        1.0 / (power + 1), 1e-14);
+    for (const std::size_t n : {1, 2, 3, 5, 16, 64})
+        for (std::size_t power = 0; power < 2 * n; ++power)
+            EXPECT_NEAR(
+                integrate(0, 1, n,
+                          [&](double x) { return std::pow(x, static_cast<double>(power)); }),
+                1 / static_cast<double>(power + 1), 1e-14);
 }
 
 }  // namespace

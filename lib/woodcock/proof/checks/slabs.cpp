@@ -232,11 +232,13 @@ void width(Lab& lab) {
 /// White-sky albedo and transmittance: 2 mu times the above over mu, by Gauss-Legendre.
 Estimate whiteSky(const Lab& lab, Parameters p, const Precision& precision, Part part) {
     double mean = 0, variance = 0;
-    for (const auto& [x, w] : gaussLegendre(8)) {
-        p.mu = (1 + x) / 2;
+    const oracle::Quadrature rule = oracle::gaussLegendre(8);
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        p.mu = rule.nodes[i];
         const Estimate e = measure(lab, p, precision, part);
-        mean += w * p.mu * e.mean;
-        variance += w * p.mu * e.error * w * p.mu * e.error;
+        const double weight = 2 * p.mu * rule.weights[i];
+        mean += weight * e.mean;
+        variance += weight * e.error * weight * e.error;
     }
     return {mean, std::sqrt(variance)};
 }

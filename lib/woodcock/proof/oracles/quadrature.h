@@ -14,7 +14,7 @@ struct Quadrature {
 };
 
 /// The n nodes and weights of Gauss-Legendre quadrature on [0, 1], nodes rising: exact for
-/// polynomials of degree 2n - 1. Newton's method on the three-term recurrence.
+/// polynomials of degree 2n - 1.
 Quadrature gaussLegendre(std::size_t n);
 
 /// Integral of `f` over [a, b], relative error about 1e-13 where f is analytic inside, even if it

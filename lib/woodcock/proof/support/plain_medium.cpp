@@ -23,11 +23,11 @@ double density(const PlainPart& part, Vec3d world, int channel) {
 /// Integral of a smooth function of three channels.
 template <class F>
 Vec3d gauss(double a, double b, int n, F&& f) {
-    static const std::vector<std::pair<double, double>> rules[] = {gaussLegendre(3),
-                                                                   gaussLegendre(6)};
+    static const oracle::Quadrature rules[] = {oracle::gaussLegendre(3), oracle::gaussLegendre(6)};
+    const oracle::Quadrature& rule = rules[n == 3 ? 0 : 1];
     Vec3d sum;
-    for (const auto& [x, w] : rules[n == 3 ? 0 : 1])
-        sum += f((a + b) / 2 + (b - a) / 2 * x) * (w * (b - a) / 2);
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+        sum += f(a + (b - a) * rule.nodes[i]) * (rule.weights[i] * (b - a));
     return sum;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <utility>
+#include <cstddef>
 #include <vector>
+
+#include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::proof {
 
@@ -17,15 +19,13 @@ double chiSquareDeviate(const std::vector<double>& counts, const std::vector<dou
 /// Below this chance, a test with a fixed seed fails: about that of four standard errors.
 inline constexpr double leastProbability = 1e-4;
 
-/// Nodes in (-1, 1) and weights of the Gauss-Legendre rule of order n.
-std::vector<std::pair<double, double>> gaussLegendre(int n);
-
-/// Integral over [a, b] by that rule.
+/// Integral over [a, b] by the Gauss-Legendre rule of order n.
 template <class F>
-double integrate(double a, double b, int n, F&& f) {
+double integrate(double a, double b, std::size_t n, F&& f) {
+    const oracle::Quadrature rule = oracle::gaussLegendre(n);
     double sum = 0;
-    for (const auto& [x, w] : gaussLegendre(n)) sum += w * f((a + b) / 2 + (b - a) / 2 * x);
-    return sum * (b - a) / 2;
+    for (std::size_t i = 0; i < n; ++i) sum += rule.weights[i] * f(a + (b - a) * rule.nodes[i]);
+    return sum * (b - a);
 }
 
 }  // namespace woodcock::proof
