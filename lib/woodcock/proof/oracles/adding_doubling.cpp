@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/proof/oracles/adding_doubling.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -8,7 +9,6 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/vec.h"
-#include "woodcock/proof/oracles/matrix.h"
 #include "woodcock/proof/oracles/quadrature.h"
 
 namespace woodcock::oracle {
@@ -16,6 +16,30 @@ namespace woodcock::oracle {
 namespace {
 
 using Values = std::vector<double>;
+using Matrix = Eigen::MatrixXd;
+
+Matrix zeros(std::size_t n) {
+    return Matrix::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+}
+
+auto diagonal(const Values& values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(),
+                                             static_cast<Eigen::Index>(values.size()))
+        .asDiagonal();
+}
+
+/// Each column times its factor.
+Matrix scaleColumns(const Matrix& a, const Values& factors) { return a * diagonal(factors); }
+
+Matrix oneMinus(const Matrix& a) { return Matrix::Identity(a.rows(), a.cols()) - a; }
+
+/// The X of a X = b.
+Matrix solve(const Matrix& a, const Matrix& b) { return a.partialPivLu().solve(b); }
+
+Values rowSums(const Matrix& a) {
+    const Eigen::VectorXd sums = a.rowwise().sum();
+    return {sums.begin(), sums.end()};
+}
 
 double square(double x) { return x * x; }
 
@@ -95,7 +119,7 @@ void fillFromMoments(Redistribution& r, const Directions& d, const Values& momen
 Redistribution redistribution(const Directions& d, const Layer& layer) {
     const std::size_t n = d.mu.size();
     const double g = layer.g;
-    Redistribution r{Matrix(n), Matrix(n), Values(n, 1)};
+    Redistribution r{zeros(n), zeros(n), Values(n, 1)};
     if (!layer.moments.empty()) fillFromMoments(r, d, layer.moments);
     for (std::size_t i = 0; i < n && layer.moments.empty(); ++i)
         for (std::size_t j = 0; j <= i; ++j) {
@@ -121,14 +145,14 @@ struct Uniform {
 /// scattering of sums and differences of up and down, T +- R = (1 + x - G)^-1 (1 - x + G).
 Uniform thinLayer(const Directions& d, const Redistribution& p, double albedo, double depth) {
     const std::size_t n = d.mu.size();
-    Uniform layer{Values(n), Matrix(n), Matrix(n)};
+    Uniform layer{Values(n), zeros(n), zeros(n)};
     Values x(n);
     for (std::size_t i = 0; i < n; ++i) {
         x[i] = depth * (1 - albedo * p.unresolved[i]) / (2 * d.mu[i]);
         layer.straight[i] = (1 - x[i]) / (1 + x[i]);
     }
     for (const int sign : {1, -1}) {
-        Matrix left(n), right(n);
+        Matrix left = zeros(n), right = zeros(n);
         for (std::size_t i = 0; i < n; ++i) {
             for (std::size_t j = 0; j < n; ++j) {
                 const double G = albedo * depth / (8 * d.mu[i] * d.mu[j]) *
@@ -138,7 +162,7 @@ Uniform thinLayer(const Directions& d, const Redistribution& p, double albedo, d
             }
             left(i, i) += 1 + x[i];
         }
-        const Matrix scattered = solve(std::move(left), std::move(right));
+        const Matrix scattered = solve(left, right);
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j) {
                 layer.T(i, j) += scattered(i, j) / 2;
@@ -154,9 +178,9 @@ Uniform doubled(const Uniform& layer, const Directions& d) {
     const std::size_t n = d.mu.size();
     const Matrix R = scaleColumns(layer.R, d.flux), T = scaleColumns(layer.T, d.flux);
     Uniform result = layer;
-    result.T = Matrix(n);
+    result.T = zeros(n);
     for (const int sign : {1, -1}) {
-        Matrix left(n), right(n);
+        Matrix left = zeros(n), right = zeros(n);
         for (std::size_t i = 0; i < n; ++i) {
             for (std::size_t j = 0; j < n; ++j) {
                 left(i, j) = -sign * R(i, j);
@@ -164,7 +188,7 @@ Uniform doubled(const Uniform& layer, const Directions& d) {
             }
             left(i, i) += 1;
         }
-        const Matrix between = solve(std::move(left), std::move(right));
+        const Matrix between = solve(left, right);
         const Matrix scattered = T * between;
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j) {
@@ -199,14 +223,14 @@ Stack stackOf(const Layer& layer, const Directions& d) {
         }
     }
     const Matrix R = scaleColumns(uniform.R, d.flux);
-    const Matrix T = Matrix::diagonal(uniform.straight) + scaleColumns(uniform.T, d.flux);
+    const Matrix T = Matrix(diagonal(uniform.straight)) + scaleColumns(uniform.T, d.flux);
     return {R, T, R, T};
 }
 
 /// A face with refraction. Radiance is counted divided by the square of the refractive index, which
 /// the passage leaves alone, so both ways are alike.
 Stack boundary(const Directions& d) {
-    const Matrix R = Matrix::diagonal(d.boundaryReflectance);
+    const Matrix R = Matrix(diagonal(d.boundaryReflectance));
     return {R, oneMinus(R), R, oneMinus(R)};
 }
 
@@ -223,7 +247,7 @@ Stack added(const Stack& upper, const Stack& lower) {
 /// What leaves a face under environments of radiance 1 on its side and on the other.
 Face faceOf(const Matrix& reflect, const Matrix& transmit, const Directions& d, double index,
             std::size_t asked) {
-    const Values R = reflect.rowSums(), T = transmit.rowSums();
+    const Values R = rowSums(reflect), T = rowSums(transmit);
     Face face{Values(R.end() - static_cast<std::ptrdiff_t>(asked), R.end()),
               Values(T.end() - static_cast<std::ptrdiff_t>(asked), T.end()), 0, 0};
     for (std::size_t i = 0; i < d.mu.size(); ++i) {
