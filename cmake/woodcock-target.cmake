@@ -29,6 +29,8 @@ function(woodcock_target name)
         $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
         # Where it optimises less it takes values for uninitialised that are not.
         $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Debug>>:-Wno-maybe-uninitialized>
+        # Where several sources are compiled as one, they see each other's own names.
+        $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>
         -fno-math-errno -fno-trapping-math)
     # The same bits on every processor: a fused multiply-add rounds once where two instructions
     # round twice. Plain x86-64 has none.

@@ -16,8 +16,6 @@ namespace {
 /// The part of a neighbouring block, on the + side along `side`, that interpolation reads.
 Vec3i layer(Vec3i side) { return {side.x ? 1 : 8, side.y ? 1 : 8, side.z ? 1 : 8}; }
 
-Vec3i sideOf(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }  // 1 to 7
-
 constexpr int regionSize = 1 << (regionLog2 - blockLog2),
               superSize = 1 << (superLog2 - blockLog2);  // blocks along an edge
 

@@ -5,6 +5,9 @@
 
 namespace woodcock::grid {
 
+/// The i-th of the 8 corners of a unit cube, x first.
+inline Vec3i sideOf(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }
+
 /// Exact bounds of the reconstruction, over all channels, in the closed cube of the block whose
 /// first voxel is 8 `block`: the range of its own voxels and of the layer beyond its + faces that
 /// interpolation reads.

@@ -4,11 +4,11 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "woodcock/grid/block_ranges.h"
+
 namespace woodcock::grid {
 
 namespace {
-
-Vec3i sideOf(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }  // 0 to 7
 
 /// The coarse leaves and tiles of a field.
 class Coarsener {

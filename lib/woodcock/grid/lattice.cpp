@@ -24,7 +24,7 @@ void copyLeafOf(const LatticeValues& lattice, Vec3i origin, std::span<float> lea
 }
 
 /// Every voxel that is not background counts as active.
-std::array<std::uint64_t, 8> activeMask(std::span<const float> leaf) {
+std::array<std::uint64_t, 8> activeVoxels(std::span<const float> leaf) {
     std::array<std::uint64_t, 8> mask{};
     for (std::size_t n = 0; n < leaf.size(); ++n)
         if (leaf[n] != 0) mask[n / 64] |= std::uint64_t{1} << n % 64;
@@ -46,7 +46,7 @@ LatticeSource latticeSource(std::shared_ptr<const LatticeValues> lattice) {
             for (int z = 0; z < n.z; z += 8) {
                 const Vec3i origin{x, y, z};
                 copyLeafOf(*lattice, origin, leaf);
-                const LeafKind kind = scanLeaf(leaf, 1, activeMask(leaf), origin,
+                const LeafKind kind = scanLeaf(leaf, 1, activeVoxels(leaf), origin,
                                                source.field.background, source.voxels);
                 if (kind == LeafKind::Constant)
                     source.field.tiles.push_back({origin, 8, {leaf[0]}});

@@ -168,9 +168,9 @@ mesh::SurfaceMesh readShape(const MeshShape& shape, std::optional<double> angle)
 }
 
 /// Makes meshes, each once.
-class Loader {
+class SurfaceLoader {
 public:
-    Loader(const SceneDescription& scene, std::vector<std::string>& notes)
+    SurfaceLoader(const SceneDescription& scene, std::vector<std::string>& notes)
         : scene_(scene), notes_(notes) {}
 
     LoadedSurface load(size_t index) {
@@ -316,7 +316,7 @@ std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file) {
 std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
                                         std::vector<std::string>& notes) {
     std::vector<LoadedSurface> loaded;
-    Loader loader(scene, notes);
+    SurfaceLoader loader(scene, notes);
     for (size_t i = 0; i < scene.surfaces.size(); ++i) loaded.push_back(loader.load(i));
     checkFillings(scene, loaded);
     return loaded;

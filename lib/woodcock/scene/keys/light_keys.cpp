@@ -16,7 +16,7 @@ using Spot = SpotDescription;
 using Rectangle = RectangleDescription;
 using Disk = DiskDescription;
 
-const std::string outer = "[[surface]]\nsphere = {}\n[[light]]\n";
+const std::string outerOfLight = "[[surface]]\nsphere = {}\n[[light]]\n";
 
 Value<UpAxis> upAxis() { return choice<UpAxis>("up axis", {{UpAxis::Y, "y"}, {UpAxis::Z, "z"}}); }
 
@@ -341,7 +341,7 @@ const KeyTable<Sun>& keysOf() {
                        {"up", "direction", "up is for elevation and azimuth"}},
         .keys = sunKeys(),
         .check = checkSun,
-        .outer = outer,
+        .outer = outerOfLight,
         .least = "direction = [0, -1, 0]",
         .path = "light[0]"};
     return table;
@@ -378,7 +378,7 @@ const KeyTable<Point>& keysOf() {
              key({.name = "up", .doc = "with `ies`: the axis that is upwards", .beside = profile},
                  &Point::up, upAxis())},
         .check = checkPoint,
-        .outer = outer,
+        .outer = outerOfLight,
         .least = "position = [1, 1, 1]",
         .path = "light[0]"};
     return table;
@@ -412,7 +412,7 @@ const KeyTable<Spot>& keysOf() {
                       .doc = "how soft the edge is: 0 is hard, 1 begins at the axis"},
                      &Spot::blend, number(zeroToOne))},
         .check = checkSpot,
-        .outer = outer,
+        .outer = outerOfLight,
         .least = aimed,
         .path = "light[0]"};
     return table;
@@ -430,7 +430,7 @@ const KeyTable<Rectangle>& keysOf() {
                  &Rectangle::size, numberPair("[width, depth]", positive))},
             "instead of `radiance`: pi area radiance, of each side that shines", true),
         .check = checkRectangle,
-        .outer = outer,
+        .outer = outerOfLight,
         .path = "light[0]"};
     return table;
 }
@@ -447,7 +447,7 @@ const KeyTable<Disk>& keysOf() {
                                "instead of `radiance`: pi area radiance, of each side that shines",
                                false),
         .check = checkDisk,
-        .outer = outer,
+        .outer = outerOfLight,
         .path = "light[0]"};
     return table;
 }
@@ -472,7 +472,7 @@ const KeyTable<Sphere>& keysOf() {
                  key({.name = "visible", .doc = "whether the camera sees it"}, &Sphere::visible,
                      flag())},
         .check = checkSphere,
-        .outer = outer,
+        .outer = outerOfLight,
         .least = "position = [1, 1, 1]\nradius = 2",
         .path = "light[0]"};
     return table;
@@ -501,7 +501,7 @@ const KeyTable<Environment>& keysOf() {
                      &Environment::up, upAxis()),
                  key({.name = "visible", .doc = "whether the camera sees it"},
                      &Environment::visible, flag())},
-        .outer = outer,
+        .outer = outerOfLight,
         .path = "light[0]"};
     return table;
 }

@@ -15,7 +15,7 @@ using Mix = MixDescription;
 /// Beyond this no ray gets in or out, but by the last digits of a cosine.
 constexpr double largestIor = 100;
 
-const std::string outer = "[[surface]]\nsphere = {}\n[[material]]\nname = \"m\"\n";
+const std::string outerOfMaterial = "[[surface]]\nsphere = {}\n[[material]]\nname = \"m\"\n";
 
 /// number | [r, g, b] | { image, colour_space, times }. `range` is of the colour alone; what an
 /// image holds is known when it is loaded.
@@ -118,7 +118,7 @@ const KeyTable<Texture>& keysOf() {
                      &Texture::colourSpace, text()),
                  key({.name = "times", .doc = "multiplies the image"}, &Texture::colour,
                      colour(notNegative))},
-        .outer = outer + "type = \"diffuse\"\n[material.colour]\n",
+        .outer = outerOfMaterial + "type = \"diffuse\"\n[material.colour]\n",
         .least = "image = \"a.png\"",
         .path = "material[0].colour"};
     return table;
@@ -132,7 +132,7 @@ const KeyTable<Diffuse>& keysOf() {
         .tag = "diffuse",
         .keys = {key({.name = "colour", .doc = "its reflectance", .always = true}, &Diffuse::colour,
                      texture(zeroToOne))},
-        .outer = outer,
+        .outer = outerOfMaterial,
         .path = "material[0]"};
     return table;
 }
@@ -152,7 +152,7 @@ const KeyTable<Conductor>& keysOf() {
                             &std::pair<Rgb, Rgb>::second, notNegative),
                  roughness(&Conductor::roughness)},
         .check = checkConductor,
-        .outer = outer,
+        .outer = outerOfMaterial,
         .path = "material[0]"};
     return table;
 }
@@ -171,7 +171,7 @@ const KeyTable<Dielectric>& keysOf() {
                      &Dielectric::ior, number({0, largestIor, true})),
                  belowOne(), roughness(&Dielectric::roughness)},
         .check = checkDielectric,
-        .outer = outer,
+        .outer = outerOfMaterial,
         .path = "material[0]"};
     return table;
 }
@@ -181,7 +181,7 @@ const KeyTable<InterfaceDescription>& keysOf() {
     static const KeyTable<InterfaceDescription> table{.id = "material.interface",
                                                       .where = "a [[material]] of type interface",
                                                       .tag = "interface",
-                                                      .outer = outer,
+                                                      .outer = outerOfMaterial,
                                                       .path = "material[0]"};
     return table;
 }
@@ -196,7 +196,7 @@ const KeyTable<Emissive>& keysOf() {
                      &Emissive::radiance, texture(notNegative)),
                  key({.name = "both_sides", .doc = "`false`: it emits on the outside alone"},
                      &Emissive::bothSides, flag())},
-        .outer = outer,
+        .outer = outerOfMaterial,
         .path = "material[0]"};
     return table;
 }

@@ -8,7 +8,7 @@ namespace {
 
 using Base = const std::filesystem::path&;
 
-const std::string outer = "[[volume]]\nfile = \"a.vdb\"\n[volume.phase]\n";
+const std::string outerOfPhase = "[[volume]]\nfile = \"a.vdb\"\n[volume.phase]\n";
 
 template <class D>
 KeyTable<D> tableOf(const std::string& type, std::vector<Key<D>> keys, std::string least = {}) {
@@ -16,7 +16,7 @@ KeyTable<D> tableOf(const std::string& type, std::vector<Key<D>> keys, std::stri
             .where = "a phase function of type " + type,
             .tag = type,
             .keys = std::move(keys),
-            .outer = outer,
+            .outer = outerOfPhase,
             .least = std::move(least),
             .path = "volume[0].phase"};
 }

@@ -68,7 +68,7 @@ Key<V> boxCoefficient(std::string name, Rgb Homogeneous::*member) {
                                   &V::coefficients, member, colour(notNegative));
 }
 
-Key<V> box() {
+Key<V> boxOfVolume() {
     return keyOfKind<Homogeneous>(
         {.name = "box",
          .doc = "instead of a file: a box that is filled evenly. It takes `sigma_a` and `sigma_s` "
@@ -113,7 +113,7 @@ std::vector<Key<V>> coefficientKeys() {
                          .doc = "an OpenVDB or NanoVDB file",
                          .fallback = "that or `box` must be given"},
                         &V::file, path()),
-                    box()},
+                    boxOfVolume()},
         densityKeys(),
         std::vector{absorption(),
                     separateKey("sigma_s", "the same for scattering", &Separate::sigmaS),
