@@ -22,6 +22,18 @@ void oneTap(benchmark::State& state, Storage storage, int side, bool dependent) 
     state.counters["MB"] = static_cast<double>(field.bytes()) / 1e6;
 }
 
+/// Fields of all sizes, of bricks of noise: 2 KB each. The larger, the more reads miss the table of
+/// pages.
+void large(benchmark::State& state, bool dependent) {
+    const Field field = fieldOfBricks(static_cast<std::size_t>(state.range(0)));
+    constexpr std::uint64_t count = 1 << 14;
+    std::uint64_t seed = 0;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(lookAtRandom(field, count, dependent, seed += count));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+    state.counters["MB"] = static_cast<double>(field.bytes()) / 1e6;
+}
+
 void trilinear(benchmark::State& state, Storage storage, int side) {
     const Field field = bench::wavyBall(side, storage);
     RandomStream random(1);
@@ -49,6 +61,11 @@ int main(int argc, char** argv) {
             benchmark::RegisterBenchmark(("trilinear/" + field).c_str(), trilinear, storage, side);
         }
     }
+    for (const bool dependent : {false, true})
+        benchmark::RegisterBenchmark(dependent ? "large/dependent" : "large/independent", large,
+                                     dependent)
+            ->RangeMultiplier(8)
+            ->Range(1 << 12, 1 << 20);  // 8 MB to 2 GB
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

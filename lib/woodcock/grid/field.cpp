@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/huge_pages.h"
 
 namespace woodcock::grid {
 
@@ -100,7 +101,7 @@ private:
 
     void copyAsFloat() {
         const std::size_t n = source_.leafOrigins.size();
-        field_.floats_ = std::make_unique_for_overwrite<float[]>(n * brickValues());
+        field_.floats_ = largeArray<float>(n * brickValues());
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             const std::span<float> brick(&field_.floats_[i * brickValues()], brickValues());
             source_.copyLeaf(i, brick);
@@ -110,7 +111,7 @@ private:
 
     void copyAsHalf() {
         const std::size_t n = source_.leafOrigins.size();
-        field_.words_ = std::make_unique_for_overwrite<std::uint16_t[]>(n * brickValues());
+        field_.words_ = largeArray<std::uint16_t>(n * brickValues());
         std::atomic<bool> overflow{false};
         forEachLeaf([&](std::size_t i, std::span<const float> values) {
             const Range exact = rangeOfBrick(values);
@@ -132,7 +133,7 @@ private:
     void copyAsFixed(std::unique_ptr<Code[]>& codes) {
         constexpr unsigned last = std::numeric_limits<Code>::max();
         const std::size_t n = source_.leafOrigins.size(), channels = field_.channelCount();
-        codes = std::make_unique_for_overwrite<Code[]>(n * brickValues());
+        codes = largeArray<Code>(n * brickValues());
         field_.scales_.resize(n * channels);
         std::vector<float> errors(n);
         forEachLeaf([&](std::size_t i, std::span<const float> values) {

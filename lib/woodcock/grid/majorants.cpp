@@ -5,6 +5,7 @@
 
 #include <unordered_set>
 
+#include "woodcock/base/huge_pages.h"
 #include "woodcock/base/random.h"
 #include "woodcock/base/statistics.h"
 #include "woodcock/grid/block_ranges.h"
@@ -195,6 +196,9 @@ void MajorantGrid::splitLooseBlocks(const Field& field, const Options& options) 
         const double whole = costOf(*table_.find(blocks[i]).value);
         splits[i] = cheapestSplit(field, blocks[i], whole, options);
     });
+    std::size_t parts = 0;
+    for (const Split& split : splits) parts += split.cells.size();
+    reserveLarge(parts_, parts);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         if (splits[i].cells.empty()) continue;
         table_.at(blocks[i]).code =

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/huge_pages.h"
 
 namespace woodcock::image {
 
@@ -57,11 +58,16 @@ Film::Film(int width, int height, Window crop, Kept kept)
         throw usageError(
             "the crop from ({}, {}) to ({}, {}) reaches beyond the image of {} x {} pixels",
             crop.x0, crop.y0, crop.x1, crop.y1, width, height);
-    pixels_.resize(static_cast<std::size_t>(crop.width()) *
-                   static_cast<std::size_t>(crop.height()));
-    if (kept.surfaces) surfacePixels_.resize(pixels_.size());
-    if (kept.features) featurePixels_.resize(pixels_.size());
-    if (kept.background) foregroundPixels_.resize(pixels_.size());
+    const std::size_t count =
+        static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
+    const auto make = [&](auto& pixels) {
+        reserveLarge(pixels, count);
+        pixels.resize(count);
+    };
+    make(pixels_);
+    if (kept.surfaces) make(surfacePixels_);
+    if (kept.features) make(featurePixels_);
+    if (kept.background) make(foregroundPixels_);
 }
 
 std::size_t Film::index(int x, int y) const {
