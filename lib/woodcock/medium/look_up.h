@@ -21,7 +21,7 @@ struct InFull {};
 
 /// A field at an index position in its support. One channel serves all N.
 template <int N>
-Spectrum<N> read(const grid::Field& field, Vec3d index, OneTap how) {
+[[gnu::always_inline]] inline Spectrum<N> read(const grid::Field& field, Vec3d index, OneTap how) {
     const Vec3i v = field.stochasticVoxel(index, how.bits);
     if (N == 1 || field.channels() == 1) return Spectrum<N>(field.voxel(v));
     return Spectrum<N>::map([&](int c) { return field.voxel(v, c); });

@@ -18,10 +18,11 @@ struct Sampled {
     Spectrum<N> f, albedo;
 };
 
-/// f at an index position, by full interpolation inside tight bounds.
+/// f at an index position, by full interpolation inside tight bounds. Not inline: both loops have
+/// more registers without it.
 template <int N>
-[[gnu::always_inline]] inline Spectrum<N> density(const MediumPart& part, Vec3d index, float time,
-                                                  bool tight, std::uint64_t bits) {
+[[gnu::noinline]] Spectrum<N> density(const MediumPart& part, Vec3d index, float time, bool tight,
+                                      std::uint64_t bits) {
     if (tight) return densityAt<N>(part, index, time, InFull{});
     return densityAt<N>(part, index, time, OneTap{bits});
 }

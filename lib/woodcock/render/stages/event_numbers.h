@@ -18,7 +18,7 @@ inline constexpr std::int64_t quasiRandomOrders = 4;
 
 /// The numbers of a path's next event.
 template <int N, bool Surfaces>
-EventNumbers drawNumbers(PathState<N, Surfaces>& p) {
+[[gnu::always_inline]] inline EventNumbers drawNumbers(PathState<N, Surfaces>& p) {
     std::int64_t order = p.scatterings;
     if constexpr (Surfaces) order += p.surfaces.bounces;
     if (order >= quasiRandomOrders) {

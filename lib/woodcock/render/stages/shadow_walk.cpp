@@ -147,6 +147,9 @@ void shadowWalk(const TracedScene& traced, Batch<N, Surfaces>& batch) {
     while (!batch.shadows.empty()) {
         if constexpr (Surfaces) {
             passSurfacesAndMedia(traced, batch, c);
+        } else if (!traced.media.replaces()) {
+            findTransmittances<N>(traced.options.approximations, *traced.media[0].medium,
+                                  batch.shadowQueries, c);
         } else {
             batch.runs.clear();
             for (std::size_t i = 0; i < batch.shadows.size(); ++i)
