@@ -112,7 +112,7 @@ TEST(LightSet, ListsLightsByWhatTheyAre) {
     EXPECT_FALSE(lights.showsBackground());
     // Behind them, neither the spot nor what shines to one side is picked.
     std::vector<float> p(5);
-    lights.pickProbabilities({{0.1, 0.2, -3}, {0, 0, 1}, 0}, p);
+    lights.pickProbabilities({{0.1, 0.2, -3}, {0, 0, 1}}, p);
     EXPECT_EQ(p[0], 0);
     EXPECT_EQ(p[1], 0);
     EXPECT_EQ(p[3], 0);

@@ -69,8 +69,8 @@ TEST(Light, AnswersForItsKind) {
     EXPECT_FALSE(spot.meetsRays());
     EXPECT_EQ(spot.meet({1, 5, 3}, {0, -1, 0}).distance, infinity);
     EXPECT_EQ(spot.distantRadiance({0, 1, 0}), Rgb(0.0f));
-    EXPECT_EQ(spot.importance({{1, 3, 3}, {0, 0, 1}, 0}), 0);
-    EXPECT_NEAR(spot.importance({{1, 0, 3}, {0, 0, 1}, 0}), 6 / 4.0 / (4 * pi), 1e-6);
+    EXPECT_EQ(spot.importance({{1, 3, 3}, {0, 0, 1}}), 0);
+    EXPECT_NEAR(spot.importance({{1, 0, 3}, {0, 0, 1}}), 6 / 4.0 / (4 * pi), 1e-6);
     EXPECT_EQ(spot.flaw(), "");
     const Light sun = Sun({0, -1, 0}, Rgb(1.0f), 1e-30, false);
     EXPECT_NE(sun.flaw().find("so narrow"), std::string::npos);
