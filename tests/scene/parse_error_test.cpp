@@ -180,7 +180,7 @@ TEST(ParseErrors, OfPaths) {
 TEST(ParseErrors, OfLights) {
     EXPECT_EQ(lightMistake("type = \"sunn\""),
               "scene.toml:4:8: unknown light type 'sunn'; known: sun, point, spot, sphere, "
-              "rectangle, disk, environment");
+              "rectangle, disk, environment, sky");
     EXPECT_EQ(lightMistake("radiance = 1"),
               "scene.toml:3:1: light[0] has no type; give one, such as type = \"sun\"");
     EXPECT_EQ(lightMistake("type = \"sun\""),

@@ -151,7 +151,7 @@ void expectPythonTests(int count, const std::string& program,
 }
 
 TEST(BlenderAddOn, MapsCyclesParameters) {
-    expectPythonTests(11, "blender_mapping.py", {"tools/blender/woodcock_addon"});
+    expectPythonTests(12, "blender_mapping.py", {"tools/blender/woodcock_addon"});
 }
 
 TEST(BlenderBridge, MakesMediaOfTheNodesThatThereAre) {
