@@ -296,7 +296,7 @@ RenderedImage Renderer::render(const RenderCalls& calls) const {
         notes.insert(notes.end(), more.begin(), more.end());
     };
     note(scene::completeScene(description, loaded));
-    scene::loadChosenImages(description, loaded);
+    scene::loadChosen(description, loaded);
     const render::Scene scene = scene::buildScene(description, std::move(loaded), &notes);
     note(render::precisionWarnings(scene));
     render::RenderResult result = draw(scene, settings, calls);

@@ -88,6 +88,16 @@ TEST(FrameNames, APatternFindsItsFiles) {
     EXPECT_TRUE(seriesOfPattern((dir / "f####/a.vdb").string()).numbers.empty());
 }
 
+TEST(FrameNames, FilesAroundOneDifferInItsLastNumber) {
+    const TempDir dir;
+    for (const char* name : {"v2.0009.vdb", "v2.0010.vdb", "v3.0009.vdb", "v2.0009.png", "a.vdb"})
+        writeText(dir / name, "");
+    EXPECT_EQ(seriesAround(dir / "v2.0009.vdb").numbers, (Names{"0009", "0010"}));
+    EXPECT_EQ(seriesAround(dir / "v2.0010.vdb").name("0009"), (dir / "v2.0009.vdb").string());
+    EXPECT_EQ(seriesAround(dir / "v3.0009.vdb").numbers, Names{"0009"});
+    EXPECT_TRUE(seriesAround(dir / "a.vdb").numbers.empty());
+}
+
 TEST(FrameNames, NumbersAreWrittenAsShellsTakeThem) {
     EXPECT_EQ(shellNumbers({"0009", "0010"}), "0009 0010");
     EXPECT_EQ(shellNumbers({"08", "09", "10", "11", "12", "13", "14"}), "{08..14}");

@@ -296,7 +296,7 @@ TEST(CompleteScene, FramesSurfacesAlone) {
     const auto& pose = std::get<LookAt>(*scene.camera.pose);
     EXPECT_NEAR(pose.target.x, 100, 1);
     EXPECT_LT(length(pose.eye - pose.target), 20);
-    EXPECT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.lights.size(), 3u);
 }
 
 TEST(CompleteScene, ChoosesNoLightWhereSurfacesEmit) {

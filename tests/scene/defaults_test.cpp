@@ -35,10 +35,11 @@ struct Completed {
     LoadedScene loaded;
     std::vector<std::string> notes;
 
-    explicit Completed(const std::string& text, const std::filesystem::path& base = ".")
+    explicit Completed(const std::string& text, const std::filesystem::path& base = ".",
+                       Look look = Look::Picture)
         : description(parseSceneText(text, "scene.toml", base)),
           loaded(loadScene(description)),
-          notes(completeScene(description, loaded)) {}
+          notes(completeScene(description, loaded, look)) {}
     Scene scene() const { return buildScene(description, loaded); }
 };
 
@@ -201,12 +202,35 @@ TEST(Defaults, RefuseAnEyeThatCannotLookAtTheVolumes) {
 }
 
 TEST(Defaults, LookDownALittleWithYUp) {
-    const Completed c(box("[0, 0, 0]", "[1, 1, 1]"));
-    const Affine3d camera = c.scene().camera.worldFromCamera;
-    EXPECT_GT(camera.column[2].y, 0.1);  // backwards is up: the view goes down
-    EXPECT_LT(camera.column[2].y, 0.5);
-    EXPECT_GT(camera.column[1].y, 0.8);
-    EXPECT_GT(std::abs(camera.column[2].x), 0.3);  // from the side as well
+    for (const auto& [look, least, most] :
+         {std::tuple(Look::Picture, 0.02, 0.15), {Look::Plain, 0.1, 0.5}}) {
+        const Completed c(box("[0, 0, 0]", "[1, 1, 1]"), ".", look);
+        const Affine3d camera = c.scene().camera.worldFromCamera;
+        EXPECT_GT(camera.column[2].y, least);  // backwards is up: the view goes down
+        EXPECT_LT(camera.column[2].y, most);
+        EXPECT_GT(camera.column[1].y, 0.8);
+        EXPECT_GT(std::abs(camera.column[2].x), 0.3);  // from the side as well
+    }
+}
+
+TEST(Defaults, FrameWhatIsSeen) {
+    // A ball, and far beside it a sheet. It is a tenth as dense, so no wisp, but a voxel thick.
+    const TempDir dir;
+    GridSpec grid;
+    grid.box = {{0, 0, 0}, {239, 95, 95}};
+    const auto inBall = [](Vec3i v) { return length(v.as<double>() - Vec3d{48, 48, 48}) < 44; };
+    grid.value = [&](Vec3i v) { return inBall(v) ? 1 : v.x > 180 && v.z == 50 ? 0.1 : 0; };
+    writeVdb(dir / "a.vdb", {grid});
+    std::vector<Vec3d> ball;
+    for (int i = 0; i < 96 * 96 * 96; ++i) {
+        const Vec3i v{i % 96, i / 96 % 96, i / 96 / 96};
+        if (inBall(v)) ball.push_back(v.as<double>());
+    }
+    // A ray straight through the sheet has a depth of 0.01, then one of 5.
+    const std::string thin = "[[volume]]\nfile = \"a.vdb\"\nscale = 0.1\n";
+    expectFramed(Completed(thin, dir.path()), ball, 0.4);
+    const std::string thick = "[[volume]]\nfile = \"a.vdb\"\nscale = 50\n";
+    EXPECT_LT(onFilm(Completed(thick, dir.path()), ball).size().x, 0.8);
 }
 
 TEST(Defaults, BlendersVolumesStandOnZ) {
@@ -228,35 +252,64 @@ TEST(Defaults, ScaleGivesATypicalRayItsOpticalDepth) {
         const TempDir dir;
         writeVdb(dir / "a.vdb",
                  {ball(Affine3d::translate({3, 4, 5}) * Affine3d::scale(Vec3d{1, 1, 1} * voxel))});
-        const Completed c("[[volume]]\nfile = \"a.vdb\"\n", dir.path());
-        const Scene scene = c.scene();
-        // Through a ball of radius r, half of parallel rays that are spread evenly over its disc
-        // pass within r sqrt(1/2) of the centre: the median chord is r sqrt(2).
-        const Vec3d centre = Vec3d{3, 4, 5} + Vec3d{12, 12, 12} * voxel;
-        const Vec3d start = centre + Vec3d{0, 12 * std::sqrt(0.5), -30} * voxel;
-        const Rgb depth = exactOpticalDepth(scene.medium, start, {0, 0, 1}, 0, 60 * voxel);
-        EXPECT_NEAR(depth[0], 10, 1) << "voxel " << voxel;
+        for (const auto& [look, depthOfLook] : {std::pair(Look::Picture, 20), {Look::Plain, 10}}) {
+            const Completed c("[[volume]]\nfile = \"a.vdb\"\n", dir.path(), look);
+            const Scene scene = c.scene();
+            // Through a ball of radius r, half of parallel rays that are spread evenly over its
+            // disc pass within r sqrt(1/2) of the centre: the median chord is r sqrt(2).
+            const Vec3d centre = Vec3d{3, 4, 5} + Vec3d{12, 12, 12} * voxel;
+            const Vec3d start = centre + Vec3d{0, 12 * std::sqrt(0.5), -30} * voxel;
+            const Rgb depth = exactOpticalDepth(scene.medium, start, {0, 0, 1}, 0, 60 * voxel);
+            EXPECT_NEAR(depth[0], depthOfLook, 0.1 * depthOfLook) << "voxel " << voxel;
+        }
     }
 }
 
 TEST(Defaults, LightFromTheCamerasUpperLeft) {
     const std::string volume = box("[0, 0, 0]", "[1, 1, 1]");
-    for (const char* camera : {"", "[camera]\neye = [-5, 1, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n",
-                               "[camera]\neye = [0.5, 9, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n"
-                               "up = [1, 0, 0]\n"}) {
-        const Completed c(volume + camera);
-        ASSERT_EQ(c.description.lights.size(), 2u);
-        const Vec3d sun =
-            -normalize(std::get<SunDescription>(c.description.lights[0].light).direction);
-        const Affine3d pose = c.scene().camera.worldFromCamera;
-        EXPECT_NEAR(std::asin(sun.y) * 180 / pi, 40, 1e-9);
-        EXPECT_LT(dot(sun, pose.column[0]), -0.5);
-        const auto place = std::get<SunDescription>(c.description.lights[0].light).place.value();
-        EXPECT_EQ(place.azimuth, std::round(place.azimuth));
-        EXPECT_GE(place.azimuth, 0);
-        EXPECT_LT(place.azimuth, 360);
-        EXPECT_TRUE(std::holds_alternative<EnvironmentDescription>(c.description.lights[1].light));
-    }
+    for (const Look look : {Look::Picture, Look::Plain})
+        for (const char* camera : {"", "[camera]\neye = [-5, 1, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n",
+                                   "[camera]\neye = [0.5, 9, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n"
+                                   "up = [1, 0, 0]\n"}) {
+            const Completed c(volume + camera, ".", look);
+            const auto& lights = c.description.lights;
+            ASSERT_EQ(lights.size(), look == Look::Picture ? 3u : 2u);
+            const Vec3d sun = -normalize(std::get<SunDescription>(lights[0].light).direction);
+            const Affine3d pose = c.scene().camera.worldFromCamera;
+            EXPECT_NEAR(std::asin(sun.y) * 180 / pi, 40, 1e-9);
+            EXPECT_LT(dot(sun, pose.column[0]), -0.5);
+            if (look == Look::Picture) {  // on the camera's side
+                EXPECT_GT(dot(sun, pose.column[2]), 0);
+            }
+            const auto place = std::get<SunDescription>(lights[0].light).place.value();
+            EXPECT_EQ(place.azimuth, std::round(place.azimuth));
+            EXPECT_GE(place.azimuth, 0);
+            EXPECT_LT(place.azimuth, 360);
+            EXPECT_TRUE(std::get<EnvironmentDescription>(lights[1].light).visible);
+        }
+}
+
+TEST(Defaults, KeepTheFillApartFromTheBackdrop) {
+    const Completed c(box("[0, 0, 0]", "[1, 1, 1]"));
+    const auto& backdrop = std::get<EnvironmentDescription>(c.description.lights.at(1).light);
+    const auto& fill = std::get<EnvironmentDescription>(c.description.lights.at(2).light);
+    EXPECT_TRUE(backdrop.visible);
+    EXPECT_FALSE(fill.visible);
+    // The backdrop is dark, darker away from the horizon, and lights less than the fill.
+    EXPECT_LT(backdrop.radiance.maximum(), 0.15);
+    EXPECT_LT(backdrop.above.value().maximum(), backdrop.radiance.maximum() / 2);
+    EXPECT_LT(backdrop.below.value().maximum(), backdrop.radiance.maximum() / 2);
+    EXPECT_GT(fill.radiance.mean(), backdrop.above->mean());
+}
+
+TEST(Defaults, OfThePlainLookAreThoseOfComparisons) {
+    const std::string scene =
+        writeScene(Completed(box("[0, 0, 0]", "[1, 1, 1]"), ".", Look::Plain).description);
+    for (const char* line :
+         {"azimuth = 241", "irradiance = [5.2, 4.4, 3.4]", "radiance = [0.12, 0.19, 0.32]",
+          "eye = [1.452, 1.002, 2.444]", "look_at = [0.432, 0.353, 0.589]"})
+        EXPECT_NE(scene.find(line), std::string::npos) << line << scene;
+    EXPECT_EQ(defaultSceneText({"a.vdb"}, Look::Plain), "[[volume]]\nfile = \"a.vdb\"\ng = 0.6\n");
 }
 
 TEST(Defaults, ChooseOnlyWhatIsOpen) {
@@ -303,7 +356,8 @@ TEST(Defaults, OfFilesAloneAreNotedAsTheWholeScene) {
     std::string toml;
     for (const std::string& note : completeScene(scene, loadScene(scene)))
         toml += note.substr(note.find('\n') + 1);
-    for (const char* line : {"density = \"Smoke\"", "density = \"density\"", "g = 0.6", "scale = "})
+    for (const char* line :
+         {"density = \"Smoke\"", "density = \"density\"", "albedo = 0.97", "scale = "})
         EXPECT_NE(toml.find(line), std::string::npos) << toml;
     SceneDescription printed = parseSceneText(toml, "printed.toml", "");
     SceneDescription written = parseSceneText(writeScene(scene), "written.toml", "");
@@ -312,59 +366,82 @@ TEST(Defaults, OfFilesAloneAreNotedAsTheWholeScene) {
     EXPECT_EQ(sceneDigest(printed), sceneDigest(scene));
 }
 
-TEST(Defaults, SayHowFireGlows) {
-    const TempDir dir;
-    GridSpec smoke = ball({}), flame = ball({}), hot = ball({});
-    smoke.name = "density", flame.name = "Flames", hot.name = "temperature";
-    writeVdb(dir / "smoke.vdb", {smoke});
-    writeVdb(dir / "flame.vdb", {smoke, flame});
-    writeVdb(dir / "fire.vdb", {smoke, flame, hot});
-    const auto complete = [&](const char* file, const std::vector<std::string>& overrides = {}) {
-        SceneDescription scene = parseSceneText(defaultSceneText({dir / file}), "", "", overrides);
-        scene.places.clear();
-        const std::string note = completeScene(scene, loadScene(scene)).at(0);
-        const auto from = note.find("--set '"), to = note.find('\'', from + 7);
-        return std::pair(scene, from == note.npos ? "" : note.substr(from + 7, to - from - 7));
-    };
-    EXPECT_EQ(complete("smoke.vdb").second, "");
-    for (const char* file : {"flame.vdb", "fire.vdb"}) {
-        const auto [dark, hint] = complete(file);
-        EXPECT_FALSE(dark.volumes[0].emission || dark.volumes[0].blackbody);
-        // What is said works, and is not said again.
-        const auto [bright, none] = complete(file, {hint});
-        EXPECT_EQ(none, "");
-        if (file == std::string("fire.vdb")) {
-            // Its largest value, 0.25, is 2000 K.
-            EXPECT_EQ(bright.volumes[0].blackbody.value().scale, 8000);
-        } else {
-            EXPECT_EQ(bright.volumes[0].emission.value().grid, "Flames");
-        }
-    }
+/// A scene around fire.vdb alone, as a command line makes it.
+SceneDescription completedFire(const TempDir& dir, Look look = Look::Picture,
+                               const std::vector<std::string>& overrides = {}) {
+    SceneDescription scene =
+        parseSceneText(defaultSceneText({dir / "fire.vdb"}, look), "line", "", overrides);
+    std::erase_if(scene.places, [](const auto& place) { return place.second.starts_with("line"); });
+    LoadedScene loaded = loadScene(scene);
+    completeScene(scene, loaded, look);
+    loadChosen(scene, loaded);
+    buildScene(scene, loaded);  // what was chosen can be drawn
+    return scene;
 }
 
-TEST(Defaults, SayHowHotAFireIs) {
+TEST(Defaults, FireGlows) {
     const TempDir dir;
-    const auto hint = [&](double hottest, double size) {
+    GridSpec smoke = ball({}), flame = ball({}), hot = ball({});
+    flame.name = "Flames", hot.name = "temperature";
+    hot.value = [](Vec3i v) { return v.x / 24.0 * 2.94; };
+    const auto glow = [&](const std::vector<GridSpec>& grids, Look look = Look::Picture,
+                          const std::vector<std::string>& overrides = {}) {
+        writeVdb(dir / "fire.vdb", grids);
+        return completedFire(dir, look, overrides).volumes[0];
+    };
+    EXPECT_FALSE(glow({smoke}).blackbody);
+    EXPECT_FALSE(glow({smoke, flame, hot}, Look::Plain).blackbody);
+    // The largest value, 2.94 or 0.25, is 2000 K.
+    EXPECT_EQ(glow({smoke, flame, hot}).blackbody.value().temperature, "temperature");
+    EXPECT_EQ(glow({smoke, flame, hot}).blackbody.value().scale, 680);
+    EXPECT_EQ(glow({smoke, flame}).blackbody.value().temperature, "Flames");
+    EXPECT_EQ(glow({smoke, flame}).blackbody.value().scale, 8000);
+    hot.value = [](Vec3i v) { return v.x / 24.0 * 1500; };
+    EXPECT_EQ(glow({smoke, hot}).blackbody.value().scale, 1);  // kelvins
+    // What the user says stands.
+    const auto albedo = [](const VolumeDescription& volume) {
+        return std::get<DensityCoefficients>(volume.coefficients).albedo.x;
+    };
+    EXPECT_LT(albedo(glow({smoke, hot})), albedo(glow({smoke})));
+    EXPECT_EQ(albedo(glow({smoke, hot}, Look::Picture, {"volume[0].albedo=0.9"})), 0.9);
+    EXPECT_EQ(glow({smoke, hot}, Look::Picture, {"volume[0].blackbody={ scale = 2 }"})
+                  .blackbody.value()
+                  .scale,
+              2);
+}
+
+TEST(Defaults, FireIsAsBrightAtEverySizeAndLightIsDimBesideIt) {
+    const TempDir dir;
+    const auto fire = [&](double size, bool burns) {
         GridSpec smoke = ball(Affine3d::scale(Vec3d{1, 1, 1} * size)), hot = smoke;
         hot.name = "temperature";
-        hot.value = [=](Vec3i v) { return hottest * v.x / 24; };
-        writeVdb(dir / "fire.vdb", {smoke, hot});
-        SceneDescription scene = parseSceneText(defaultSceneText({dir / "fire.vdb"}), "", "");
-        scene.places.clear();
-        return completeScene(scene, loadScene(scene)).at(0);
+        writeVdb(dir / "fire.vdb", burns ? std::vector{smoke, hot} : std::vector{smoke});
+        return completedFire(dir);
     };
-    const auto expect = [](const std::string& note, const std::string& words) {
-        EXPECT_NE(note.find(words), std::string::npos) << note << words;
-    };
-    expect(hint(2.94, 1), "blackbody={ scale = 680, ");
-    expect(hint(2.94, 1), "its largest value, 2.94, is 1999 K then");
-    expect(hint(1500, 1), "blackbody={ scale = 1, ");
-    expect(hint(1500, 1), "its largest value, 1500, is 1500 K then");
     // Half as long a way through it asks for twice the light.
-    const auto intensity = [](const std::string& note) {
-        return std::stod(note.substr(note.find("intensity = ") + 12));
+    const auto intensity = [&](double size) {
+        return fire(size, true).volumes[0].blackbody.value().intensity;
     };
-    EXPECT_NEAR(intensity(hint(1, 0.01)) / intensity(hint(1, 0.1)), 10, 1e-6);
+    EXPECT_NEAR(intensity(0.01) / intensity(0.1), 10, 1e-6);
+    const auto sun = [](const SceneDescription& scene) {
+        return std::get<SunDescription>(scene.lights.at(0).light).irradiance.mean();
+    };
+    EXPECT_LT(sun(fire(1, true)), 0.5f * sun(fire(1, false)));
+}
+
+TEST(Defaults, ComeFromAnotherFrameWhereOneIsGiven) {
+    const TempDir dir;
+    writeVdb(dir / "a.vdb", {ball({})});
+    writeVdb(dir / "b.vdb", {ball(Affine3d::scale({3, 3, 3}))});
+    const auto scene = [&](const char* file) {
+        return parseSceneText(defaultSceneText({dir / file}), "", "");
+    };
+    SceneDescription a = scene("a.vdb"), b = scene("b.vdb");
+    const LoadedScene other = loadScene(b);
+    completeScene(a, other), completeScene(b, other);
+    EXPECT_EQ(a.volumes[0].file, dir / "a.vdb");
+    b.volumes[0].file = a.volumes[0].file;
+    EXPECT_EQ(writeScene(a), writeScene(b));
 }
 
 TEST(Defaults, NameTheDensityThatWasFound) {

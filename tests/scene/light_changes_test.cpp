@@ -94,8 +94,8 @@ TEST(LightChanges, MistakesAreFoundBeforeAnythingIsLoaded) {
               std::string::npos);
     EXPECT_NE(mistake({"light[0].elevation=100"}).find("--set light[0].elevation=100: "),
               std::string::npos);
-    EXPECT_EQ(mistake({"light[2].azimuth=1"}),
-              "--set light[2].azimuth=1: the scene has 2 lights, light[0] to light[1]");
+    EXPECT_EQ(mistake({"light[3].azimuth=1"}),
+              "--set light[3].azimuth=1: the scene has 3 lights, light[0] to light[2]");
     EXPECT_NE(mistake({"light[0].azimuth=1"},
                       "[[material]]\nname = \"lamp\"\ntype = \"emissive\"\n"
                       "[[surface]]\nmaterial = \"lamp\"\nsphere = {}\n")
@@ -106,7 +106,7 @@ TEST(LightChanges, MistakesAreFoundBeforeAnythingIsLoaded) {
 TEST(LightChanges, AreForeseen) {
     const auto scene = parseSceneText(volume, "s", ".", {"light[1].visible=false"});
     const auto lights = foreseenLights(scene);
-    ASSERT_EQ(lights.size(), 2u);
+    ASSERT_EQ(lights.size(), 3u);
     EXPECT_FALSE(std::get<EnvironmentDescription>(lights[1].light).visible);
     EXPECT_TRUE(scene.lights.empty());
 }

@@ -128,7 +128,9 @@ TEST_F(Cli, PrintsTheSceneThatItWouldWrite) {
     SceneDescription written = parseScene(file("written.toml"));
     printed.places.clear(), written.places.clear();
     EXPECT_EQ(printed, written) << result.err;
-    EXPECT_EQ(printed.volumes.at(0).g, 0.6f);
+    EXPECT_EQ(printed.volumes.at(0).blackbody.has_value(), true);
+    EXPECT_EQ(std::get<DensityCoefficients>(printed.volumes.at(0).coefficients).albedo,
+              (Vec3d{0.6, 0.6, 0.6}));  // of smoke around fire
     EXPECT_EQ(std::get<DensityCoefficients>(printed.volumes[0].coefficients).density, "density");
 }
 

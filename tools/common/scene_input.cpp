@@ -9,6 +9,7 @@
 
 #include "tools/common/frames.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/frame_names.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
@@ -22,8 +23,8 @@ scene::SceneDescription parseWith(const SceneInput& input,
                                   const std::vector<std::string>& overrides) {
     if (isSceneFile(input.files.front())) return scene::parseScene(input.files.front(), overrides);
     const std::string name = "command line";
-    scene::SceneDescription scene =
-        scene::parseSceneText(scene::defaultSceneText(input.files), name, "", overrides);
+    scene::SceneDescription scene = scene::parseSceneText(
+        scene::defaultSceneText(input.files, input.look), name, "", overrides);
     std::erase_if(scene.places, [&](const auto& place) { return place.second.starts_with(name); });
     return scene;
 }
@@ -125,12 +126,43 @@ void tellOfVelocities(const scene::SceneDescription& scene, const scene::LoadedS
 
 }  // namespace
 
-scene::LoadedScene loadAndComplete(scene::SceneDescription& description) {
+std::filesystem::path frameToChooseFrom(const scene::SceneDescription& description) {
+    constexpr std::size_t fewest = 3;  // two files are as likely two versions
+    if (description.volumes.size() != 1) return {};
+    const std::filesystem::path& file = description.volumes[0].file;
+    if (file.empty() || !scene::findPlace(description.places, "volume[0].file").empty()) return {};
+    const FrameSeries series = seriesAround(file);
+    if (series.numbers.size() < fewest) return {};
+    std::filesystem::path largest;
+    std::uintmax_t most = 0;
+    for (const std::string& number : series.numbers) {
+        std::error_code none;
+        const std::uintmax_t size = std::filesystem::file_size(series.name(number), none);
+        if (!none && size > most) largest = series.name(number), most = size;
+    }
+    return largest;
+}
+
+scene::LoadedScene loadAndComplete(scene::SceneDescription& description, scene::Look look) {
     scene::LoadedScene loaded = scene::loadScene(description);
     for (const std::string& note : loaded.notes) spdlog::warn("{}", note);
-    for (const std::string& choice : scene::completeScene(description, loaded))
-        spdlog::info("{}", choice);
-    scene::loadChosenImages(description, loaded);
+    const std::filesystem::path frame =
+        look == scene::Look::Picture ? frameToChooseFrom(description) : std::filesystem::path();
+    std::vector<std::string> choices;
+    if (frame.empty() || frame == description.volumes[0].file) {
+        choices = scene::completeScene(description, loaded, look);
+    } else {
+        scene::SceneDescription other = description;
+        other.volumes[0].file = frame;
+        choices = scene::completeScene(description, scene::loadScene(other), look);
+    }
+    if (!frame.empty())
+        spdlog::info(
+            "{} looks like a frame of a sequence: what follows is chosen from its largest file, "
+            "{}, and is the same for every frame",
+            description.volumes[0].file.string(), frame.string());
+    for (const std::string& choice : choices) spdlog::info("{}", choice);
+    scene::loadChosen(description, loaded);
     tellOfVelocities(description, loaded);
     return loaded;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "woodcock/base/parse.h"
+#include "woodcock/scene/defaults.h"
 #include "woodcock/scene/load.h"
 
 namespace woodcock::tool {
@@ -19,6 +20,7 @@ struct SceneInput {
     std::vector<std::string> overrides;                 ///< of --set
     std::optional<ImageSize> size;                      ///< of --res
     std::optional<std::pair<double, double>> sun = {};  ///< of --sun: elevation and azimuth
+    scene::Look look = scene::Look::Picture;            ///< of what is chosen
     bool overlay = false;  ///< of --overlay: files that look like frames belong into one picture
 };
 
@@ -38,7 +40,14 @@ scene::SceneDescription parseInput(const SceneInput& input);
 std::vector<std::filesystem::path> filesRead(const SceneInput& input,
                                              scene::SceneDescription scene);
 
-/// Loads what the scene names and fills in what it leaves open; the log tells.
-scene::LoadedScene loadAndComplete(scene::SceneDescription& description);
+/// The frame from which all that is open is chosen for every frame of a sequence: the largest file,
+/// the first of several. Empty where the scene is not made around one file that looks like a frame:
+/// there are three files or more whose names differ from its in the last number only.
+std::filesystem::path frameToChooseFrom(const scene::SceneDescription& description);
+
+/// Loads what the scene names and fills in what it leaves open; the log tells. Picture: from
+/// frameToChooseFrom(), where there is one.
+scene::LoadedScene loadAndComplete(scene::SceneDescription& description,
+                                   scene::Look look = scene::Look::Picture);
 
 }  // namespace woodcock::tool

@@ -10,6 +10,7 @@
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/image/film.h"
 #include "woodcock/image/write_exr.h"
+#include "woodcock/light/graded_image.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/sky.h"
@@ -171,13 +172,17 @@ json lightJson(const scene::SunDescription& sun, const PlaceOf& placeOf) {
             {"angle", sun.angularDiameter * pi / 180}};
 }
 template <class PlaceOf>
-json lightJson(const scene::EnvironmentDescription& environment, const PlaceOf&) {
+json lightJson(const scene::EnvironmentDescription& environment, const PlaceOf& placeOf) {
     json light{{"type", "environment"},
                {"radiance", toJson(environment.radiance)},
                {"visible", environment.visible},
                {"image", nullptr}};
     if (!environment.image.empty()) {
         light["image"] = std::filesystem::absolute(environment.image).string();
+        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
+    } else if (environment.graded()) {  // an image beside the description (writeCyclesSkies)
+        light["radiance"] = toJson(Rgb(1.0f));
+        light["image"] = skyFile(placeOf.light);
         light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
     }
     return light;
@@ -276,6 +281,17 @@ struct PlacesOfLight {
     }
 };
 
+/// What a light shows that no file of the scene holds; empty of most.
+template <class L>
+image::Image imageOf(const L&) {
+    return {};
+}
+image::Image imageOf(const scene::SkyDescription& sky) { return scene::partsOf(sky).image; }
+image::Image imageOf(const scene::EnvironmentDescription& environment) {
+    if (!environment.graded()) return {};
+    return {light::gradedImageWidth, light::gradedImageHeight, scene::gradedImageOf(environment)};
+}
+
 // ---- camera and settings
 
 json cameraJson(const scene::SceneDescription& scene) {
@@ -342,9 +358,9 @@ json renderJson(const scene::SceneDescription& scene, const CyclesSettings& sett
 void writeCyclesSkies(const std::filesystem::path& directory,
                       const scene::SceneDescription& scene) {
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const auto* sky = std::get_if<scene::SkyDescription>(&scene.lights[i].light);
-        if (!sky) continue;
-        const image::Image image = scene::partsOf(*sky).image;
+        const image::Image image =
+            std::visit([](const auto& light) { return imageOf(light); }, scene.lights[i].light);
+        if (image.rgb.empty()) continue;
         image::Film film(image.width, image.height, {0, 0, image.width, image.height});
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x)

@@ -14,7 +14,11 @@ std::string describe(const scene::SunDescription& sun) {
                                    sun.place->azimuth)
                      : "a sun";
 }
-std::string describe(const scene::EnvironmentDescription&) { return "an even sky"; }
+std::string describe(const scene::EnvironmentDescription& environment) {
+    return !environment.visible   ? "a fill that is not seen"
+           : environment.graded() ? "a graded backdrop"
+                                  : "an even sky";
+}
 template <class L>
 std::string describe(const L&) {
     return fmt::format("a {} light", scene::keysOf<L>().tag);
@@ -30,6 +34,8 @@ void describeVolumes(const Openings& open, const scene::SceneDescription& comple
         if (open.density[i]) parts.push_back(fmt::format("the grid '{}' of {}", c->density, file));
         if (open.scale[i] && c->scale)
             parts.push_back(fmt::format("its density scale {:g}", c->scale->mean()));
+        if (open.glow[i] && volume.blackbody)
+            parts.push_back(fmt::format("that its '{}' glows", volume.blackbody->temperature));
     }
 }
 
@@ -41,9 +47,12 @@ Openings openingsOf(const scene::SceneDescription& scene) {
         const auto* c = std::get_if<scene::DensityCoefficients>(&volume.coefficients);
         open.density.push_back(c && c->density.empty());
         open.scale.push_back(c && !c->scale);
+        open.glow.push_back(!volume.blackbody && !volume.emission);
     }
     open.camera = !scene.camera.pose;
     open.lights = scene.lights.empty();
+    open.exposure =
+        scene.output.exposure == 0 && scene::findPlace(scene.places, "output.exposure").empty();
     return open;
 }
 
@@ -54,6 +63,8 @@ std::string describeChoices(const Openings& open, const scene::SceneDescription&
     if (open.lights)
         for (const scene::LightDescription& light : complete.lights)
             parts.push_back(std::visit([](const auto& l) { return describe(l); }, light.light));
+    if (open.exposure && complete.output.exposure != 0)
+        parts.push_back(fmt::format("an exposure of {:+g} stops", complete.output.exposure));
     if (parts.empty()) return "the scene with every value that it uses; nothing was left to choose";
     return fmt::format(
         "the scene with every value that it uses. Chosen were {}; edit them there, or change them "

@@ -10,8 +10,8 @@ namespace woodcock::tool {
 
 /// What a scene leaves open, before it is completed.
 struct Openings {
-    std::vector<bool> density, scale;  ///< of each volume
-    bool camera = false, lights = false;
+    std::vector<bool> density, scale, glow;  ///< of each volume
+    bool camera = false, lights = false, exposure = false;
 };
 Openings openingsOf(const scene::SceneDescription& scene);
 

@@ -37,7 +37,8 @@ void addOutput(CLI::App& command, RenderOptions& o) {
         addParsed(
             command, "--exposure", o.exposure,
             [](const std::string& text) { return parseNumber(text, -100, 100); },
-            "Make pictures brighter by this many stops, such as +1 or -0.5")
+            "Make pictures brighter by this many stops, such as +1 or -0.5, in place of those that "
+            "are chosen")
             ->type_name("NUMBER"),
         command
             .add_option("--ocio", o.ocio,
@@ -103,6 +104,10 @@ void addScene(CLI::App& command, RenderOptions& o) {
             "Woodcock chooses then stands far enough for all sides")
             ->type_name("DEGREES"),
         addOverlay(command, o.overlay),
+        command.add_flag(
+            "--plain", o.plain,
+            "Choose plain lights, thin smoke and no exposure, for comparisons. Without "
+            "it, what the scene leaves open is chosen for a picture to show"),
         command
             .add_option("--write-scene", o.writeScene,
                         "Save the scene with all values that Woodcock chose. Renders only if you "
@@ -174,7 +179,7 @@ void RenderOptions::addTo(CLI::App& command) {
 }
 
 SceneInput RenderOptions::sceneInput() const {
-    SceneInput input{inputs, overrides, size, sun, overlay};
+    SceneInput input{inputs, overrides, size, sun, choicesLook(), overlay};
     if (orbit) input.overrides.push_back(fmt::format("camera.orbit={}", *orbit));
     if (quality && !choosesQuality())
         input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);

@@ -33,7 +33,7 @@ struct RenderOptions {
     std::optional<std::pair<double, double>> sun;  ///< elevation, azimuth; degrees
     std::optional<double> orbit;                   ///< degrees
     std::optional<grid::Storage> storage;
-    bool repair = false, overlay = false;
+    bool repair = false, overlay = false, plain = false;
 
     std::optional<std::string> display, view, look;
     std::optional<double> exposure;
@@ -46,6 +46,7 @@ struct RenderOptions {
     void addTo(CLI::App& command);
     /// The scene, of the quality that is asked for unless that is to be chosen.
     SceneInput sceneInput() const;
+    scene::Look choicesLook() const { return plain ? scene::Look::Plain : scene::Look::Picture; }
     bool choosesQuality() const { return quality == "auto"; }
     /// Throws Error{Usage} where options contradict each other.
     void check() const;

@@ -17,11 +17,13 @@
 #include "tools/common/scene_input.h"
 #include "tools/common/stats.h"
 #include "tools/render/choices_text.h"
+#include "tools/render/choose_exposure.h"
 #include "tools/render/options.h"
 #include "tools/render/picture_warnings.h"
 #include "tools/render/quality_auto.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
+#include "woodcock/base/toml_text.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
@@ -66,7 +68,10 @@ scene::SceneDescription describeScene(const RenderOptions& options) {
     replaceName(output.display, options.display);
     replaceName(output.view, options.view);
     replaceName(output.look, options.look);
-    output.exposure = options.exposure.value_or(output.exposure);
+    if (options.exposure) {
+        output.exposure = *options.exposure;
+        scene.places["output.exposure"] = "--exposure";
+    }
     if (!options.ocio.empty()) {
         scene.ocio = options.ocio;
         scene.places[scene::keyName(scene, scene.ocio)] = "--ocio";
@@ -259,11 +264,11 @@ public:
         catchInterrupts();  // not while a scene that comes through a pipe is waited for
         checkWhatIsAsked();
         settings_ = renderSettings(description_, options_);
-        const image::Outputs outputs = prepareOutputs(description_, options_);
+        image::Outputs outputs = prepareOutputs(description_, options_);
         if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
 
         loadStart_ = std::chrono::steady_clock::now();
-        load();
+        if (load()) outputs = prepareOutputs(description_, options_);
         if (options_.rendersImages()) render(outputs);
     }
 
@@ -277,10 +282,43 @@ private:
         checkFiles(description_, options_);
     }
 
-    void load() {
+    /// Returns whether an exposure was chosen.
+    bool load() {
         const Openings open = openingsOf(description_);
-        loaded_ = loadAndComplete(description_);
+        const std::filesystem::path frame =
+            options_.plain ? std::filesystem::path() : frameToChooseFrom(description_);
+        loaded_ = loadAndComplete(description_, options_.choicesLook());
         checkFiles(description_, options_);  // with what --set says of lights that were chosen
+        const bool exposes = open.exposure && open.lights && !description_.lights.empty() &&
+                             !options_.plain && writesPictureOrScene();
+        if (exposes) {
+            description_.output.exposure = exposureFor(frame);
+            spdlog::info(
+                "chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
+                tomlNumber(description_.output.exposure));
+        }
+        saveScene(open);
+        return exposes;
+    }
+
+    bool writesPictureOrScene() const {
+        return !options_.writeScene.empty() ||
+               std::any_of(files().begin(), files().end(), [](const auto& file) {
+                   return image::imageFormat(file) != image::ImageFormat::Exr;
+               });
+    }
+
+    double exposureFor(const std::filesystem::path& frame) const {
+        const bool other = !frame.empty() && frame != description_.volumes[0].file;
+        scene::SceneDescription scene = description_;
+        if (other) scene.volumes[0].file = frame;
+        return chooseExposure(
+            scene::buildScene(scene, other ? scene::loadScene(scene) : loaded_), settings_,
+            image::ColorConfig(scene.ocio)
+                .displayTransform({scene.output.display, scene.output.view, scene.output.look, 0}));
+    }
+
+    void saveScene(const Openings& open) const {
         const std::filesystem::path& file = options_.writeScene;
         if (file.empty()) return;
         writeTextFile(file, scene::writeScene(description_, file.parent_path()));

@@ -108,6 +108,17 @@ FrameSeries seriesOfPattern(const std::string& name) {
     return series;
 }
 
+FrameSeries seriesAround(const std::filesystem::path& name) {
+    std::string file = name.stem().string();
+    size_t end = file.size();
+    while (end > 0 && !isDigit(file[end - 1])) --end;
+    size_t begin = end;
+    while (begin > 0 && isDigit(file[begin - 1])) --begin;
+    if (begin == end || !framePattern(name.string()).empty()) return {};
+    file.replace(begin, end - begin, "####");
+    return seriesOfPattern((name.parent_path() / file).string() + name.extension().string());
+}
+
 std::vector<std::filesystem::path> framesAmong(std::span<const std::filesystem::path> files) {
     std::vector<std::string> names, skeletons;
     for (const auto& file : files) {

@@ -26,6 +26,10 @@ struct FrameSeries {
 /// none.
 FrameSeries seriesOfPattern(const std::string& name);
 
+/// The files on disk, `name` among them, that differ from it in the last number of its file's name
+/// only. Empty where that has no number.
+FrameSeries seriesAround(const std::filesystem::path& name);
+
 /// The first group of two or more of `files` whose names differ in their numbers only, in the order
 /// in which they are given. Empty where there is no such group.
 std::vector<std::filesystem::path> framesAmong(std::span<const std::filesystem::path> files);

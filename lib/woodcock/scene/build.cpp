@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "woodcock/base/error.h"
+#include "woodcock/light/graded_image.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/sky.h"
@@ -15,6 +16,10 @@ light::Light buildLight(const SunDescription& sun, LoadedLight&&) {
     return light::Sun(sun.direction, sun.irradiance, sun.angularDiameter, sun.visible);
 }
 light::Light buildLight(const EnvironmentDescription& environment, LoadedLight&& loaded) {
+    if (environment.graded())
+        return light::Environment(
+            {light::gradedImageWidth, light::gradedImageHeight, gradedImageOf(environment)},
+            Rgb(1.0f), worldFromLight(environment), environment.visible);
     if (loaded.map.empty()) return light::Environment(environment.radiance, environment.visible);
     return light::Environment(std::move(loaded.map), environment.radiance,
                               worldFromLight(environment), environment.visible);
@@ -114,6 +119,12 @@ Affine3d worldFromCamera(const CameraPose& pose) {
     if (const auto* matrix = std::get_if<Affine3d>(&pose)) return *matrix;
     const LookAt& lookAt = std::get<LookAt>(pose);
     return camera::lookAtTransform(lookAt.eye, lookAt.target, lookAt.up);
+}
+
+std::vector<float> gradedImageOf(const EnvironmentDescription& environment) {
+    const Rgb horizon = environment.radiance;
+    return light::gradedImage(environment.below.value_or(horizon), horizon,
+                              environment.above.value_or(horizon));
 }
 
 Affine3d worldFromLight(const EnvironmentDescription& environment) {

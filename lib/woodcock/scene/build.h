@@ -32,6 +32,9 @@ Affine3d worldFromCamera(const CameraPose& pose);
 /// The rotation that takes an environment image's up, +y, and centre, -z, to where they are.
 Affine3d worldFromLight(const EnvironmentDescription& environment);
 
+/// What a graded environment looks like, as light::gradedImage() has it.
+std::vector<float> gradedImageOf(const EnvironmentDescription& environment);
+
 // What is known of the light before a scene is built.
 
 /// Whether a volume, a surface or what a surface holds emits light.

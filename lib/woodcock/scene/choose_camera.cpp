@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "woodcock/grid/block_ranges.h"
 #include "woodcock/mesh/surface_mesh.h"
@@ -56,6 +57,60 @@ void addField(const grid::Field& field, const Affine3d& worldFromIndex,
         }
 }
 
+/// What a block adds to the optical depth of rays that go straight through it.
+struct SeenBlock {
+    Box3d box;  ///< index space
+    double depth;
+};
+
+std::vector<SeenBlock> blocksOf(const grid::Field& field, double depthOfVoxel) {
+    const Box3d extent = field.extent();
+    const Vec3i first = blockOf(extent.lower), last = blockOf(extent.upper);
+    std::vector<SeenBlock> blocks;
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x) {
+                if (!(grid::blockRange(field, {x, y, z}).max > 0)) continue;
+                const Vec3d corner = Vec3d{double(x), double(y), double(z)} * 8;
+                const Box3d box{max(corner, extent.lower),
+                                min(corner + Vec3d{8, 8, 8}, extent.upper)};
+                if (box.empty()) continue;
+                double sum = 0;
+                for (int i = 0; i < 8; ++i) {
+                    const Vec3d p{i & 1 ? 6.0 : 2.0, i & 2 ? 6.0 : 2.0, i & 4 ? 6.0 : 2.0};
+                    for (int c = 0; c < field.channels(); ++c)
+                        sum += field.trilinear(corner + p, c);
+                }
+                blocks.push_back({box, sum / 8 / field.channels() * 8 * depthOfVoxel});
+            }
+    return blocks;
+}
+
+/// The blocks that a ray along `towards` meets with more than a wisp before, in and behind them.
+void addSeen(const grid::Field& field, const Affine3d& worldFromIndex, double scale, Vec3d towards,
+             std::vector<Vec3d>& points) {
+    constexpr double leastDepth = 0.1;
+    const Box3d extent = field.extent();
+    if (extent.empty()) return;
+    const Vec3d size = extent.size() / 8 + Vec3d{1, 1, 1};
+    if (size.x * size.y * size.z > mostBlocks) return addCorners(extent, worldFromIndex, points);
+    const double voxel = std::cbrt(std::abs(worldFromIndex.determinant()));
+    const std::vector<SeenBlock> blocks = blocksOf(field, scale * voxel);
+    // Sums over columns as wide as a block, seen along the view.
+    const Vec3d back = normalize(towards);
+    const Vec3d side =
+        normalize(cross(std::abs(back.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0}, back));
+    const Vec3d above = cross(back, side);
+    const auto column = [&](const SeenBlock& block) {
+        const Vec3d p = worldFromIndex.point(block.box.centre()) / (8 * voxel);
+        return std::pair(std::floor(dot(p, side)), std::floor(dot(p, above)));
+    };
+    std::map<std::pair<double, double>, double> depths;
+    for (const SeenBlock& block : blocks) depths[column(block)] += block.depth;
+    for (const SeenBlock& block : blocks)
+        if (depths[column(block)] > leastDepth) addCorners(block.box, worldFromIndex, points);
+}
+
 /// In the space of its mesh; none for an infinite plane.
 std::vector<Vec3d> pointsOf(const SurfaceDescription& surface, const LoadedSurface& loaded) {
     std::vector<Vec3d> points;
@@ -90,6 +145,7 @@ constexpr double margin = 0.08;  // of the picture, on every side that is tight
 
 /// From a y-up frame to the one whose up axis is `up`; -z becomes +y.
 Vec3d withUp(Vec3d v, UpAxis up) { return up == UpAxis::Z ? Vec3d{v.x, 0 - v.z, v.y} : v; }
+Vec3d withoutUp(Vec3d v, UpAxis up) { return up == UpAxis::Z ? Vec3d{v.x, v.z, 0 - v.y} : v; }
 
 /// `v` turned by `degrees` about `axis`, right-handed.
 Vec3d turned(Vec3d v, Vec3d axis, double degrees) {
@@ -178,18 +234,22 @@ std::vector<Vec3d> sweptAbout(const std::vector<Vec3d>& points, Vec3d centre, Ve
     return swept;
 }
 
-/// A three-quarter view from slightly above that shows all points, unless what is given of the
-/// camera asks for another.
-LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& points, UpAxis up) {
+/// A view from `towards` that shows all points, unless what is given of the camera asks for
+/// another.
+LookAt chooseView(const SceneDescription& scene, const std::vector<Vec3d>& points, UpAxis up,
+                  Vec3d towards) {
     const PartialPose& given = scene.camera.given;
     const Box3d bounds = boundsOf(points);
     const double size = length(bounds.size());
     const int grain = magnitude(size) - 3;
     const Vec3d above = given.up.value_or(upVector(up));
     if (given.eye) return lookAtFrom(scene, roundTo(bounds.centre(), grain), above);
-    if (given.up) up = std::abs(above.z) > std::abs(above.y) ? UpAxis::Z : UpAxis::Y;
+    if (given.up) {  // the view is told from the axis that is nearer to it
+        const UpAxis nearer = std::abs(above.z) > std::abs(above.y) ? UpAxis::Z : UpAxis::Y;
+        towards = withUp(withoutUp(towards, up), nearer);
+    }
     const Vec3d centre = given.target.value_or(bounds.centre());
-    const Affine3d camera = camera::lookAtTransform(withUp({0.55, 0.35, 1}, up), {0, 0, 0}, above);
+    const Affine3d camera = camera::lookAtTransform(towards, {0, 0, 0}, above);
     std::vector<Vec3d> inCamera;
     Extent x, y, z;
     for (const Vec3d& p : points) {
@@ -253,10 +313,33 @@ std::vector<Vec3d> sceneOutline(const SceneDescription& description, const Loade
     return points;
 }
 
+std::vector<Vec3d> seenOutline(const SceneDescription& description, const LoadedScene& loaded,
+                               Vec3d towards) {
+    std::vector<Vec3d> points;
+    for (size_t i = 0; i < description.volumes.size(); ++i) {
+        const VolumeDescription& volume = description.volumes[i];
+        const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+        const LoadedField& density = loaded.volumes[i].density;
+        if (!c || !c->scale || !density) return sceneOutline(description, loaded);
+        addSeen(*density.field, volume.worldFromObject * density.objectFromIndex,
+                double{c->scale->mean()}, towards, points);
+        for (const LoadedField* grid : {&loaded.volumes[i].emission, &loaded.volumes[i].blackbody})
+            if (*grid)
+                addField(*grid->field, volume.worldFromObject * grid->objectFromIndex, points);
+    }
+    for (size_t i = 0; i < description.surfaces.size(); ++i)
+        addSurface(description.surfaces[i], loaded.surfaces[i], points);
+    return points.empty() ? sceneOutline(description, loaded) : points;
+}
+
+Vec3d usualView(UpAxis up, Look look) {
+    return withUp(look == Look::Plain ? Vec3d{0.55, 0.35, 1} : Vec3d{0.55, 0.1, 1}, up);
+}
+
 Vec3d upVector(UpAxis up) { return withUp({0, 1, 0}, up); }
 
 std::optional<std::string> chooseCamera(SceneDescription& scene, std::vector<Vec3d> points,
-                                        UpAxis up) {
+                                        UpAxis up, Vec3d towards) {
     CameraDescription& camera = scene.camera;
     const bool fits = camera.height || camera.kind == CameraDescription::Kind::Perspective;
     if (camera.pose && fits) return std::nullopt;
@@ -270,7 +353,7 @@ std::optional<std::string> chooseCamera(SceneDescription& scene, std::vector<Vec
     if (camera.orbit && !camera.pose)
         points = sweptAbout(points, camera.given.target.value_or(boundsOf(points).centre()),
                             camera.given.up.value_or(upVector(up)));
-    if (!camera.pose) camera.pose = chooseView(scene, points, up);
+    if (!camera.pose) camera.pose = chooseView(scene, points, up, towards);
     camera.given = {};
     if (!fits) camera.height = chooseHeight(scene, points);
     return fmt::format("chosen to frame the {}{}{}:", scene.surfaces.empty() ? "volumes" : "scene",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "woodcock/base/vec.h"
+#include "woodcock/scene/defaults.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load.h"
 
@@ -19,15 +20,25 @@ namespace woodcock::scene {
 /// tighter than their boxes would. The corners of the unit cube where there is nothing to see.
 std::vector<Vec3d> sceneOutline(const SceneDescription& description, const LoadedScene& loaded);
 
+/// The same of what is seen from far off in the direction `towards` (from the scene to the eye):
+/// without the blocks of a volume behind and before which, and in which, there is so little that
+/// rays have an optical depth of less than 0.1. What glows is told by its values, as above.
+std::vector<Vec3d> seenOutline(const SceneDescription& description, const LoadedScene& loaded,
+                               Vec3d towards);
+
 Vec3d upVector(UpAxis up);
+
+/// From the scene to a camera whose place is open: a three-quarter view, from a little above where
+/// it is for a picture, and from higher up in the plain look.
+Vec3d usualView(UpAxis up, Look look);
 
 // `points` are those of sceneOutline().
 
-/// Places a camera that the scene leaves open, so that all points are seen; where it is to be
-/// turned (orbit), from every side. Returns why it stands so; nothing where there was no choice.
-/// Throws Error{Input} on an eye that cannot look at the volumes.
+/// Places a camera that the scene leaves open, `towards` it as usualView() says, so that all points
+/// are seen; where it is to be turned (orbit), from every side. Returns why it stands so; nothing
+/// where there was no choice. Throws Error{Input} on an eye that cannot look at the volumes.
 std::optional<std::string> chooseCamera(SceneDescription& scene, std::vector<Vec3d> points,
-                                        UpAxis up);
+                                        UpAxis up, Vec3d towards);
 
 /// Turns a placed camera by its `orbit`, which is then done: around what it looks at; one that a
 /// matrix places, around the points' middle.

@@ -8,18 +8,17 @@
 
 #include "woodcock/base/path_variables.h"
 #include "woodcock/base/toml_text.h"
-#include "woodcock/medium/blackbody.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/choose_camera.h"
+#include "woodcock/scene/choose_glow.h"
+#include "woodcock/scene/choose_lights.h"
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::scene {
 namespace {
-
-constexpr double typicalDepth = 10;
 
 /// Median of the line integrals of the field (world units, mean of channels) over a lattice of rays
 /// along its three index axes, of those that meet more than wisps. By sums at unit steps or
@@ -77,96 +76,45 @@ Choice nameDensity(VolumeDescription& volume, const LoadedVolume& loaded) {
     return choice;
 }
 
-Choice chooseScale(VolumeDescription& volume, const LoadedVolume& loaded) {
+Choice chooseScale(VolumeDescription& volume, const LoadedVolume& loaded, double depth) {
     auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
     if (!c || c->scale) return {};
     const double integral = typicalIntegral(
         *loaded.density.field, volume.worldFromObject * loaded.density.objectFromIndex);
-    const double exact = typicalDepth / integral;
+    const double exact = depth / integral;
     const bool empty = !(integral > 0) || !(exact < std::numeric_limits<float>::max());
     c->scale = empty ? Rgb(1) : Rgb(static_cast<float>(roundTo(exact, magnitude(exact) - 2)));
     return {fmt::format("scale = {}\n", tomlColour(*c->scale)),
             empty ? ", which seems empty (no ray of a bundle through it met any density)"
                   : fmt::format(", so that a typical ray through it has an optical depth of {}",
-                                typicalDepth)};
-}
-
-/// The brightness at which a fire of this size is seen beside the sun: where it is hottest, a tenth
-/// of its size has a radiance of twenty, and where it is half as hot, of one.
-std::string glowIntensity(const VolumeDescription& volume, const LoadedVolume& loaded,
-                          double hottest) {
-    if (!loaded.density) return "";
-    const Affine3d world = volume.worldFromObject * loaded.density.objectFromIndex;
-    const double size = length(world.box(loaded.density.field->support()).size());
-    const double intensity = 200 / (size * double{medium::blackbodyRadiance(hottest).maximum()});
-    if (!(intensity > 0) || !std::isfinite(intensity) || intensity > 1e14) return "";
-    return fmt::format(", intensity = {}", tomlNumber(roundTo(intensity, magnitude(intensity))));
-}
-
-/// A comment in TOML: how what may be fire is lit. Nobody but the user knows how hot it is.
-std::string glowHint(const VolumeDescription& volume, const LoadedVolume& loaded, size_t index) {
-    if (volume.emission || volume.blackbody) return {};
-    constexpr double kelvins = 200;  // what goes beyond is no relative number
-    constexpr double flame = 2000;
-    const double most = loaded.hottest;
-    if (!loaded.temperatures.empty() && most > 0) {
-        const bool inKelvins = most >= kelvins;
-        const double exact = inKelvins ? 1 : flame / most;
-        const double scale = inKelvins ? 1 : roundTo(exact, magnitude(exact) - 1);
-        return fmt::format(
-            "# '{}' glows with --set 'volume[{}].blackbody={{ scale = {}{} }}':\n# its largest "
-            "value, {:.4g}, is {:.0f} K then\n",
-            loaded.temperatures, index, tomlNumber(scale),
-            glowIntensity(volume, loaded, scale * most), most, scale * most);
-    }
-    if (!loaded.temperatures.empty())
-        return fmt::format(
-            "# '{}' glows with --set 'volume[{}].blackbody={{ scale = 2000 }}' where its values go "
-            "up to 1 or so,\n# and with scale = 1 where they are kelvins\n",
-            loaded.temperatures, index);
-    if (!loaded.flames.empty())
-        return fmt::format("# '{0}' glows with --set 'volume[{1}].emission={{ grid = \"{0}\" }}'\n",
-                           loaded.flames, index);
-    return {};
+                                depth)};
 }
 
 std::optional<std::string> chooseVolume(SceneDescription& scene, const LoadedScene& loaded,
-                                        size_t index) {
+                                        size_t index, Look look) {
     VolumeDescription& volume = scene.volumes[index];
     const Choice density = nameDensity(volume, loaded.volumes[index]);
-    const Choice scale = chooseScale(volume, loaded.volumes[index]);
+    const std::string glow =
+        look == Look::Picture ? chooseGlow(scene, loaded.volumes[index], index) : "";
+    const Choice scale = chooseScale(volume, loaded.volumes[index], typicalDepth(look));
     std::string toml = density.toml + scale.toml;
     if (!volume.file.empty() &&
         findPlace(scene.places, fmt::format("volume[{}].file", index)).empty())
-        toml = writeVolume(volume) + glowHint(volume, loaded.volumes[index], index);
+        toml = writeVolume(volume);
     if (toml.empty()) return std::nullopt;
-    return fmt::format("chosen for volume[{}]{}:\n{}", index, scale.reason, toml);
+    return fmt::format("chosen for volume[{}]{}{}:\n{}", index, scale.reason,
+                       glow.empty() ? "" : "; " + glow, toml);
 }
 
-/// Towards the sun: 40 degrees high, to the camera's left, as light from the side shows form.
-SunPlace chooseSun(const SceneDescription& scene, UpAxis up) {
-    const Vec3d above = upVector(up);
-    Vec3d side = -worldFromCamera(*scene.camera.pose).column[0];
-    side = side - above * dot(side, above);
-    if (!(length(side) > 1e-6)) side = {-1, 0, 0};
-    const double ahead = up == UpAxis::Y ? -side.z : side.y;
-    const double azimuth = std::round(std::atan2(side.x, ahead) * 180 / pi);
-    return {40, azimuth < 0 ? azimuth + 360 : azimuth, up};
-}
-
-std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up) {
+std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up, Look look) {
     if (!scene.lights.empty() || anySurfaceEmits(scene)) return std::nullopt;
-    SunDescription sun;
-    sun.place = chooseSun(scene, up);
-    sun.direction = sun.place->direction();
-    sun.irradiance = Rgb(5.2f, 4.4f, 3.4f);
-    sun.angularDiameter = 0.53;
-    EnvironmentDescription sky;
-    sky.radiance = Rgb(0.12f, 0.19f, 0.32f);
-    scene.lights = changedLights({{sun}, {sky}}, scene.lightChanges);
-    std::string text = scene.lightChanges.empty()
-                           ? "chosen, a warm sun from the upper left and a blue sky:"
-                           : "chosen, a warm sun and a blue sky, changed as --set says:";
+    const bool glows = anyVolumeOrSurfaceGlows(scene);
+    scene.lights = changedLights(chosenLights(worldFromCamera(*scene.camera.pose), up, look, glows),
+                                 scene.lightChanges);
+    std::string text = fmt::format(
+        "chosen, a {} from the left{}", glows && look == Look::Picture ? "dim sun" : "warm sun",
+        look == Look::Plain ? " and a blue sky" : ", a dark backdrop, and a fill that is not seen");
+    text += scene.lightChanges.empty() ? ":" : ", changed as --set says:";
     scene.lightChanges.clear();
     for (const LightDescription& light : scene.lights) text += "\n" + writeLight(light);
     return text;
@@ -184,24 +132,33 @@ UpAxis upOf(const SceneDescription& scene, const LoadedScene& loaded) {
 
 }  // namespace
 
-std::string defaultSceneText(const std::vector<std::filesystem::path>& vdbFiles) {
+double typicalDepth(Look look) { return look == Look::Plain ? 10 : 20; }
+
+std::string defaultSceneText(const std::vector<std::filesystem::path>& vdbFiles, Look look) {
     std::string text;
     for (const std::filesystem::path& file : vdbFiles)
-        text += fmt::format("[[volume]]\nfile = {}\ng = 0.6\n", tomlText(escapePath(file)));
+        text += fmt::format("[[volume]]\nfile = {}\n{}\n", tomlText(escapePath(file)),
+                            look == Look::Plain ? "g = 0.6" : "albedo = 0.97");
     return text;
 }
 
-std::vector<std::string> completeScene(SceneDescription& description, const LoadedScene& loaded) {
+std::vector<std::string> completeScene(SceneDescription& description, const LoadedScene& loaded,
+                                       Look look) {
     std::vector<std::string> notes;
     const auto add = [&](std::optional<std::string> note) {
         if (note) notes.push_back(std::move(*note));
     };
     for (size_t i = 0; i < description.volumes.size(); ++i)
-        add(chooseVolume(description, loaded, i));
+        add(chooseVolume(description, loaded, i, look));
     const UpAxis up = upOf(description, loaded);
-    const std::vector<Vec3d> outline = sceneOutline(description, loaded);
-    const std::optional<std::string> camera = chooseCamera(description, outline, up);
-    const std::optional<std::string> lights = chooseLights(description, up);
+    const Vec3d view = usualView(up, look);
+    const bool seenFromThere = !description.camera.pose && !description.camera.given.eye &&
+                               !description.camera.given.up && !description.camera.orbit;
+    const std::vector<Vec3d> outline = look == Look::Picture && seenFromThere
+                                           ? seenOutline(description, loaded, view)
+                                           : sceneOutline(description, loaded);
+    const std::optional<std::string> camera = chooseCamera(description, outline, up, view);
+    const std::optional<std::string> lights = chooseLights(description, up, look);
     turnCamera(description.camera, outline);  // the lights stay where they are
     if (camera) notes.push_back(*camera + "\n" + writeCamera(description.camera));
     add(lights);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <filesystem>
@@ -46,9 +47,16 @@ struct EnvironmentDescription {
     UpAxis up = UpAxis::Y;             ///< Y: the image's centre is towards -z; Z: towards +y
     double rotation = 0;               ///< degrees about the up axis, counter-clockwise from above
     bool visible = true;               ///< to camera rays
+    /// Radiance straight up and straight down; where one is there, `radiance` is the horizon's. See
+    /// light::gradedImage(). Not with an image.
+    std::optional<Rgb> above = {}, below = {};
     bool operator==(const EnvironmentDescription&) const = default;
 
-    Rgb brightness() const { return radiance; }
+    bool graded() const { return above || below; }
+    Rgb brightness() const {
+        const Rgb top = above.value_or(radiance), bottom = below.value_or(radiance);
+        return Rgb::map([&](int c) { return std::max({radiance[c], top[c], bottom[c]}); });
+    }
     bool glows() const { return false; }
 };
 

@@ -314,9 +314,13 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     };
     loaded.temperatures = nameOf(grid::GridRole::Temperature);
     loaded.flames = nameOf(grid::GridRole::Emission);
-    if (!loaded.temperatures.empty() && !volume.blackbody && !volume.emission &&
-        placeOf(volume.file).empty())
-        loaded.hottest = loader.largest(volume, loaded.temperatures);
+    if (!volume.blackbody && !volume.emission && placeOf(volume.file).empty()) {
+        const auto largest = [&](const std::string& grid) {
+            return grid.empty() ? 0 : loader.largest(volume, grid);
+        };
+        loaded.hottest = largest(loaded.temperatures);
+        loaded.brightest = largest(loaded.flames);
+    }
     loaded.velocities = unusedVelocities(file, loaded);
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
@@ -377,8 +381,14 @@ LoadedScene loadScene(const SceneDescription& scene) {
     return loaded;
 }
 
-void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded) {
+void loadChosen(const SceneDescription& scene, LoadedScene& loaded) {
     if (loaded.lights.size() != scene.lights.size()) loadLights(scene, loaded);
+    Loader loader(scene.render.storage, scene.render.lookup);
+    for (size_t i = 0; i < scene.volumes.size(); ++i) {
+        LoadedVolume& volume = loaded.volumes[i];
+        if (scene.volumes[i].blackbody && !volume.blackbody)
+            volume.blackbody = loader.blackbody(scene.volumes[i], volume.ambient);
+    }
 }
 
 }  // namespace woodcock::scene

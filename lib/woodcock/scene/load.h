@@ -35,9 +35,9 @@ struct LoadedVolume {
     LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
     /// Grids of the file that usually mean fire, whether or not they are asked for; empty: none.
     std::string temperatures, flames;
-    /// The largest value of `temperatures`, where that is of use: the scene comes from the VDB file
-    /// alone, and the grid is small enough to be looked through; 0: unknown.
-    float hottest = 0;
+    /// The largest values of `temperatures` and `flames`, where they are of use: the scene comes
+    /// from the VDB file alone, and the grid is small enough to be looked through; 0: unknown.
+    float hottest = 0, brightest = 0;
     std::string
         velocities;  ///< the first grid of the file that means them and is not used; or empty
     std::optional<medium::PhaseTable> phase;  ///< of a TablePhase
@@ -66,7 +66,8 @@ struct LoadedScene {
 /// that names the place in the scene, the file and the grid.
 LoadedScene loadScene(const SceneDescription& scene);
 
-/// The images of lights that completeScene() chose as --set asked for. Throws Error{Input}.
-void loadChosenImages(const SceneDescription& scene, LoadedScene& loaded);
+/// What completeScene() chose and loadScene() could not know of: images of lights, as --set asked
+/// for them, and grids that glow. Throws Error{Input}.
+void loadChosen(const SceneDescription& scene, LoadedScene& loaded);
 
 }  // namespace woodcock::scene

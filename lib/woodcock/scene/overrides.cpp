@@ -149,6 +149,9 @@ private:
         // Each says how a medium scatters: what is set takes the other's place.
         if (key == "phase") table.erase("g");
         if (key == "g" && table.contains("phase")) table.erase("phase");
+        // An image says what is above and below.
+        if (key == "image")
+            for (const char* end : {"above", "below"}) table.erase(end);
     }
 
     void replace(toml::array& array, size_t index) const {
@@ -191,7 +194,9 @@ std::vector<LightDescription> foreseenLights(const SceneDescription& scene) {
     SunDescription sun;
     sun.angularDiameter = 0.53;
     sun.place = SunPlace{40, 0};
-    return changedLights({{sun}, {EnvironmentDescription()}}, scene.lightChanges);
+    EnvironmentDescription fill;
+    fill.visible = false;
+    return changedLights({{sun}, {EnvironmentDescription()}, {fill}}, scene.lightChanges);
 }
 
 void keepOverriddenSuns(toml::table& scene) {

@@ -94,7 +94,7 @@ std::vector<Key<V>> densityKeys() {
         keyOfKind<Density>({.name = "scale",
                             .doc = "extinction per world unit where the density is 1. sigma_t = "
                                    "scale x density",
-                            .fallback = "*chosen*: a typical ray has an optical depth of 10",
+                            .fallback = "*chosen*: a typical ray has an optical depth of 20",
                             .comment = "sigma_t = scale x density, 1/unit"},
                            &V::coefficients, &Density::scale, colour(notNegative)),
         keyOfKind<Density>({.name = "albedo", .doc = "sigma_s = albedo x sigma_t"},
