@@ -11,7 +11,7 @@ namespace woodcock::light {
 namespace {
 
 /// The solid angle is a difference of angles: a smaller one is left to sampling by area.
-constexpr double smallest = 1e-5;
+constexpr double smallestAngle = 1e-5;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ SeenRectangle::SeenRectangle(double x0, double x1, double y0, double y1, double 
 }
 
 std::array<double, 2> SeenRectangle::sample(double u0, double u1) const {
-    if (solidAngle_ < smallest) return {x0_ + u0 * (x1_ - x0_), y0_ + u1 * (y1_ - y0_)};
+    if (solidAngle_ < smallestAngle) return {x0_ + u0 * (x1_ - x0_), y0_ + u1 * (y1_ - y0_)};
     // Sec. 4: first the x at which the plane through the y axis cuts off u0 of the solid angle,
     const double b0 = -y0_ / std::hypot(height_, y0_), b1 = y1_ / std::hypot(height_, y1_);
     const double angle = u0 * solidAngle_ + below_;
@@ -47,7 +47,7 @@ std::array<double, 2> SeenRectangle::sample(double u0, double u1) const {
 
 double SeenRectangle::pdf(double x, double y) const {
     if (empty()) return 0;
-    if (solidAngle_ >= smallest) return 1 / solidAngle_;
+    if (solidAngle_ >= smallestAngle) return 1 / solidAngle_;
     const double distance = std::sqrt(x * x + y * y + height_ * height_);
     return distance * distance * distance / (area() * height_);  // distance^2 / (area cosine)
 }
