@@ -144,7 +144,7 @@ TEST_F(Door, ChoosesAScaleForAnArrayAsForAFile) {
                      .density = values,
                      .voxelSize = 0.25,
                      .origin = {1, 2, -3},
-                     .g = 0.6});  // as that of files that stand alone
+                     .albedo = {0.97, 0.97, 0.97}});  // as that of files that stand alone
     setSmall(array);
     Renderer file = Renderer::open(dir / "smoke.vdb");
     setSmall(file);

@@ -44,7 +44,7 @@ struct LatticeVolume {
     double voxelSize = 1;  ///< between neighbouring points, world units
     std::array<double, 3> origin{};  ///< of point (0, 0, 0), world space
     /// sigma_t = scale * density, per world unit. Absent: chosen, so that a typical ray through the
-    /// volume has an optical depth of about 10.
+    /// volume has an optical depth of about 20.
     std::optional<double> scale = {};
     std::array<double, 3> albedo{1, 1, 1};  ///< sigma_s / sigma_t of red, green and blue, 0 to 1
     double g = 0;  ///< mean cosine of the Henyey-Greenstein phase function, between -1 and 1
