@@ -34,6 +34,7 @@
 #include "woodcock/light/hosek_wilkie_table.h"
 
 // clang-format off
+#pragma GCC diagnostic ignored "-Wmissing-braces"  // around each control point
 
 namespace woodcock::light::hosek_wilkie {
 
