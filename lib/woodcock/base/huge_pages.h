@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace woodcock {
@@ -29,6 +30,16 @@ void reserveLarge(std::vector<T>& values, std::size_t count) {
     values.reserve(count);
     const std::size_t used = values.size();
     wishHugePages(values.data() + used, (values.capacity() - used) * sizeof(T));
+}
+
+/// Frees the room that an array does not use. What is left stays in huge pages where it is large.
+template <class T>
+void shrinkLarge(std::vector<T>& values) {
+    if (values.size() == values.capacity()) return;
+    std::vector<T> fitting;
+    reserveLarge(fitting, values.size());
+    fitting.assign(values.begin(), values.end());
+    values = std::move(fitting);
 }
 
 }  // namespace woodcock

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "woodcock/base/huge_pages.h"
 #include "woodcock/base/vec.h"
 
 namespace woodcock::grid {
@@ -34,6 +35,7 @@ public:
         : bounds_(bounds), outside_(outside), dense_(dense) {
         if (!dense_) return;
         for (int i = 0; i < 3; ++i) extent_[i] = bounds.upper[i] - bounds.lower[i] + 1;
+        reserveLarge(blocks_, volume(bounds));
         blocks_.assign(volume(bounds), outside);
     }
 
@@ -164,7 +166,7 @@ public:
         BlockTable<U> t;
         t.bounds_ = bounds_, t.extent_ = extent_, t.dense_ = dense_;
         t.outside_ = f(outside_);
-        t.blocks_.reserve(blocks_.size()), t.uniform_.reserve(uniform_.size());
+        reserveLarge(t.blocks_, blocks_.size()), t.uniform_.reserve(uniform_.size());
         for (const T& v : blocks_) t.blocks_.push_back(f(v));
         for (const T& v : uniform_) t.uniform_.push_back(f(v));
         t.regions_ = regions_, t.supers_ = supers_;
@@ -173,10 +175,11 @@ public:
 
     /// Makes room in a sparse table for this many regions and super-regions.
     void reserve(std::size_t regions, std::size_t supers) {
-        blocks_.reserve(regions * regionBlocks), regions_.reserve(supers * superRegions);
+        reserveLarge(blocks_, regions * regionBlocks);
+        reserveLarge(regions_, supers * superRegions);
     }
     /// Frees memory that only building needed.
-    void shrink() { blocks_.shrink_to_fit(), uniform_.shrink_to_fit(), regions_.shrink_to_fit(); }
+    void shrink() { shrinkLarge(blocks_), uniform_.shrink_to_fit(), shrinkLarge(regions_); }
 
     std::size_t bytes() const {
         return sizeof(*this) + (blocks_.size() + uniform_.size()) * sizeof(T) +

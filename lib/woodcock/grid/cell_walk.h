@@ -30,9 +30,8 @@ inline bool clip(const IndexRay& ray, const Box3d& box, double& t0, double& t1) 
             if (o < box.lower[i] || o > box.upper[i]) return false;
             continue;
         }
-        double a = (box.lower[i] - o) / d, b = (box.upper[i] - o) / d;
-        if (a > b) std::swap(a, b);
-        t0 = std::max(t0, a), t1 = std::min(t1, b);
+        const double a = (box.lower[i] - o) / d, b = (box.upper[i] - o) / d;
+        t0 = std::max(t0, std::min(a, b)), t1 = std::min(t1, std::max(a, b));
     }
     return t0 < t1;
 }

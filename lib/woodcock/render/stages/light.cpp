@@ -74,21 +74,19 @@ bool addShadowRay(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
     const float brightest = light.maximum();
     const Spectrum<N> contribution = p.throughput * brightest;
     if (!(contribution.maximum() > 0)) return false;
-    batch.shadows.push_back(
-        {.path = i, .colour = light * (1 / brightest), .mediumSet = p.mediumSet});
+    // Made in place: a copy just after it was written field by field waits for the writes.
+    ShadowRay<Surfaces>& ray = batch.shadows.emplace_back();
+    ray.path = i, ray.colour = light * (1 / brightest), ray.mediumSet = p.mediumSet;
     if constexpr (Surfaces) {
-        ShadowRay<Surfaces>& ray = batch.shadows.back();
         ray.start = p.surfaces.way.start();
         ray.transparent = mayPass && traced.options.approximations.transparentShadows;
         ray.inFront = p.surfaces.seen;
     }
-    batch.shadowQueries.push_back({.origin = origin,
-                                   .direction = direction,
-                                   .tMax = tMax,
-                                   .time = p.time,
-                                   .random = RandomStream(p.random.bits()),
-                                   .roulette = shadowRoulette * traced.typicalRadiance,
-                                   .contribution = contribution});
+    medium::TransmittanceQuery<N>& query = batch.shadowQueries.emplace_back();
+    query.origin = origin, query.direction = direction, query.tMax = tMax, query.time = p.time;
+    query.random = RandomStream(p.random.bits());
+    query.roulette = shadowRoulette * traced.typicalRadiance;
+    query.contribution = contribution;
     return true;
 }
 

@@ -41,14 +41,10 @@ void walk(const TracedScene& traced, Batch<N, Surfaces>& batch) {
     for (std::size_t i = 0; i < batch.paths.size(); ++i) {
         const PathState<N, Surfaces>& p = batch.paths[i];
         const Flight flight = traced.flightOf(p);
-        batch.walks.push_back({.origin = flight.origin,
-                               .direction = flight.direction,
-                               .tMax = flight.tMax,
-                               .time = flight.time,
-                               .u = p.flight,
-                               .random = p.random,
-                               .roulette = pathRoulette,
-                               .throughput = p.throughput});
+        medium::DistanceQuery<N>& q = batch.walks.emplace_back();
+        q.origin = flight.origin, q.direction = flight.direction;
+        q.tMax = flight.tMax, q.time = flight.time, q.u = p.flight;
+        q.random = p.random, q.roulette = pathRoulette, q.throughput = p.throughput;
         if (!flight.medium->medium->parts.empty()) batch.runs.add(p.medium, i);
     }
     medium::TrackingCounters c;
