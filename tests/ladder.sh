@@ -43,6 +43,21 @@ bake "$ladder/recipes/colour.toml" colour --voxel 0.05
 bake "$ladder/recipes/ball.toml" ball --voxel 0.05
 bake "$ladder/recipes/fire.toml" fire --voxel 0.05
 bake cumulus cloud --resolution 96 --set size=2
+# A luminaire without symmetry, in steps so fine that programs interpolate it alike.
+awk 'BEGIN {
+    pi = atan2(0, -1)
+    print "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 73 73 1 2 0 0 0\n1 1 0"
+    for (v = 0; v <= 180; v += 2.5) printf "%g ", v
+    print ""
+    for (h = 0; h <= 360; h += 5) printf "%g ", h
+    for (h = 0; h <= 360; h += 5) {
+        print ""
+        for (v = 0; v <= 180; v += 2.5) {
+            a = h * pi / 180; s = sin(v * pi / 180); c = cos(v * pi / 180)
+            printf "%.3f ", 5 + 60 * exp(3 * (0.8 * c + 0.5 * s * cos(a) + 0.3 * s * sin(a) - 1))
+        }
+    }
+}' > "$out/lobes.ies"
 [[ -e $out/sky.exr ]] || "$woodcock" render "$ladder/sky_image.toml" -o "$out/sky.exr" -q
 
 printf '%-12s %-20s %-28s %-24s %s\n' scene Cycles 'Cycles / Woodcock (r, g, b)' \

@@ -137,6 +137,45 @@ TEST_F(Door, TakesAnArrayAsAFileOfTheSameVolume) {
     EXPECT_NE(pixelsOf(beside), expected);
 }
 
+TEST_F(Door, TakesThePhaseFunctionsOfASceneFile) {
+    const std::vector<float> values = density();
+    LatticeVolume volume{.size = size,
+                         .density = values,
+                         .voxelSize = 0.25,
+                         .origin = {1, 2, -3},
+                         .scale = 3,
+                         .albedo = {0.9, 0.8, 0.7}};
+    for (const std::string phase :
+         {"{ type = \"mie\", diameter = 20 }", "{ type = \"rayleigh\" }"}) {
+        volume.phase = phase;
+        Renderer array;
+        array.addVolume(volume);
+        setSmall(array);
+        Renderer file = Renderer::open(dir / "scene.toml");
+        file.set("volume[0].phase", phase);
+        setSmall(file);
+        EXPECT_EQ(pixelsOf(array), pixelsOf(file)) << phase;
+    }
+}
+
+TEST_F(Door, RefusesWhatIsNoPhaseFunction) {
+    const std::vector<float> values = density();
+    const auto refused = [&](const std::string& phase, double g, const char* part) {
+        Renderer renderer;
+        expectError(ErrorKind::Input, part, [&] {
+            renderer.addVolume({.size = size, .density = values, .g = g, .phase = phase});
+        });
+        expectError(ErrorKind::Usage, "empty", [&] { renderer.render(); });
+    };
+    refused("{ type = \"mia\" }", 0, "mie");
+    refused("{ type = \"mie\", diameter = -1 }", 0, "diameter");
+    refused("{ type = \"rayleigh\" }", 0.5, "both say how the volume scatters");
+    for (const char* text :
+         {"rayleigh", "\"rayleigh\"", "{ type = \"rayleigh\" }\nstorage = \"half\"",
+          "{ type = \"rayleigh\"", "{ type = \"rayleigh\" }\n[[light]]"})
+        refused(text, 0, "written as in a scene file");
+}
+
 TEST_F(Door, ChoosesAScaleForAnArrayAsForAFile) {
     const std::vector<float> values = density();
     Renderer array;

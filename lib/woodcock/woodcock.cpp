@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "woodcock/base/error.h"
+#include "woodcock/base/printable.h"
 #include "woodcock/base/toml_reader.h"
 #include "woodcock/base/toml_text.h"
 #include "woodcock/base/version.h"
@@ -36,9 +37,27 @@ std::string arrayName(std::size_t index) { return fmt::format("array-in-memory-{
 
 Vec3d toVec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
+/// `phase` as a line of a scene's text, if it is one table and nothing more.
+std::string phaseLine(const std::string& phase) {
+    const std::string line = fmt::format("phase = {}\n", phase);
+    try {
+        const toml::table parsed = parseToml(line, "a phase function");
+        if (parsed.size() == 1 && parsed.get("phase")->is_table()) return line;
+    } catch (const Error&) {
+        // The message below says what it should be.
+    }
+    throw inputError(
+        "the phase function of a volume from memory is written as in a scene file, such as "
+        "{{ type = \"mie\", diameter = 20 }}; it is: {}",
+        shown(phase));
+}
+
 std::string sectionOf(const LatticeVolume& volume, const std::string& name) {
-    std::string text = fmt::format("\n[[volume]]\nfile = {}\nalbedo = {}\ng = {}\n", tomlText(name),
-                                   tomlVector(toVec(volume.albedo)), tomlNumber(volume.g));
+    std::string text = fmt::format("\n[[volume]]\nfile = {}\nalbedo = {}\n", tomlText(name),
+                                   tomlVector(toVec(volume.albedo)));
+    if (volume.phase.empty() || volume.g != 0)
+        text += fmt::format("g = {}\n", tomlNumber(volume.g));
+    if (!volume.phase.empty()) text += phaseLine(volume.phase);
     if (volume.scale) text += fmt::format("scale = {}\n", tomlNumber(*volume.scale));
     return text;
 }
@@ -80,8 +99,8 @@ void requireDensityAlone(const scene::VolumeDescription& volume) {
     const auto* c = std::get_if<scene::DensityCoefficients>(&volume.coefficients);
     if (!c || !c->albedoGrid.empty() || volume.emission || volume.blackbody)
         throw usageError(
-            "a volume from memory holds its density alone: it takes scale, albedo and g, but no "
-            "sigma_a, sigma_s, albedo_grid, emission or blackbody");
+            "a volume from memory holds its density alone: it takes scale, albedo, g and phase, "
+            "but no sigma_a, sigma_s, albedo_grid, emission or blackbody");
 }
 
 scene::LoadedField loadArray(const ArrayVolume& array, const scene::VolumeDescription& volume,

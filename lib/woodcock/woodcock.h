@@ -48,6 +48,9 @@ struct LatticeVolume {
     std::optional<double> scale = {};
     std::array<double, 3> albedo{1, 1, 1};  ///< sigma_s / sigma_t of red, green and blue, 0 to 1
     double g = 0;  ///< mean cosine of the Henyey-Greenstein phase function, between -1 and 1
+    /// Another phase function, in place of g: the value of a scene file's key `phase`, such as
+    /// R"({ type = "mie", diameter = 20 })". data/scenes/README.md lists them.
+    std::string phase = {};
 };
 
 /// How far a render has come.

@@ -19,7 +19,7 @@
 namespace {
 
 using namespace woodcock;
-using namespace woodcock::render;
+using namespace woodcock::image;
 using namespace woodcock::scene;
 using namespace woodcock::trade;
 
@@ -111,19 +111,19 @@ void measure(const std::string& file, const Options& o) {
     SceneDescription description = parseScene(file);
     LoadedScene loaded = loadScene(description);
     completeScene(description, loaded);
-    const Scene scene = buildScene(description, std::move(loaded));
-    RenderSettings s = renderSettings(description.render);
+    const render::Scene scene = buildScene(description, std::move(loaded));
+    render::RenderSettings s = renderSettings(description.render);
     s.height = std::max(1, s.height * o.width / s.width), s.width = o.width;
     s.timeLimit = s.noise = 0;
     s.adaptive = false, s.endSample = o.reference, s.seed = 1000;
-    const Truth truth(render(scene, s).film);
+    const Truth truth(render::render(scene, s).film);
     s.endSample = o.spp;
     Runs runs[2];
     for (int seed = 0; seed < o.seeds; ++seed)
         for (const bool adaptive : {false, true}) {
             s.adaptive = adaptive, s.seed = static_cast<std::uint64_t>(seed);
             const double start = processorSeconds();
-            const Film film = render(scene, s).film;
+            const Film film = render::render(scene, s).film;
             Runs& r = runs[adaptive];
             r.cpu.add(processorSeconds() - start);
             const Errors e = truth.errorsOf(film);

@@ -67,7 +67,7 @@ def draw_agreement():
     axes.axhline(0, color="black", lw=1)
     axes.set_xticks(range(len(rows)), [row["scene"] for row in rows], rotation=35, ha="right")
     axes.set_ylabel("Cycles 5.0 - Woodcock, %\n(bars: 2 standard errors)", fontsize=8)
-    axes.set_ylim(-0.35, 0.35)
+    axes.set_ylim(-0.48, 0.48)
     save(figure, axes, "agreement.png")
 
 

@@ -10,6 +10,7 @@
 namespace {
 
 using namespace woodcock;
+using namespace woodcock::grid;
 using namespace woodcock::trade;
 
 void oneTap(benchmark::State& state, Storage storage, int side, bool dependent) {

@@ -17,7 +17,8 @@
 namespace {
 
 using namespace woodcock;
-using namespace woodcock::render;
+using namespace woodcock::image;
+using namespace woodcock::medium;
 using namespace woodcock::scene;
 using namespace woodcock::trade;
 
@@ -46,13 +47,13 @@ look_at = [0, 0.9, 0]
 fov = 30
 )";
 
-Scene glass() {
+render::Scene glass() {
     SceneDescription description = parseSceneText(glassText, "glass", ".", {});
     return buildScene(description, loadScene(description));
 }
 
-Scene chromatic(const ScalingCloud& cloud) {
-    Scene scene = scalingScene(cloud, {.opticalDepth = 10});
+render::Scene chromatic(const ScalingCloud& cloud) {
+    render::Scene scene = scalingScene(cloud, {.opticalDepth = 10});
     MediumPart::Description d = scene.medium.parts.front().description();
     d.scattering = d.scattering * Rgb(1.0f, 0.5f, 0.2f);
     scene.medium.parts = {MediumPart(d)};
@@ -72,15 +73,15 @@ double relativeVariance(const Film& film) {
     return variance / pixels / (mean / pixels * (mean / pixels));
 }
 
-void draw(benchmark::State& state, const Scene& scene) {
-    RenderSettings settings;
+void draw(benchmark::State& state, const render::Scene& scene) {
+    render::RenderSettings settings;
     settings.width = settings.height = 32;
     settings.endSample = 16;
     settings.threads = 1;
     double samples = 0, variance = 0, seconds = 0;
     for (auto _ : state) {
         const double start = processorSeconds();
-        const RenderResult result = render(scene, settings);
+        const render::RenderResult result = render::render(scene, settings);
         seconds += processorSeconds() - start;
         state.PauseTiming();
         samples += static_cast<double>(result.counters.paths);
@@ -101,7 +102,7 @@ int main(int argc, char** argv) {
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     try {
         const ScalingCloud cloud = bakeScalingCloud(128, std::filesystem::temp_directory_path(), 1);
-        const std::vector<std::pair<std::string, Scene>> scenes{
+        const std::vector<std::pair<std::string, render::Scene>> scenes{
             {"thin", scalingScene(cloud, {.opticalDepth = 0.5})},
             {"dense", scalingScene(cloud, {.opticalDepth = 100, .albedo = 1})},
             {"chromatic", chromatic(cloud)},

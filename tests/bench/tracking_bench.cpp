@@ -21,19 +21,18 @@ constexpr int side = 128;
 /// A ball whose mean chord has about this optical depth.
 Medium ball(double opticalDepth) {
     MediumPart::Description d;
-    d.field = std::make_shared<const Field>(bench::wavyBall(side, Storage::Float));
+    d.field = std::make_shared<const grid::Field>(bench::wavyBall(side, grid::Storage::Float));
     d.scattering = Rgb(static_cast<float>(opticalDepth / (0.5 * side * 2 / 3)));
     Medium medium;
     medium.parts.emplace_back(d);
     return medium;
 }
 
-void phase(benchmark::State& state, double g) {
+void phase(benchmark::State& state, const PhaseFunction& phase) {
     RandomStream random(1);
     Vec3d direction{0, 0, 1};
     for (auto _ : state)
-        direction =
-            sampleHenyeyGreenstein(direction, g, random.uniform(), random.uniform()).direction;
+        direction = phase.sample(direction, random.uniform(), random.uniform()).direction;
     benchmark::DoNotOptimize(direction);
 }
 
@@ -91,8 +90,9 @@ void transmittance(benchmark::State& state, double opticalDepth) {
 
 int main(int argc, char** argv) {
     using benchmark::RegisterBenchmark;
-    RegisterBenchmark("phase/isotropic", phase, 0.0);
-    RegisterBenchmark("phase/forward", phase, 0.9);
+    RegisterBenchmark("phase/isotropic", phase, PhaseFunction());
+    RegisterBenchmark("phase/forward", phase, PhaseFunction(HenyeyGreenstein(0.9f)));
+    RegisterBenchmark("phase/mie", phase, PhaseFunction(MieDroplets(20)));
     for (const double depth : {0.5, 50.0}) {
         const std::string at = "/depth:" + std::to_string(depth).substr(0, 4);
         RegisterBenchmark(("flight/one channel" + at).c_str(), distance<1>, depth);

@@ -111,6 +111,12 @@ place("sun", sun, rotation_euler=(0.7, 0.2, 0.4))
 light = bpy.data.lights.new("light", "POINT")
 light.energy, light.shadow_soft_size = 200, 0
 place("light", light, location=(2, -1, 2.5))
+spot = bpy.data.lights.new("spot", "SPOT")
+spot.energy, spot.shadow_soft_size, spot.spot_size, spot.spot_blend = 300, 0, 0.6, 0.4
+place("spot", spot, location=(-2, -1, 2.5), rotation_euler=(0.3, -0.6, 0))
+area = bpy.data.lights.new("area", "AREA")
+area.energy, area.shape, area.size, area.size_y, area.spread = 60, "ELLIPSE", 1.2, 0.5, 2
+place("area", area, location=(0, 2, 1.5), rotation_euler=(-0.8, 0, 0.3))
 world = bpy.data.worlds.new("world")
 world.use_nodes = True
 world.node_tree.nodes["Background"].inputs[0].default_value = (0.2, 0.3, 0.5, 1)

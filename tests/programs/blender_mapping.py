@@ -98,7 +98,8 @@ class Mapping(unittest.TestCase):
             angle = math.radians(degrees)
             self.assertAlmostEqual(mapping.sun_share((3, 4, 1), angle), share, places=4)
             self.near(mapping.sun_irradiance((5, 0, 1), (1, 2, 0), 3, angle), (3, 6, 0))
-        self.near(mapping.area_radiance((1, 0, 2), 8, 0.5), (4, 0, 8))
+        # An even emitter: the flux is pi x area x radiance.
+        self.near(mapping.area_radiance((1, 0, 2), 8 * math.pi, 0.5), (16, 0, 32))
 
     def test_environment(self):
         self.assertAlmostEqual(mapping.environment_rotation(0), -90)

@@ -213,20 +213,20 @@ TEST(CyclesScene, LampsHaveBlendersUnits) {
     EXPECT_EQ(spot["blend"], 0.3);
     EXPECT_EQ(spot["direction"], (std::vector<double>{0, 0, -1}));
 
-    // Cycles: radiance = power / (4 area). It shines along -z of its matrix, by rows.
+    // Cycles: radiance = power / (pi area). It shines along -z of its matrix, by rows.
     const auto rectangle = lamp(
         "type = \"rectangle\"\nsize = [2, 1]\nradiance = 3\nspread = 60\n"
         "transform = { translate = [1, 2, 3], scale = [2, 1, 1] }\n");
     EXPECT_EQ(rectangle["shape"], "RECTANGLE");
     EXPECT_EQ(rectangle["size"], (std::vector<double>{4, 1}));
-    EXPECT_NEAR(rectangle["power"].get<double>(), 4 * 4 * 3, 1e-4);
+    EXPECT_NEAR(rectangle["power"].get<double>(), pi * 4 * 3, 1e-4);
     EXPECT_NEAR(rectangle["spread"].get<double>(), pi / 3, 1e-12);
     EXPECT_EQ(rectangle["matrix"][1][2], -1);
     EXPECT_EQ(rectangle["matrix"][0][0], 1);
     EXPECT_EQ(rectangle["matrix"][2][3], 3);
     const auto disk = lamp("type = \"disk\"\nradius = 2\n");
     EXPECT_EQ(disk["size"], (std::vector<double>{4, 4}));
-    EXPECT_NEAR(disk["power"].get<double>(), 4 * 4 * pi, 1e-4);
+    EXPECT_NEAR(disk["power"].get<double>(), pi * 4 * pi, 1e-4);
 
     const auto refused = [&](const std::string& lines, const std::string& words) {
         expectError(ErrorKind::Input, words, [&] { lamp(lines); });

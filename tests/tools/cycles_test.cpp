@@ -280,6 +280,45 @@ TEST_F(WithBlender, FogIsAsBright) {
     EXPECT_TRUE(theirs.attributes.contains("woodcock/cyclesInterpolation"));
 }
 
+TEST_F(WithBlender, LampsLightAFloorAsTheyShould) {
+    // A small patch of a white floor, 2 below a lamp that faces it.
+    const auto radianceUnder = [&](const std::string& lamp) {
+        const ReadBack image = draw(R"([[material]]
+name = "white"
+type = "diffuse"
+colour = 1
+[[surface]]
+plane = { size = [1, 1] }
+material = "white"
+[camera]
+type = "orthographic"
+eye = [0, 1, 0]
+look_at = [0, 0, 0]
+up = [0, 0, 1]
+height = 0.001
+[render]
+resolution = [8, 8]
+spp = 512
+[[light]]
+position = [0, 2, 0]
+direction = [0, -1, 0]
+visible = false
+)" + lamp);
+        double sum = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) sum += image.at(x, y, "R");
+        return sum / image.width / image.height;
+    };
+    // A disk's irradiance under its middle is pi L sin^2 of the angle of its rim. A rectangle as
+    // small as a point: L area / h^2; by a spread of 2 a, tan a / (tan a - a) times that.
+    EXPECT_NEAR(radianceUnder("type = \"disk\"\nradius = 1\nradiance = 3\n") / (3.0 / 5), 1, 0.005);
+    const std::string small = "type = \"rectangle\"\nsize = [0.004, 0.002]\nradiance = 3e5\n";
+    const double even = 3e5 * 0.004 * 0.002 / 4 / pi;
+    EXPECT_NEAR(radianceUnder(small) / even, 1, 0.005);
+    const double a = pi / 6;
+    EXPECT_NEAR(radianceUnder(small + "spread = 60\n") / even * (1 - a / std::tan(a)), 1, 0.005);
+}
+
 TEST_F(WithBlender, CompareRendersBoth) {
     const ProgramResult run =
         runProgram({"compare", "--cycles", file("fog.toml"), "--blender", blender_, "--spp", "16",

@@ -80,7 +80,7 @@ CyclesColour cyclesPoint(Rgb intensity) {
 
 CyclesColour cyclesArea(Rgb radiance, double area) {
     CyclesColour light = cyclesColour(radiance);
-    light.strength = static_cast<float>(light.strength * (4 * area));
+    light.strength = static_cast<float>(light.strength * (pi * area));
     return light;
 }
 

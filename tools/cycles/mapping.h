@@ -70,8 +70,7 @@ CyclesColour cyclesColour(Rgb light);
 /// Of a point light, and of a spot along its axis: power, 4 pi times the intensity.
 CyclesColour cyclesPoint(Rgb intensity);
 
-/// Of an area light: power, 4 area times the radiance. (An even emitter of that radiance really has
-/// pi area times it.)
+/// Of an area light: power, pi area times the radiance.
 CyclesColour cyclesArea(Rgb radiance, double area);
 
 /// A lamp's world matrix, of unit axes: it shines along its -z. `worldFromLight` shines towards +y;

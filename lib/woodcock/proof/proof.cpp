@@ -77,8 +77,8 @@ const std::vector<Check>& checks() {
         std::vector<Check> list;
         for (const auto& subject :
              {closedForms(), singleScattering(), slabs(), surfaces(), surfacesTogether(),
-              roughSurfaces(), properties(), sampling(), phaseFunctions(), lightSampling(), lamps(),
-              skies(), extremes(), emission()})
+              roughSurfaces(), properties(), sampling(), phaseFunctions(), lightSampling(),
+              aimedPoints(), flatLights(), lampsInFog(), skies(), extremes(), emission()})
             list.insert(list.end(), subject.begin(), subject.end());
         std::stable_sort(list.begin(), list.end(),
                          [](const Check& a, const Check& b) { return a.kind < b.kind; });

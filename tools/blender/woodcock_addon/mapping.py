@@ -118,9 +118,8 @@ def sphere_radiance(colour, power, radius):
 
 
 def area_radiance(colour, power, area):
-    """Of an area light, to its front. Cycles gives it 1 / (4 area) of its power, where an even
-    emitter of that power has 1 / (pi area). A spread keeps the power."""
-    return [c * power / (4 * area) for c in colour]
+    """Of an area light, to its front. A spread keeps the power."""
+    return [c * power / (math.pi * area) for c in colour]
 
 
 def environment_rotation(mapping_z):

@@ -3,8 +3,7 @@
 #include <array>
 
 #include "woodcock/light/sky_model.h"
-#include "woodcock/scene/keys/sections.h"
-#include "woodcock/scene/keys/values.h"
+#include "woodcock/scene/keys/light_keys.h"
 
 namespace woodcock::scene {
 namespace {
@@ -102,7 +101,7 @@ std::vector<Key<Sky>> skyKeys() {
                    .doc = "the hours that the clock is ahead of UTC, summer time included"},
                   &SkyMoment::time, &light::CivilTime::utcOffset, number({-14, 14})),
         key({.name = "up", .doc = "the axis that is upwards"}, &Sky::place, &SunPlace::up,
-            choice<UpAxis>("up axis", {{UpAxis::Y, "y"}, {UpAxis::Z, "z"}})),
+            upAxis()),
         key({.name = "turbidity", .doc = "how hazy the air is", .always = true}, &Sky::turbidity,
             number(hazes)),
         key({.name = "ground_albedo",
@@ -180,7 +179,7 @@ const KeyTable<Sky>& keysOf() {
                                      .exclusions = placedTwice(),
                                      .keys = skyKeys(),
                                      .check = checkSky,
-                                     .outer = "[[surface]]\nsphere = {}\n[[light]]\n",
+                                     .outer = outerOfLight,
                                      .least = "elevation = 40",
                                      .path = "light[0]"};
     return table;
