@@ -252,18 +252,4 @@ std::optional<std::string> patternOf(const FrameSeries& series) {
     return std::nullopt;
 }
 
-std::string shellNumbers(const std::vector<std::string>& numbers) {
-    constexpr size_t few = 6;
-    const bool long_ = numbers.size() > few;
-    bool even = long_ && valueOf(numbers.front()).value_or(-1) >= 0;
-    for (size_t i = 1; even && i < numbers.size(); ++i) {
-        const auto a = valueOf(numbers[i - 1]), b = valueOf(numbers[i]);
-        even = a && b && *b == *a + 1 && numbers[i].size() >= numbers[i - 1].size();
-    }
-    // Numbers without leading zeros may grow by a digit; padded ones keep their width.
-    even = even && (numbers.front().size() == numbers.back().size() || numbers.front()[0] != '0');
-    if (even) return fmt::format("{{{}..{}}}", numbers.front(), numbers.back());
-    return fmt::format("{}", fmt::join(numbers, " "));
-}
-
 }  // namespace woodcock

@@ -53,7 +53,4 @@ std::optional<FrameSeries> seriesOf(std::span<const std::filesystem::path> frame
 /// f.9.vdb beside f.0010.vdb.
 std::optional<std::string> patternOf(const FrameSeries& series);
 
-/// "0009 0010 0011", or "{0009..0020}" for many without a gap: the words of a loop in a shell.
-std::string shellNumbers(const std::vector<std::string>& numbers);
-
 }  // namespace woodcock
