@@ -91,7 +91,10 @@ void addRendering(CLI::App& command, RenderOptions& o) {
             "Spend the same time, but take more samples where the error is larger and fewer "
             "elsewhere"),
         addCount(command, "--threads", o.threads, 0, 4096,
-                 "How many processor threads to use. 0 takes all cores")};
+                 "How many processor threads to use. 0 takes all cores"),
+        command.add_flag("--estimate", o.estimate,
+                         "Say how long it would take, and how much memory, from a few samples. "
+                         "Writes no picture")};
     for (CLI::Option* option : options) option->group("Rendering");
 }
 
@@ -200,6 +203,9 @@ void RenderOptions::check() const {
             "--quality auto needs to know what for: give --time-limit, such as 60s, or --noise, "
             "such as 1%");
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
+    exclude(estimate, choosesQuality(), "--estimate and --quality auto");
+    exclude(estimate, !writeScene.empty(), "--estimate and --write-scene");
+    exclude(estimate, !stats.empty(), "--estimate and --stats");
     exclude(reports.json, stats == "-", "--json and --stats -");
     exclude(reports.json, writeScene == "-", "--json and --write-scene -");
     if (reports.progress == "alfred" || reports.progress == "openjd")

@@ -20,7 +20,7 @@ struct RenderOptions {
     std::vector<std::filesystem::path> inputs, outputs;
     std::filesystem::path writeScene, stats;
     std::vector<int> frames;  ///< empty: one picture, without a number
-    bool skipExisting = false;
+    bool skipExisting = false, estimate = false;
 
     std::optional<ImageSize> size;
     std::optional<PixelRectangle> crop;

@@ -21,6 +21,7 @@
 #include "tools/common/stats.h"
 #include "tools/render/choices_text.h"
 #include "tools/render/choose_exposure.h"
+#include "tools/render/estimate.h"
 #include "tools/render/frame_reader.h"
 #include "tools/render/options.h"
 #include "tools/render/picture_warnings.h"
@@ -130,7 +131,7 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
         const std::string place =
             scene::findPlace(scene.places, fmt::format("output.files[{}]", i));
         scene::inPlace(place, [&] { image::imageFormat(settings.files[i]); });
-        prepareOutput(settings.files[i], options.mkdir, place);
+        if (!options.estimate) prepareOutput(settings.files[i], options.mkdir, place);
     }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
@@ -316,7 +317,7 @@ private:
     }
 
     void checkWhatIsAsked() const {
-        if (files().empty() && options_.rendersImages())
+        if (files().empty() && options_.rendersImages() && !options_.estimate)
             throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
         if (options_.rendersImages()) {
             options_.checkFor(files());
@@ -346,6 +347,7 @@ private:
         image::Outputs outputs = preparedOutputs();
         loadStart_ = Clock::now();
         if (load()) outputs = prepareOutputs(description_, options_);
+        if (options_.estimate) return estimate(outputs);
         if (!options_.rendersImages()) return;
         if (options_.choosesQuality()) chooseSettings();
         if (render(outputs)) endWith(exitInterrupted);
@@ -423,7 +425,10 @@ private:
             spdlog::error("{}: {}", framesText(frames), error);
         if (!plan_.skipped.empty()) spdlog::info("{}: there already", framesText(plan_.skipped));
         if (!plan_.drawn.empty() || !options_.rendersImages()) chooseForAll();
-        if (options_.rendersImages()) drawFrames();
+        if (options_.estimate && !plan_.drawn.empty())
+            estimate(prepareOutputs(reader_->at(plan_.drawn.front()), options_));
+        else if (options_.rendersImages() && !options_.estimate)
+            drawFrames();
     }
 
     static std::string framesText(const std::vector<int>& frames) {
@@ -517,6 +522,68 @@ private:
 
     /// Each frame's counts go into a file of its own.
     bool hasOwnStats() const { return namesFrame(options_.stats.string()); }
+
+    // ---- no picture
+
+    /// Says what this would take.
+    void estimate(const image::Outputs& outputs) {
+        const double pixels = settings_.crop
+                                  ? double(settings_.crop->width()) * settings_.crop->height()
+                                  : double(settings_.width) * settings_.height;
+        std::vector<FrameTrial> trials;
+        constexpr std::size_t mostTrials = 5;
+        std::uintmax_t largest = 0;
+        for (const int frame : plan_.drawn)
+            largest = std::max(largest, bytesOfVolumes(reader_->at(frame)));
+        for (const int frame : spreadFrames(plan_.drawn, mostTrials)) {
+            LoadedFrame loaded = reader_->take(frame);
+            description_ = std::move(loaded.description), loaded_ = std::move(loaded.loaded);
+            trials.push_back({.frame = frame, .loadSeconds = loaded.seconds});
+            measure(trials.back());
+        }
+        if (trials.empty()) {
+            trials.push_back({.loadSeconds = secondsSince(loadStart_)});
+            measure(trials.back());
+            largest = trials.back().fileBytes;
+        }
+        double scenes = 0;
+        for (const FrameTrial& trial : trials) scenes = std::max(scenes, trial.sceneBytes);
+        // The trials held the scenes that rendering holds, and next to no picture.
+        const double fixed =
+            std::max(0.0, static_cast<double>(peakMemoryBytes()) -
+                              (trials.size() > 1 ? 2 : 1) * scenes) +
+            pixels * (filmBytesPerPixel(settings_, description_) + outputs.bytesPerPixel());
+        const RenderEstimate estimate = estimateAll(
+            std::move(trials), std::max<std::size_t>(1, plan_.drawn.size()), fixed, largest);
+        if (options_.reports.json)
+            printJson(estimateJson(estimate));
+        else if (options_.reports.printsText())
+            printText(estimateText(estimate));
+    }
+
+    void measure(FrameTrial& trial) {
+        const auto start = Clock::now();
+        trial.fileBytes = bytesOfVolumes(description_);
+        trial.sceneBytes = bytesOf(loaded_);
+        const render::Scene scene = scene::buildScene(description_, std::move(loaded_));
+        trial.loadSeconds += secondsSince(start);
+        if (!measureRender(scene, settings_, trial, [] { return !interrupted(); }))
+            endWith(exitInterrupted);
+    }
+
+    static double secondsSince(Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    static std::uintmax_t bytesOfVolumes(const scene::SceneDescription& scene) {
+        std::uintmax_t bytes = 0;
+        for (const scene::VolumeDescription& volume : scene.volumes) {
+            std::error_code none;
+            const std::uintmax_t size = std::filesystem::file_size(volume.file, none);
+            if (!none) bytes += size;
+        }
+        return bytes;
+    }
 
     // ---- a picture
 
