@@ -124,6 +124,13 @@ TEST_F(SceneFrames, MistakesNameThePlace) {
                 [&] { parse(volume("outside = \"loop\"")); });
 }
 
+TEST_F(SceneFrames, OneFileMayStandInForAll) {
+    const SceneDescription one =
+        parseSceneText(volume("offset = 3\noutside = \"hold\""), "scene.toml", dir.path(),
+                       {"volume[0].file=a.2.vdb"});
+    EXPECT_EQ(one.volumes[0].sequence, FileSequence());
+}
+
 TEST_F(SceneFrames, BlackFramesHoldNothing) {
     const SceneDescription black = files.at(parse(volume("outside = \"clip\"")), 9);
     EXPECT_TRUE(black.volumes[0].black);

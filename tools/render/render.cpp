@@ -416,6 +416,9 @@ private:
         if (hasSceneFiles())
             reader_.emplace(description_, options_.choicesLook(),
                             [this](int frame) { return describeScene(options_, frame); });
+        if (!hasSceneFiles() && !changesWithFrame(description_))
+            spdlog::warn(
+                "nothing in the scene changes with the frame: all pictures will be the same");
         plan_ = planFrames(options_.frames, *reader_, options_.skipExisting);
         const std::size_t missing = plan_.failed().size();
         if (missing > 0 && missing == options_.frames.size())
@@ -433,6 +436,11 @@ private:
 
     static std::string framesText(const std::vector<int>& frames) {
         return fmt::format("frame{} {}", frames.size() == 1 ? "" : "s", frameRangeText(frames));
+    }
+
+    /// Values that change with the frame belong here, too.
+    static bool changesWithFrame(const scene::SceneDescription& scene) {
+        return scene::readsFrames(scene);
     }
 
     /// Chooses what is open, alike for all frames: from the largest file of each sequence.

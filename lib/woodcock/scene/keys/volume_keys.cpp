@@ -259,6 +259,18 @@ void nameDensity(const TomlTable& table, V& volume) {
     }
 }
 
+/// One frame's file in place of a sequence, by --set, leaves its keys without a meaning.
+void checkSequence(const TomlTable& table, V& volume) {
+    if (namesFrame(volume.file.string())) return;
+    volume.sequence = {};
+    if (table.need("file", "").place().starts_with(overrideMark)) return;
+    for (const char* key : {"frame_start", "offset", "outside", "missing"})
+        if (const auto v = table.find(key))
+            throw v->error(
+                "is for a sequence, and file names none: write \"smoke.####.vdb\", with #### where "
+                "a frame's number goes");
+}
+
 void checkVolume(const TomlTable& table, V& volume) {
     if (auto* box = std::get_if<Homogeneous>(&volume.coefficients)) {
         checkBox(table, volume, *box);
@@ -267,12 +279,7 @@ void checkVolume(const TomlTable& table, V& volume) {
             throw table.error(
                 "has neither file nor box; give file = \"smoke.vdb\" or "
                 "box = {{ min = [0, 0, 0], max = [1, 1, 1] }}");
-        if (!namesFrame(volume.file.string()))
-            for (const char* key : {"frame_start", "offset", "outside", "missing"})
-                if (const auto v = table.find(key))
-                    throw v->error(
-                        "is for a sequence, and file names none: write \"smoke.####.vdb\", with "
-                        "#### where a frame's number goes");
+        checkSequence(table, volume);
         nameDensity(table, volume);
     }
 }
