@@ -80,7 +80,7 @@ TEST(Estimate, WritesNoPicture) {
         return result.out;
     };
     const auto json = nlohmann::json::parse(
-        estimate({"--spp", "32", "--json", "-o", (dir / "sub/x.#.exr").string()}));
+        estimate({"--spp", "32", "--json", "-o", (dir / "x.#.exr").string()}));
     EXPECT_EQ(json.at("frames"), 3);
     ASSERT_EQ(json.at("trials").size(), 3u);
     EXPECT_EQ(json.at("trials")[2].at("frame"), 3);

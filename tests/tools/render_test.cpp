@@ -124,7 +124,7 @@ TEST_F(Render, PatternsForFramesAreRefusedWithTheWayThatWorks) {
     for (const char* name : {"f.####.vdb", "f.%04d.vdb", "f.$F4.vdb", "f.<frame04>.vdb"})
         expectSaid(render({name}, {"-o", file("x.exr")}), 2,
                    {std::string("there is no file '") + file(name), "stands for a frame's number",
-                    "'" + file(name) + "' --frames 9-10 -o '"});
+                    file(name), " --frames 9-10 -o "});
     expectSaid(render({"none.####.vdb"}, {"-o", file("x.exr")}), 2,
                {"and no file has a number in its place"});
     expectSaid(render({"f.{frame}.vdb"}, {"-o", file("x.exr")}), 2,

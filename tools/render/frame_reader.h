@@ -39,6 +39,7 @@ public:
 
     /// The scene as it is in a frame. Throws Error{Input} where it has no file.
     scene::SceneDescription at(int frame) {
+        // Values that change with the frame would be found here, before its files are.
         return files_.at(describe_ ? describe_(frame) : sequence_, frame);
     }
     /// See FrameFiles.

@@ -131,7 +131,7 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
         const std::string place =
             scene::findPlace(scene.places, fmt::format("output.files[{}]", i));
         scene::inPlace(place, [&] { image::imageFormat(settings.files[i]); });
-        if (!options.estimate) prepareOutput(settings.files[i], options.mkdir, place);
+        prepareOutput(settings.files[i], options.mkdir, place);
     }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
@@ -438,7 +438,7 @@ private:
         return fmt::format("frame{} {}", frames.size() == 1 ? "" : "s", frameRangeText(frames));
     }
 
-    /// Values that change with the frame belong here, too.
+    /// Its files, so far: see FrameReader::at().
     static bool changesWithFrame(const scene::SceneDescription& scene) {
         return scene::readsFrames(scene);
     }
@@ -449,7 +449,7 @@ private:
         scene::SceneDescription& sequence = reader_->sequence();
         description_ = reader_->atLargest(frame);
         checkFiles(description_, options_);
-        const image::Outputs outputs = preparedOutputs();
+        preparedOutputs();  // what is wrong with them is wrong for all
         const Openings open = openingsOf(sequence);
         if (leavesChoices(sequence) && !hasSceneFiles()) {
             scene::LoadedScene loaded = reader_->load(description_);

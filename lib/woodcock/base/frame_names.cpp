@@ -69,7 +69,7 @@ struct Place {
 std::optional<Place> findPlace(const std::string& name, size_t from) {
     if (name.size() > longestName) return std::nullopt;
     static const std::regex patterns(
-        R"((#{2,}|@{2,})|(^|[/._-])([#@])(?=[._-]|$)|%(?:0([1-9]|[1-5][0-9]))?d(?![A-Za-z]))"
+        R"((#{2,}|@{2,})|(^|[/._-])([#@])(?=[/._-]|$)|%(?:0([1-9]|[1-5][0-9]))?d(?![A-Za-z]))"
         R"(|\$F([0-9]{0,2})(?![A-Za-z0-9_])|\$\{F([0-9]{0,2})\}|<(?:f|F|frame|Frame|FRAME)([0-9]{0,2})>)");
     std::smatch match;
     const auto begin = name.begin() + static_cast<std::ptrdiff_t>(from);
@@ -103,7 +103,7 @@ std::string framePattern(std::string_view name) {
     // name.
     static const std::array<std::regex, 6> patterns{
         std::regex(R"(#{2,}|@{2,})"),
-        std::regex(R"((^|[/._-])([#@])(?=[._-]|$))"),
+        std::regex(R"((^|[/._-])([#@])(?=[/._-]|$))"),
         std::regex(R"(%[0-9]*d(?![A-Za-z]))"),
         std::regex(R"(\$(F[0-9]*|FF|FRAME|frame)(?![A-Za-z0-9_])|\$\{(F[0-9]*|FF|FRAME|frame)\})"),
         std::regex(R"(<(f|F|frame|Frame|FRAME)[0-9]*>|\{(f|frame|FRAME)(:[^{}]*)?\})"),
