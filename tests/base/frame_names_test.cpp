@@ -98,12 +98,58 @@ TEST(FrameNames, FilesAroundOneDifferInItsLastNumber) {
     EXPECT_TRUE(seriesAround(dir / "a.vdb").numbers.empty());
 }
 
-TEST(FrameNames, NumbersAreWrittenAsShellsTakeThem) {
-    EXPECT_EQ(shellNumbers({"0009", "0010"}), "0009 0010");
-    EXPECT_EQ(shellNumbers({"08", "09", "10", "11", "12", "13", "14"}), "{08..14}");
-    EXPECT_EQ(shellNumbers({"8", "9", "10", "11", "12", "13", "14"}), "{8..14}");
-    EXPECT_EQ(shellNumbers({"1", "2", "3", "4", "5", "6", "8"}), "1 2 3 4 5 6 8");
-    EXPECT_EQ(shellNumbers({"-1", "0", "1", "2", "3", "4", "5"}), "-1 0 1 2 3 4 5");
+TEST(FrameNames, PatternsAreFilledIn) {
+    const auto in7 = [](const char* name) { return withFrame(name, 7); };
+    EXPECT_EQ(in7("s.####.vdb"), "s.0007.vdb");
+    EXPECT_EQ(in7("s.#.vdb"), "s.7.vdb");
+    EXPECT_EQ(in7("s.@@@.vdb"), "s.007.vdb");
+    EXPECT_EQ(in7("s.%04d.vdb"), "s.0007.vdb");
+    EXPECT_EQ(in7("s.%d.vdb"), "s.7.vdb");
+    EXPECT_EQ(in7("s%012d"), "s000000000007");
+    EXPECT_EQ(in7("s.$F.vdb"), "s.7.vdb");
+    EXPECT_EQ(in7("s.$F4.vdb"), "s.0007.vdb");
+    EXPECT_EQ(in7("s.${F4}x.vdb"), "s.0007x.vdb");
+    EXPECT_EQ(in7("s.<frame04>.vdb"), "s.0007.vdb");
+    EXPECT_EQ(in7("s.<f>.vdb"), "s.7.vdb");
+    EXPECT_EQ(in7("f_####/s.####.vdb"), "f_0007/s.0007.vdb");
+    // More digits than places are written whole, and a minus takes one.
+    EXPECT_EQ(withFrame("s.##.vdb", 12345), "s.12345.vdb");
+    EXPECT_EQ(withFrame("s.%04d.vdb", -5), "s.-005.vdb");
+    EXPECT_EQ(withFrame("s.####.vdb", -5), "s.-005.vdb");
+    for (const char* name :
+         {"smoke.vdb", "c#.png", "take#2.exr", "me@home.png", "50%done.png", "a.$FOO.png",
+          "s.{frame:04d}.vdb", "s.${FRAME}.vdb", "s.*.vdb", "s.%4d.vdb", "s.%s.vdb", ""}) {
+        EXPECT_EQ(in7(name), name);
+        EXPECT_FALSE(namesFrame(name)) << name;
+    }
+    EXPECT_TRUE(namesFrame("s.$F4.vdb"));
+    EXPECT_EQ(withFrame(std::string(100000, '#'), 1).size(), 100000u);
+}
+
+TEST(FrameNames, WhatIsOnDiskIsWhatIsFilledIn) {
+    const TempDir dir;
+    for (const char* name : {"a.0010.vdb", "a.0002.vdb", "a.-003.vdb", "a.11.vdb", "a.x.vdb",
+                             "a.12345.vdb", "f_2/s.2.vdb", "f_3/s.2.vdb", "f_4/s.4.vdb"}) {
+        std::filesystem::create_directories((dir / name).parent_path());
+        writeText(dir / name, "");
+    }
+    const auto frames = [&](const char* name) { return framesOnDisk((dir / name).string()); };
+    for (const char* name : {"a.####.vdb", "a.%04d.vdb", "a.$F4.vdb", "a.<frame04>.vdb"})
+        EXPECT_EQ(frames(name), (std::vector{-3, 2, 10, 12345})) << name;
+    EXPECT_EQ(frames("a.$F.vdb"), (std::vector{11, 12345}));  // padded numbers have other names
+    EXPECT_EQ(frames("f_#/s.#.vdb"), (std::vector{2, 4}));
+    EXPECT_TRUE(frames("a.0010.vdb").empty());
+    EXPECT_TRUE(frames("none/a.####.vdb").empty());
+}
+
+TEST(FrameNames, ASeriesHasAPattern) {
+    const auto pattern = [](const Paths& files) {
+        return patternOf(seriesOf(files).value()).value_or("none");
+    };
+    EXPECT_EQ(pattern({"a.0009.vdb", "a.0010.vdb"}), "a.####.vdb");
+    EXPECT_EQ(pattern({"a.9.vdb", "a.10.vdb"}), "a.#.vdb");
+    EXPECT_EQ(pattern({"a9.vdb", "a10.vdb"}), "a%d.vdb");
+    EXPECT_EQ(pattern({"a.9.vdb", "a.0010.vdb"}), "none");
 }
 
 }  // namespace

@@ -77,9 +77,7 @@ TEST_F(Render, FramesAreNotPiledUp) {
     const Words frames{"f.0010.vdb", "f.0009.vdb", "f.0011.vdb"};
     expectSaid(render(frames, {"-o", file("x.png")}), 2,
                {"f.0010.vdb', '", "f.0009.vdb' and 1 more differ only in a number", "--overlay",
-                "render " + file("f.0011.vdb") + " --write-scene shot.toml",
-                "for FRAME in 0009 0010 0011; do",
-                "--set \"volume[0].file=" + file("f.${FRAME}.vdb") + "\" -o \"f.${FRAME}.png\""});
+                "woodcock render '" + file("f.####.vdb") + "' --frames 9-11 -o 'f.####.png'"});
     EXPECT_FALSE(fs::exists(dir / "x.png"));
     EXPECT_EQ(render(frames, {"-o", file("x.png"), "--overlay"}).exitCode, 0);
     for (const char* command : {"trade", "cycles"})
@@ -87,19 +85,29 @@ TEST_F(Render, FramesAreNotPiledUp) {
                    {"differ only in a number"});
 }
 
-TEST_F(Render, TheLoopThatIsSaidWorks) {
-    for (const char* frame : {"f 1.vdb", "f 2.vdb"}) copyOfSmoke(frame);
-    const std::string said = render({"f 1.vdb", "f 2.vdb"}, {"-o", file("x.png")}).err;
-    const std::size_t begin = said.find("  woodcock render"), end = said.find("\nIf they");
-    ASSERT_NE(end, std::string::npos) << said;
-    // As a shell runs it, small.
-    writeText(dir / "loop.sh", "set -e\ncd \"" + dir.path().string() + "\"\nwoodcock() { \"" +
+/// As a shell runs what stands between two words of a message, small.
+void expectRuns(const fs::path& dir, const std::string& said, const std::string& from,
+                const std::string& to) {
+    const std::size_t begin = said.find(from), end = said.find(to);
+    ASSERT_TRUE(begin != std::string::npos && end != std::string::npos) << said;
+    writeText(dir / "said.sh", "set -e\ncd \"" + dir.string() + "\"\nwoodcock() { \"" +
                                    program().string() +
                                    "\" \"$@\" --res 16x8 --quiet --set render.spp=1; }\n" +
                                    said.substr(begin, end - begin) + "\n");
-    const ProgramResult loop = runProgram({file("loop.sh")}, {}, "/bin/sh");
-    EXPECT_EQ(loop.exitCode, 0) << loop.err;
-    EXPECT_TRUE(fs::exists(dir / "f 1.png") && fs::exists(dir / "f 2.png")) << said;
+    const ProgramResult shell = runProgram({(dir / "said.sh").string()}, {}, "/bin/sh");
+    EXPECT_EQ(shell.exitCode, 0) << shell.err;
+}
+
+TEST_F(Render, TheCommandsThatAreSaidWork) {
+    for (const char* frame : {"f 1.vdb", "f 2.vdb"}) copyOfSmoke(frame);
+    expectRuns(dir.path(), render({"f 1.vdb", "f 2.vdb"}, {"-o", file("x.png")}).err,
+               "  woodcock render", "\nIf they");
+    EXPECT_TRUE(fs::exists(dir / "f 1.png") && fs::exists(dir / "f 2.png"));
+    // Names of no series are taken one by one.
+    for (const char* frame : {"t 1_10.vdb", "t 2_20.vdb"}) copyOfSmoke(frame);
+    expectRuns(dir.path(), render({"t 1_10.vdb", "t 2_20.vdb"}, {"-o", file("x.png")}).err,
+               "  woodcock render", "\nIf they");
+    EXPECT_TRUE(fs::exists(dir / "t 1_10.png") && fs::exists(dir / "t 2_20.png"));
 }
 
 TEST_F(Render, SeveralVolumesOfOtherNamesAreOnePicture) {
@@ -114,17 +122,16 @@ TEST_F(Render, PatternsForFramesAreRefusedWithTheWayThatWorks) {
     copyOfSmoke("f.0009.vdb");
     copyOfSmoke("f.0010.vdb");
     for (const char* name : {"f.####.vdb", "f.%04d.vdb", "f.$F4.vdb", "f.<frame04>.vdb"})
-        expectSaid(
-            render({name}, {"-o", file("x.exr")}), 2,
-            {std::string("there is no file '") + file(name), "is not filled in with frame numbers",
-             "for FRAME in 0009 0010; do", file("f.${FRAME}.vdb")});
+        expectSaid(render({name}, {"-o", file("x.exr")}), 2,
+                   {std::string("there is no file '") + file(name), "stands for a frame's number",
+                    file(name), " --frames 9-10 -o "});
     expectSaid(render({"none.####.vdb"}, {"-o", file("x.exr")}), 2,
-               {"and no file has a number in its place", "for FRAME in 0001"});
-    expectSaid(render({"f.0009.vdb"}, {"-o", file("x.exr"), "--frames", "9-10"}), 2,
-               {"there is no option --frames: one call draws one frame", "for FRAME in"});
+               {"and no file has a number in its place"});
+    expectSaid(render({"f.{frame}.vdb"}, {"-o", file("x.exr")}), 2,
+               {"'{frame}' is not filled in", "Put ####"});
     expectSaid(renderScene("[[volume]]\nfile = \"f.####.vdb\"\n"), 3,
-               {"scene.toml:2:8: ", "'####' is not filled in with frame numbers", "${FRAME}"});
-    expectSaid(runProgram({"info", file("f.%04d.vdb")}), 3, {"'%04d' is not filled in"});
+               {"scene.toml:2:8: ", "'####' stands for a frame's number", "--frames"});
+    expectSaid(runProgram({"info", file("f.%04d.vdb")}), 3, {"'%04d' stands for a frame's number"});
     // One that is called so is drawn.
     copyOfSmoke("a.####.vdb");
     EXPECT_EQ(render({"a.####.vdb"}, {"-o", file("x.exr")}).exitCode, 0);
@@ -138,22 +145,21 @@ TEST_F(Render, FoldersAreToldOf) {
                {"is a directory; name a scene", "it holds no .vdb file"});
     expectSaid(render({"mixed"}, {"-o", file("x.exr")}), 2, {"it holds 2 .vdb files, such as"});
     expectSaid(render({"seq"}, {"-o", file("x.exr")}), 2,
-               {"It holds 2 frames", "for FRAME in 1 2; do", file("seq/f.${FRAME}.vdb")});
+               {"It holds 2 frames", "'" + file("seq/f.#.vdb") + "' --frames 1-2 -o 'f.#.png'"});
 }
 
 TEST_F(Render, OutputsAreNotNamedByPatterns) {
     for (const char* name : {"x.####.png", "x.%04d.exr", "x.$F4.png"}) {
         expectSaid(render({"smoke.vdb"}, {"-o", file(name)}), 2,
-                   {"is not filled in with a frame number, and the file would be called so",
-                    file("x.0001."), file("x.${FRAME}.")});
+                   {"stands for a frame's number, and no frames are asked for", "--frames 1-48"});
         expectSaid(renderScene("[[volume]]\nfile = \"smoke.vdb\"\n", {"--stats", file(name)}), 2,
                    {"--stats: '", "is not filled in"});
     }
     expectSaid(renderScene("[[volume]]\nfile = \"smoke.vdb\"\n", {"-o", file("x.####.png")}), 2,
-               {"is not filled in"});
+               {"no frames are asked for"});
     writeText(dir / "files.toml",
               "[[volume]]\nfile = \"smoke.vdb\"\n[output]\nfiles = [\"x.####.png\"]\n");
-    expectSaid(render({"files.toml"}, {}), 2, {"files.toml:4:10: '", "is not filled in"});
+    expectSaid(render({"files.toml"}, {}), 2, {"files.toml:4:10: '", "no frames are asked for"});
     EXPECT_EQ(files(), 3u);
 }
 

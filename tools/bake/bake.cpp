@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@
 #include "tools/bake/report.h"
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
+#include "tools/common/frames.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
@@ -23,6 +25,7 @@
 #include "tools/common/report_options.h"
 #include "woodcock/bake/bake_file.h"
 #include "woodcock/bake/baker.h"
+#include "woodcock/base/frame_range.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/base/toml_text.h"
@@ -38,7 +41,8 @@ struct BakeOptions {
     std::string input;
     fs::path output, like, preview, writeRecipe, sheet;
     std::string likeGrid;
-    bool list = false, describe = false, half = false, full = false, mkdir = false;
+    bool list = false, describe = false, half = false, full = false, mkdir = false,
+         skipExisting = false;
     ReportOptions reports;
     std::optional<double> voxel, seed, mostVoxels, tolerance;
     FrameOptions frames;
@@ -53,12 +57,20 @@ std::vector<std::string> presetNames() {
     return names;
 }
 
+fs::path fileOf(const fs::path& file, const BakeFrame& frame) {
+    return frame.number ? inFrame(file, *frame.number) : file;
+}
+
 /// A preset by its name, a recipe's file, or a VDB file, whose grids are sampled anew.
-bake::RecipeText findRecipe(const std::string& input) {
+bake::RecipeText findRecipe(const std::string& input, const BakeFrame& frame) {
     if (const auto preset = bake::presets().find(input); preset != bake::presets().end())
         return {std::string(preset->second), input, ""};
-    const fs::path file = input;
-    if (file.extension() == ".toml") return bake::readRecipe(file);
+    const fs::path file = fileOf(input, frame);
+    if (file.extension() == ".toml") {
+        bake::RecipeText text = bake::readRecipe(file);
+        text.frame = frame.number;
+        return text;
+    }
     if (file.extension() == ".vdb" || file.extension() == ".nvdb") return bake::recipeOfGrids(file);
     if (fs::exists(file))
         throw usageError(
@@ -119,17 +131,18 @@ void writeRecipe(const fs::path& file, const bake::RecipeText& text) {
 /// Nothing that is read may be written over.
 void checkFiles(const bake::Recipe& recipe, const BakeOptions& options, const BakeFrame& frame) {
     std::vector<fs::path> read = recipe.files;
-    read.insert(read.end(), {options.input, options.like});
+    read.insert(read.end(), {fileOf(options.input, frame), fileOf(options.like, frame)});
     std::vector<fs::path> written =
-        bake::bakedFiles(frameFile(options.output, frame), options.levels.value_or(0));
-    written.push_back(frameFile(options.preview, frame));
+        bake::bakedFiles(fileOf(options.output, frame), options.levels.value_or(0));
+    written.push_back(fileOf(options.preview, frame));
     refuseOverwriting(written, read);
 }
 
-bake::BakeSettings settingsFor(const bake::Recipe& recipe, const BakeOptions& options) {
+bake::BakeSettings settingsFor(const bake::Recipe& recipe, const BakeOptions& options,
+                               const BakeFrame& frame) {
     bake::BakeSettings settings;
     if (!options.like.empty()) {
-        settings.worldFromIndex = bake::transformOf(options.like, options.likeGrid);
+        settings.worldFromIndex = bake::transformOf(fileOf(options.like, frame), options.likeGrid);
     } else {
         const Vec3d size = recipe.bounds.size();
         const double longest = std::max({size.x, size.y, size.z});
@@ -173,10 +186,9 @@ std::optional<nlohmann::ordered_json> bakeFrame(const bake::RecipeText& text,
     checkFiles(recipe, options, frame);
     if (options.tolerance)
         for (bake::RecipeOutput& output : recipe.outputs) output.tolerance = *options.tolerance;
-    const fs::path volume = frameFile(options.output, frame),
-                   preview = frameFile(options.preview, frame);
+    const fs::path volume = fileOf(options.output, frame), preview = fileOf(options.preview, frame);
     if (!preview.empty()) checkPreview(preview, recipe);
-    const bake::BakeSettings how = settingsFor(recipe, options);
+    const bake::BakeSettings how = settingsFor(recipe, options, frame);
     std::optional<bake::Bake> bake;
     {
         ProgressBar progress(style, "bake");
@@ -210,6 +222,14 @@ std::optional<nlohmann::ordered_json> bakeFrame(const bake::RecipeText& text,
     return json;
 }
 
+void prepareFiles(const BakeOptions& options, const BakeFrame& frame) {
+    for (const fs::path& file : {options.output, options.preview}) {
+        if (file.empty()) continue;
+        prepareFolder(fileOf(file, frame), options.mkdir);
+        checkWritable(fileOf(file, frame));
+    }
+}
+
 /// The names that are written, checked before the work.
 void checkOutputs(const BakeOptions& options, const std::vector<BakeFrame>& frames) {
     if (options.output.empty())
@@ -219,12 +239,12 @@ void checkOutputs(const BakeOptions& options, const std::vector<BakeFrame>& fram
         throw usageError(
             "--output {}: bake writes .vdb files; woodcock convert makes others of them",
             options.output.string());
-    checkFrameFile(options.output, "--output", frames);
-    if (!options.preview.empty()) checkFrameFile(options.preview, "--preview", frames);
-    prepareFolder(options.output, options.mkdir);
-    if (!options.preview.empty()) prepareFolder(options.preview, options.mkdir);
-    checkWritable(frameFile(options.output, frames.front()));
-    if (!options.preview.empty()) checkWritable(frameFile(options.preview, frames.front()));
+    std::vector<int> numbers;
+    for (const BakeFrame& frame : frames)
+        if (frame.number) numbers.push_back(*frame.number);
+    checkFrameOutput(options.output, "--output", numbers);
+    if (!options.preview.empty()) checkFrameOutput(options.preview, "--preview", numbers);
+    prepareFiles(options, frames.front());
 }
 
 void makeSheet(const BakeOptions& options, ProgressStyle style) {
@@ -245,6 +265,42 @@ void makeSheet(const BakeOptions& options, ProgressStyle style) {
     endWith(exitInterrupted);
 }
 
+std::vector<fs::path> filesOf(const BakeOptions& options, const BakeFrame& frame) {
+    std::vector<fs::path> files =
+        bake::bakedFiles(fileOf(options.output, frame), options.levels.value_or(0));
+    if (!options.preview.empty()) files.push_back(fileOf(options.preview, frame));
+    return files;
+}
+
+void makeFrames(const BakeOptions& options, const std::vector<BakeFrame>& frames,
+                ProgressStyle style) {
+    using Json = nlohmann::ordered_json;
+    Json all = Json::array();
+    std::map<int, BakeFrame> byNumber;
+    std::vector<int> made, skipped;
+    for (const BakeFrame& frame : frames) {
+        byNumber[*frame.number] = frame;
+        const bool skip = options.skipExisting && allExist(filesOf(options, frame));
+        (skip ? skipped : made).push_back(*frame.number);
+    }
+    if (!skipped.empty())
+        spdlog::info("frame{} {}: there already", skipped.size() == 1 ? "" : "s",
+                     frameRangeText(skipped));
+    const FrameReport report = forEachFrame(made, [&](int number) {
+        const BakeFrame& frame = byNumber[number];
+        spdlog::info("frame {} of {}: time {:g}", number, frameRangeText(made), *frame.time);
+        prepareFiles(options, frame);
+        std::optional<Json> json =
+            bakeFrame(findRecipe(options.input, frame), options, frame, style);
+        if (!json) return exitInterrupted;
+        all.push_back(std::move(*json));
+        return exitDone;
+    });
+    if (options.reports.json)
+        printJson(Json{{"frames", all}, {"failed", report.failed}, {"skipped", skipped}});
+    endUnlessDone(report);
+}
+
 void run(const BakeOptions& options) {
     const ProgressStyle style = options.reports.start();
     if (options.list) return printPresets();
@@ -253,7 +309,7 @@ void run(const BakeOptions& options) {
         throw usageError("name a preset ({}), a recipe (.toml) or a volume (.vdb)",
                          joinNames(presetNames()));
     const std::vector<BakeFrame> frames = bakeFrames(options.frames);
-    const bake::RecipeText text = findRecipe(options.input);
+    const bake::RecipeText text = findRecipe(options.input, frames.front());
     if (options.describe) return printParameters(text, settingsOf(options, frames.front()));
     if (!options.writeRecipe.empty()) {
         if (options.writeRecipe != "-") prepareFolder(options.writeRecipe, options.mkdir);
@@ -263,26 +319,16 @@ void run(const BakeOptions& options) {
     checkOutputs(options, frames);
     catchInterrupts();
 
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const BakeFrame& frame : frames) {
-        if (frame.number)
-            spdlog::info("frame {} of {} to {}: time {:g}", *frame.number, *frames.front().number,
-                         *frames.back().number, *frame.time);
-        std::optional<nlohmann::ordered_json> json = bakeFrame(text, options, frame, style);
-        if (!json) {
-            const auto written = &frame - frames.data();
-            if (written == 0)
-                spdlog::warn("interrupted: nothing is written");
-            else
-                spdlog::warn("interrupted in frame {}: the {} before it are written", *frame.number,
-                             written);
-            endWith(exitInterrupted);
-        }
-        all.push_back(std::move(*json));
+    if (frames.front().number) return makeFrames(options, frames, style);
+    const BakeFrame& only = frames.front();
+    if (options.skipExisting && allExist(filesOf(options, only)))
+        return spdlog::info("{} is there already: nothing to do", options.output.string());
+    const auto json = bakeFrame(text, options, only, style);
+    if (!json) {
+        spdlog::warn("interrupted: nothing is written");
+        endWith(exitInterrupted);
     }
-    if (!options.reports.json) return;
-    const bool sequence = frames.front().number.has_value();
-    printJson(sequence ? nlohmann::ordered_json{{"frames", all}} : all[0]);
+    if (options.reports.json) printJson(*json);
 }
 
 CLI::App& addTo(CLI::App& app, const std::string&) {
@@ -319,10 +365,10 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
                     "Short for --set time=SECONDS. FROM:TO:STEP makes a frame for each of these "
                     "times, numbered from 1")
         ->type_name("SECONDS");
-    command
-        .add_option("--frames", o->frames.frames,
-                    "Make these frames. Their numbers replace the #### in -o")
-        ->type_name("FIRST-LAST");
+    addFrames(command, o->frames.frames,
+              "Make these frames, such as 1-48 or 1-48x2,60. Their numbers replace the #### (or "
+              "%04d, $F4, <frame04>) in the names of inputs and outputs");
+    addSkipExisting(command, o->skipExisting);
     number("--fps", o->frames.rate, 1e-3, 1e6,
            "Frames per second of --frames (24). Frame 1 is at time 0");
     number("--voxel", o->voxel, 1e-12, 1e12, "Side of a voxel, in world units");

@@ -2,12 +2,17 @@
 #include "tools/common/frames.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <new>
 
+#include "tools/common/interrupt.h"
+#include "tools/common/option_kinds.h"
 #include "tools/common/render_command.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
+#include "woodcock/base/frame_range.h"
 
 namespace woodcock::tool {
 
@@ -15,32 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Inside a shell's double quotes.
-std::string inQuotes(const std::string& text) {
-    std::string quoted;
-    for (const char c : text) {
-        if (c == '"' || c == '\\' || c == '$' || c == '`') quoted += '\\';
-        quoted += c;
-    }
-    return quoted;
+/// A command to copy that draws the frames of `pattern`.
+std::string commandFor(const std::string& pattern, const std::vector<int>& frames) {
+    const std::string picture = fs::path(pattern).filename().replace_extension(".png").string();
+    return fmt::format("  woodcock render {} --frames {} -o {}", shellWord(pattern),
+                       frameRangeText(frames), shellWord(picture));
 }
 
-std::string pictureOf(const fs::path& volume) { return volume.stem().string() + ".png"; }
-
-/// Two commands to copy.
-std::string loopOver(const FrameSeries& series) {
-    const std::string last = series.name(series.numbers.back());
-    const FrameSeries variable{inQuotes(series.before), inQuotes(series.after), {}};
-    const std::string file = variable.name("${FRAME}");
-    return fmt::format(
-        "  woodcock render {} --write-scene shot.toml\n"
-        "  for FRAME in {}; do woodcock render shot.toml --set \"volume[0].file={}\" -o \"{}\"; "
-        "done",
-        shellWord(last), shellNumbers(series.numbers), file, pictureOf(file));
-}
-
+/// The same for files whose names are no series.
 std::string loopOver(const std::vector<fs::path>& files) {
-    if (const auto series = seriesOf(files)) return loopOver(*series);
+    if (const auto series = seriesOf(files))
+        if (const auto pattern = patternOf(*series)) {
+            std::vector<int> frames;
+            for (const std::string& number : series->numbers) frames.push_back(std::stoi(number));
+            return commandFor(*pattern, frames);
+        }
     std::string words;
     for (const fs::path& file : files) words += " " + shellWord(file.string());
     return fmt::format(
@@ -57,23 +51,31 @@ std::string someOf(const std::vector<fs::path>& files) {
     return fmt::format("{}, '{}' and {} more", text, files[1].string(), files.size() - 2);
 }
 
-constexpr const char* oneFrame =
-    "One call draws one frame. Save a scene from one frame, then draw each frame with it:";
-
 Error sequence(const std::vector<fs::path>& frames) {
     return usageError(
         "{} differ only in a number: they look like frames of a sequence, and would all be drawn "
-        "into one picture. {}\n{}\nIf they belong into one picture, give --overlay",
-        someOf(frames), oneFrame, loopOver(frames));
+        "into one picture. Draw each into its own:\n{}\nIf they belong into one picture, give "
+        "--overlay",
+        someOf(frames), loopOver(frames));
 }
 
+constexpr const char* knownPatterns = "####, %04d, $F4 or <frame04>";
+
 Error unfilled(const std::string& name, const std::string& pattern) {
-    FrameSeries series = seriesOfPattern(name);
-    const bool found = !series.numbers.empty();
-    if (!found) series.numbers = {"0001", "0002", "0003"};
-    return usageError("there is no file '{}': '{}' is not filled in with frame numbers{}. {}\n{}",
-                      name, pattern, found ? "" : ", and no file has a number in its place",
-                      oneFrame, loopOver(series));
+    if (!namesFrame(name))
+        return usageError(
+            "there is no file '{}': '{}' is not filled in. Put {} where a frame's number goes, and "
+            "say which frames by --frames 1-48",
+            name, pattern, knownPatterns);
+    const std::vector<int> frames = framesOnDisk(name);
+    if (frames.empty())
+        return usageError(
+            "there is no file '{}': '{}' stands for a frame's number, and no file has a number in "
+            "its place",
+            name, pattern);
+    return usageError(
+        "there is no file '{}': '{}' stands for a frame's number. Say which frames to draw:\n{}",
+        name, pattern, commandFor(name, frames));
 }
 
 Error folder(const fs::path& directory) {
@@ -88,19 +90,34 @@ Error folder(const fs::path& directory) {
     if (volumes.empty()) return inputError("{}; it holds no .vdb file", is);
     const std::vector<fs::path> frames = framesAmong(volumes);
     if (frames.size() == volumes.size())
-        return usageError("{}. It holds {} frames. {}\n{}", is, frames.size(), oneFrame,
-                          loopOver(frames));
+        return usageError("{}. It holds {} frames; draw each into its own picture:\n{}", is,
+                          frames.size(), loopOver(frames));
     return usageError("{}; it holds {} .vdb file{}, such as '{}'", is, volumes.size(),
                       volumes.size() == 1 ? "" : "s", volumes.front().string());
 }
 
+std::string withPattern(const fs::path& file) {
+    return (file.parent_path() / (file.stem().string() + ".####")).string() +
+           file.extension().string();
+}
+
 }  // namespace
 
-void checkNoFrames(const std::vector<fs::path>& inputs, bool overlay) {
+CLI::Option* addFrames(CLI::App& command, std::vector<int>& frames, const std::string& help) {
+    return addParsed(command, "--frames", frames, parseFrameRange, help)->type_name("RANGE");
+}
+
+CLI::Option* addSkipExisting(CLI::App& command, bool& skip) {
+    return command.add_flag("--skip-existing", skip,
+                            "Leave out frames whose files are all there already");
+}
+
+void checkNoFrames(const std::vector<fs::path>& inputs, bool overlay, bool withFrames) {
     std::error_code none;
     for (const fs::path& input : inputs) {
-        const std::string pattern = framePattern(input.string());
-        if (!pattern.empty() && !fs::exists(input, none)) throw unfilled(input.string(), pattern);
+        const std::string name = input.string(), pattern = framePattern(name);
+        if (!pattern.empty() && !fs::exists(input, none) && !(withFrames && namesFrame(name)))
+            throw unfilled(name, pattern);
         if (fs::is_directory(input, none)) throw folder(input);
     }
     if (overlay) return;
@@ -108,17 +125,102 @@ void checkNoFrames(const std::vector<fs::path>& inputs, bool overlay) {
         throw sequence(frames);
 }
 
-void checkNoPattern(const fs::path& output, const std::string& place) {
-    const std::string name = output.string(), pattern = framePattern(name);
-    if (pattern.empty()) return;
-    const std::size_t at = name.rfind(pattern);
-    const std::string before = name.substr(0, at), after = name.substr(at + pattern.size());
+void checkFrameInputs(const std::vector<fs::path>& inputs) {
+    if (inputs.empty() || std::any_of(inputs.begin(), inputs.end(), [](const fs::path& input) {
+            return namesFrame(input.string());
+        }))
+        return;
+    const FrameSeries series = seriesAround(inputs.front());
+    const auto pattern = series.numbers.size() > 1 ? patternOf(series) : std::nullopt;
     throw usageError(
-        "{}'{}': '{}' is not filled in with a frame number, and the file would be called so. One "
-        "call draws one frame: name its picture, as in '{}', or in a shell's loop over FRAME, "
-        "\"{}\"",
-        place.empty() ? "" : place + ": ", name, pattern, before + "0001" + after,
-        before + "${FRAME}" + after);
+        "--frames: '{}' would be read for every frame; put {} where a frame's number goes, such as "
+        "'{}'",
+        inputs.front().string(), knownPatterns, pattern ? *pattern : withPattern(inputs.front()));
+}
+
+void checkFrameOutput(const fs::path& output, const std::string& place,
+                      const std::vector<int>& frames) {
+    const std::string name = output.string(), where = place.empty() ? "" : place + ": ";
+    const std::string unfilled = framePattern(withFrame(name, 1));
+    if (!unfilled.empty())
+        throw usageError(
+            "{}'{}': {} is not filled in, and the file would be called so; put {} where a frame's "
+            "number goes",
+            where, name, unfilled, knownPatterns);
+    if (frames.empty() && namesFrame(name))
+        throw usageError(
+            "{}'{}': {} stands for a frame's number, and no frames are asked for; say which, by "
+            "--frames 1-48, or name one file",
+            where, name, framePattern(name));
+    if (!frames.empty() && !namesFrame(name))
+        throw usageError(
+            "{}'{}': there {} and one file; put {} where a frame's number goes, such as '{}'",
+            where, name,
+            frames.size() == 1 ? "is --frames" : fmt::format("are {} frames", frames.size()),
+            knownPatterns, withPattern(output));
+}
+
+void checkNoPattern(const fs::path& output, const std::string& place) {
+    const std::string pattern = framePattern(output.string());
+    if (pattern.empty()) return;
+    throw usageError("{}'{}': {} is not filled in, and the file would be called so; name one file",
+                     place.empty() ? "" : place + ": ", output.string(), pattern);
+}
+
+fs::path inFrame(const fs::path& file, int frame) { return withFrame(file.string(), frame); }
+
+bool allExist(const std::vector<fs::path>& files) {
+    std::error_code none;
+    return !files.empty() && std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
+        return fs::exists(file, none);
+    });
+}
+
+FrameReport forEachFrame(const std::vector<int>& frames,
+                         const std::function<ExitCode(int frame)>& work) {
+    FrameReport report;
+    std::string told;
+    const auto tell = [&](int frame, const std::string& error) {
+        spdlog::error("frame {}: {}", frame, error == told ? "the same" : error);
+        told = error;
+    };
+    for (const int frame : frames) {
+        if (interrupted()) report.interrupted = true;
+        if (report.interrupted) break;
+        ExitCode code = exitFailed;
+        try {
+            code = work(frame);
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::Usage && frame == frames.front()) throw;
+            tell(frame, error.what());
+        } catch (const CLI::RuntimeError& end) {  // of endIfInterrupted()
+            if (end.get_exit_code() != exitInterrupted) throw;
+            code = exitInterrupted;
+        } catch (const std::bad_alloc&) {
+            tell(frame, "out of memory");
+        }
+        if (code == exitInterrupted)
+            report.interrupted = true;
+        else
+            (code == exitDone ? report.done : report.failed).push_back(frame);
+    }
+    return report;
+}
+
+void endUnlessDone(const FrameReport& report) {
+    const std::size_t all = report.done.size() + report.failed.size();
+    if (!report.failed.empty())
+        spdlog::error("{} of {} frames failed: {}", report.failed.size(), all,
+                      frameRangeText(report.failed));
+    if (report.interrupted) {
+        if (report.done.empty())
+            spdlog::warn("interrupted: no frame is done");
+        else
+            spdlog::warn("interrupted: {} frame{} done: {}", report.done.size(),
+                         report.done.size() == 1 ? " is" : "s are", frameRangeText(report.done));
+        endWith(exitInterrupted);
+    }
+    if (!report.failed.empty()) endWith(exitFailed);
 }
 
 }  // namespace woodcock::tool

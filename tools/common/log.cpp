@@ -37,6 +37,10 @@ class JsonSink : public spdlog::sinks::base_sink<std::mutex> {
 /// Names and texts of files are in messages: what could drive the terminal is spelled out, and
 /// nobody reads what fills more than a screen or two.
 class TextSink : public spdlog::sinks::base_sink<std::mutex> {
+public:
+    explicit TextSink(LogStyle style) : style_(style) {}
+
+private:
     void sink_it_(const spdlog::details::log_msg& message) override {
         constexpr std::size_t longest = 16000, end = 2000;
         orderStdout();
@@ -47,6 +51,11 @@ class TextSink : public spdlog::sinks::base_sink<std::mutex> {
         spdlog::details::log_msg shownMessage = message;
         shownMessage.payload = text;
         terminal_.log(shownMessage);
+        if (style_ != LogStyle::OpenJd || message.level < spdlog::level::err) return;
+        for (char& c : text)
+            if (c == '\n') c = ' ';
+        printData(fmt::format("openjd_fail: {}\n", text));
+        orderStdout();
     }
     void flush_() override { terminal_.flush(); }
     void set_pattern_(const std::string& pattern) override { terminal_.set_pattern(pattern); }
@@ -54,6 +63,7 @@ class TextSink : public spdlog::sinks::base_sink<std::mutex> {
         terminal_.set_formatter(std::move(formatter));
     }
 
+    LogStyle style_;
     spdlog::sinks::stderr_color_sink_st terminal_;
 };
 
@@ -64,10 +74,10 @@ void setUpLog(LogStyle style, const std::string& level) {
     if (style == LogStyle::Json)
         sink = std::make_shared<JsonSink>();
     else
-        sink = std::make_shared<TextSink>();
+        sink = std::make_shared<TextSink>(style);
     auto logger = std::make_shared<spdlog::logger>("woodcock", sink);
     logger->set_level(spdlog::level::from_str(level));
-    if (style == LogStyle::Text) logger->set_pattern("%^%l%$: %v");
+    if (style != LogStyle::Json) logger->set_pattern("%^%l%$: %v");
     spdlog::set_default_logger(logger);
 }
 

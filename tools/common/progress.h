@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,15 +11,44 @@
 
 namespace woodcock::tool {
 
-enum class ProgressStyle { None, Bar, Json };
+/// Bars and JSON go to stderr; lines for farms to stdout: "ALF_PROGRESS 42%" as Tractor and HQueue
+/// read it, "openjd_progress: 42.0" as Open Job Description has it.
+enum class ProgressStyle { None, Bar, Json, Alfred, OpenJd };
 
-/// "auto", "bar", "json" or "none"; auto is a bar where stderr is a terminal, none elsewhere.
+/// "auto", "bar", "json", "alfred", "openjd" or "none"; auto is a bar where stderr is a terminal,
+/// none elsewhere.
 ProgressStyle progressStyle(const std::string& name);
 
-/// Renders, shows on stderr how far it is, and stops early where interrupted().
+/// Where a render stands among the frames of a sequence.
+struct FramePlace {
+    int frame = 0;
+    std::size_t index = 0, count = 1;               ///< of those that are drawn, from 0
+    std::chrono::steady_clock::time_point start{};  ///< of the first
+
+    /// Of all frames, where `fraction` of this one is done.
+    double doneOfAll(double fraction) const;
+    double secondsLeftOfAll(double fraction) const;  ///< an estimate; infinite: unknown
+};
+
+/// Renders, shows how far it is, and stops early where interrupted(). `place` is that of a frame;
+/// absent: it is no sequence.
 render::RenderResult renderWithProgress(const render::Scene& scene,
-                                        const render::RenderSettings& settings,
-                                        ProgressStyle style);
+                                        const render::RenderSettings& settings, ProgressStyle style,
+                                        const std::optional<FramePlace>& place = {});
+
+/// Prints lines for farms, on stdout, each where the percents have grown.
+class FarmLines {
+public:
+    explicit FarmLines(ProgressStyle style) : style_(style) {}
+
+    /// `fraction` of all the work, and what is being done.
+    void update(double fraction, std::string_view doing = {});
+
+private:
+    ProgressStyle style_;
+    int told_ = -1;  // percent
+    std::string doing_;
+};
 
 /// Shows how other work goes on, on stderr, no more often than can be read.
 class ProgressBar {
@@ -35,6 +66,7 @@ public:
 private:
     ProgressStyle style_;
     std::string name_;
+    FarmLines lines_{style_};
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_{};
 };
 

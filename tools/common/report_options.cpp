@@ -12,12 +12,12 @@
 namespace woodcock::tool {
 
 void ReportOptions::addTo(CLI::App& command, const std::string& jsonHelp) {
-    const std::vector<std::string> styles{"auto", "bar", "json", "none"};
+    const std::vector<std::string> styles{"auto", "bar", "json", "alfred", "openjd", "none"};
     const std::vector<std::string> levels{"trace", "debug", "info", "warning", "error", "off"};
     const std::vector<CLI::Option*> options{
         addChoice(command, "--progress", progress, styles,
                   "Show how far the work is, on stderr. auto shows a bar on a terminal, and "
-                  "nothing elsewhere:")
+                  "nothing elsewhere; alfred and openjd print lines for farms on stdout:")
             ->type_name("STYLE"),
         command.add_flag("--json", json, jsonHelp),
         addParsed(
@@ -38,9 +38,14 @@ ProgressStyle ReportOptions::start() const {
             throw usageError("--quiet and {} contradict each other; give one of them", name);
     };
     exclude(logLevel.has_value(), "--log-level");
-    exclude(progress == "bar" || progress == "json", "--progress");
+    exclude(progress != "auto" && progress != "none", "--progress");
+    if (json && (progress == "alfred" || progress == "openjd"))
+        throw usageError("--json and --progress {} both print on stdout; give one of them",
+                         progress);
     const ProgressStyle style = quiet ? ProgressStyle::None : progressStyle(progress);
-    setUpLog(style == ProgressStyle::Json ? LogStyle::Json : LogStyle::Text,
+    setUpLog(style == ProgressStyle::Json     ? LogStyle::Json
+             : style == ProgressStyle::OpenJd ? LogStyle::OpenJd
+                                              : LogStyle::Text,
              quiet ? "warning" : logLevel.value_or("info"));
     spdlog::debug("{}, {} threads at most", programVersion(), std::thread::hardware_concurrency());
     return style;

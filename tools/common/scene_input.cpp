@@ -76,7 +76,7 @@ void checkInput(const SceneInput& input) {
         throw usageError("a scene file is rendered alone, but {} inputs are given", files.size());
     if (std::any_of(files.begin(), files.end(), [](const auto& file) { return file.empty(); }))
         throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb, .nvdb)");
-    checkNoFrames(files, input.overlay);
+    checkNoFrames(files, input.overlay, input.frames);
 }
 
 CLI::Option* addOverlay(CLI::App& command, bool& overlay) {
@@ -111,20 +111,19 @@ std::vector<std::filesystem::path> filesRead(const SceneInput& input,
     return files;
 }
 
-namespace {
-
-void tellOfVelocities(const scene::SceneDescription& scene, const scene::LoadedScene& loaded) {
+std::vector<std::string> velocityNotes(const scene::SceneDescription& scene,
+                                       const scene::LoadedScene& loaded) {
     std::set<std::filesystem::path> told;
+    std::vector<std::string> notes;
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         if (const std::string& grid = loaded.volumes[i].velocities;
             !grid.empty() && told.insert(scene.volumes[i].file).second)
-            spdlog::info(
+            notes.push_back(fmt::format(
                 "{}: its velocities ('{}') are not used: there is no motion blur yet, so what "
                 "moves is drawn sharp",
-                scene.volumes[i].file.string(), grid);
+                scene.volumes[i].file.string(), grid));
+    return notes;
 }
-
-}  // namespace
 
 std::filesystem::path frameToChooseFrom(const scene::SceneDescription& description) {
     constexpr std::size_t fewest = 3;  // two files are as likely two versions
@@ -163,7 +162,7 @@ scene::LoadedScene loadAndComplete(scene::SceneDescription& description, scene::
             description.volumes[0].file.string(), frame.string());
     for (const std::string& choice : choices) spdlog::info("{}", choice);
     scene::loadChosen(description, loaded);
-    tellOfVelocities(description, loaded);
+    for (const std::string& note : velocityNotes(description, loaded)) spdlog::info("{}", note);
     return loaded;
 }
 

@@ -22,6 +22,7 @@ struct SceneInput {
     std::optional<std::pair<double, double>> sun = {};  ///< of --sun: elevation and azimuth
     scene::Look look = scene::Look::Picture;            ///< of what is chosen
     bool overlay = false;  ///< of --overlay: files that look like frames belong into one picture
+    bool frames = false;   ///< names of volumes may hold a place for a frame's number
 };
 
 /// The option that sets `overlay`.
@@ -39,6 +40,10 @@ scene::SceneDescription parseInput(const SceneInput& input);
 /// All files that are read for a scene: those that were given, and those that it names.
 std::vector<std::filesystem::path> filesRead(const SceneInput& input,
                                              scene::SceneDescription scene);
+
+/// Tells of velocities that are not used; each volume's file once.
+std::vector<std::string> velocityNotes(const scene::SceneDescription& scene,
+                                       const scene::LoadedScene& loaded);
 
 /// The frame from which all that is open is chosen for every frame of a sequence: the largest file,
 /// the first of several. Empty where the scene is not made around one file that looks like a frame:

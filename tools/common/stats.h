@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,10 @@ namespace woodcock::tool {
 /// The most memory that the program held at once.
 std::uint64_t peakMemoryBytes();
 
-/// The JSON of --stats and --json. `files` are the images that the render wrote.
-std::string statsText(const render::RenderResult& result, const render::RenderSettings& settings,
-                      const std::string& sceneDigest, double loadSeconds,
-                      const std::vector<std::filesystem::path>& files);
+/// The object of --stats and --json. `files` are the images that the render wrote.
+nlohmann::ordered_json statsJson(const render::RenderResult& result,
+                                 const render::RenderSettings& settings,
+                                 const std::string& sceneDigest, double loadSeconds,
+                                 const std::vector<std::filesystem::path>& files);
 
 }  // namespace woodcock::tool

@@ -10,6 +10,9 @@
 
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
+#include "tools/common/frames.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
@@ -120,6 +123,7 @@ struct CompareOptions {
     std::vector<std::string> failAbove;  ///< "rmse=0.01", "differ"
     std::filesystem::path report;        ///< a directory; empty: none
     std::filesystem::path ocio;          ///< empty: $OCIO or the shipped one
+    std::vector<int> frames;             ///< empty: no sequence
     ReportOptions reports;
 };
 
@@ -156,6 +160,8 @@ struct CompareWords {
         if (both && !(files.empty() && more.empty() && colourSpaces.empty()))
             throw usageError(
                 "--cycles renders both images itself; give images or --cycles, not both");
+        if (both && !options.frames.empty())
+            throw usageError("--frames is for images, and --cycles renders one frame");
         if (!both &&
             (cycles.spp || cycles.seeds || cycles.mode || cycles.interpolation || cycles.stepRate ||
              !cycles.blender.empty() || !cycles.input.overrides.empty()))
@@ -191,8 +197,8 @@ void refuseOverwritingInputs(const CompareOptions& o) {
 }
 
 /// Compares, prints and writes the report. Notes go to the log. exitFailed where `failAbove` says
-/// so.
-ExitCode runCompare(const CompareOptions& o) {
+/// so. With `json`, what --json prints goes there.
+ExitCode runCompare(const CompareOptions& o, std::string* json = nullptr) {
     for (const std::string& limit : o.failAbove) parseLimit(limit);
     const image::ColorConfig config(o.ocio);
     compare::LoadedPictures loaded = compare::loadPictures(o.sources, o.settings.resample, config);
@@ -201,10 +207,11 @@ ExitCode runCompare(const CompareOptions& o) {
     const compare::Comparison comparison = compare::compare(std::move(loaded), o.settings);
     if (!o.report.empty() && !config.note().empty()) spdlog::warn("{}", config.note());
     for (const std::string& note : comparison.notes) spdlog::warn("{}", note);
-    if (o.reports.json)
+    if (json)
+        *json = compareJson(comparison);
+    else if (o.reports.json)
         printData(compareJson(comparison));
-    else if (o.reports.printsText())
-        printText(compareText(comparison));
+    if (!o.reports.json && o.reports.printsText()) printText(compareText(comparison));
     std::fflush(stdout);
     if (!o.report.empty())
         writeReport(o.report, {{reportFiles[0], compareJson(comparison)},
@@ -212,11 +219,50 @@ ExitCode runCompare(const CompareOptions& o) {
     return exceeds(comparison, o.failAbove) ? exitFailed : exitDone;
 }
 
+/// The same in a frame.
+CompareOptions optionsIn(const CompareOptions& options, int frame) {
+    CompareOptions o = options;
+    for (compare::PictureSource& source : o.sources) {
+        source.file = inFrame(source.file, frame);
+        for (std::filesystem::path& more : source.more) more = inFrame(more, frame);
+    }
+    o.report = inFrame(o.report, frame);
+    return o;
+}
+
+void runFrames(const CompareOptions& options) {
+    std::vector<std::filesystem::path> files;
+    for (const compare::PictureSource& source : options.sources) files.push_back(source.file);
+    checkFrameInputs(files);
+    if (!options.report.empty()) checkFrameOutput(options.report, "--report", options.frames);
+    using Json = nlohmann::ordered_json;
+    Json all = Json::array();
+    const FrameReport report = forEachFrame(options.frames, [&](int frame) {
+        const CompareOptions o = optionsIn(options, frame);
+        if (o.reports.printsText()) print("frame {}\n", frame);
+        std::string json;
+        const ExitCode code = runCompare(o, o.reports.json ? &json : nullptr);
+        if (o.reports.json) {
+            Json ofFrame{{"frame", frame}};
+            ofFrame.update(Json::parse(json));
+            all.push_back(std::move(ofFrame));
+        }
+        return code;
+    });
+    if (options.reports.json) printJson(Json{{"frames", all}, {"failed", report.failed}});
+    endUnlessDone(report);
+}
+
 ExitCode run(const CompareWords& words, const std::string& commandLine) {
     const ProgressStyle style = words.options.reports.start();
     words.check();
     CompareOptions o = words.sorted();
-    if (words.scene.empty()) return runCompare(o);
+    if (words.scene.empty()) {
+        if (o.frames.empty()) return runCompare(o);
+        catchInterrupts();
+        runFrames(o);
+        return exitDone;
+    }
     BothOptions both = words.cycles;
     both.input.files = {words.scene};
     for (const std::string& limit : o.failAbove) parseLimit(limit);
@@ -286,6 +332,9 @@ CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
             "--report", o.report,
             "Write DIR/compare.json and DIR/compare.html, a page that you can open anywhere")
         ->type_name("DIR");
+    addFrames(*command, o.frames,
+              "Compare these frames, such as 1-48 or 1-48x2,60. Their numbers replace the #### (or "
+              "%04d, $F4, <frame04>) in the names of images and of the report's folder");
     o.reports.addTo(*command, "Print one JSON document on stdout instead of the tables");
     addList(*command, "--fail-above", o.failAbove,
             "Exit with code 1 if a metric of an image is above VALUE. Metrics: bias, ratio (its "
@@ -317,7 +366,8 @@ CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
         ->type_name("FILE");
     command->footer(
         examplesText({"woodcock compare reference.exr test.exr --report comparison",
-                      "woodcock compare reference.png test.png --quiet --fail-above flip=0.05"}));
+                      "woodcock compare reference.png test.png --quiet --fail-above flip=0.05",
+                      "woodcock compare old.####.exr new.####.exr --frames 1-48"}));
     command->callback([words, commandLine] {
         if (const ExitCode code = run(*words, commandLine); code != exitDone) endWith(code);
     });

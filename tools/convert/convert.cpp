@@ -12,6 +12,7 @@
 
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
+#include "tools/common/frames.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/json_text.h"
 #include "tools/common/option_kinds.h"
@@ -20,7 +21,7 @@
 #include "tools/common/report_options.h"
 #include "tools/info/report.h"
 #include "woodcock/base/error.h"
-#include "woodcock/base/frame_names.h"
+#include "woodcock/base/frame_range.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/convert/convert.h"
 
@@ -36,7 +37,8 @@ struct ConvertWords {
     std::optional<std::string> from, grid, name, dims, type, channels, endian, header, channel,
         axes, voxel, size, origin, scale, offset, clamp, threshold, tolerance, precision,
         compression, outType, bounds, band, radius, columns;
-    bool repair = false, shell = false, mkdir = false;
+    bool repair = false, shell = false, mkdir = false, skipExisting = false;
+    std::vector<int> frames;
     ReportOptions reports;
 };
 
@@ -216,26 +218,28 @@ private:
     std::optional<ProgressBar> now_;
 };
 
-/// What was read and written.
-nlohmann::ordered_json resultJson(const ConvertWords& words, const std::vector<std::string>& notes,
-                                  const std::vector<std::string>& warnings, double seconds) {
-    const std::filesystem::path& out = words.files.back();
+using Json = nlohmann::ordered_json;
+using Files = std::vector<std::filesystem::path>;
+
+/// What was read and written. `files`: inputs, then the output.
+Json resultJson(const Files& files, const std::vector<std::string>& notes,
+                const std::vector<std::string>& warnings, double seconds) {
+    const std::filesystem::path& out = files.back();
     std::vector<std::string> inputs;
-    for (const std::filesystem::path& file : words.files) inputs.push_back(file.string());
+    for (const std::filesystem::path& file : files) inputs.push_back(file.string());
     inputs.pop_back();
-    nlohmann::ordered_json result{{"inputs", inputs}, {"output", out.string()}};
+    Json result{{"inputs", inputs}, {"output", out.string()}};
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(out, unknown);
-    result["bytes"] = unknown ? nlohmann::ordered_json() : nlohmann::ordered_json(bytes);
+    result["bytes"] = unknown ? Json() : Json(bytes);
     result.update({{"seconds", seconds}, {"notes", notes}, {"warnings", warnings}});
     if (out.extension() == ".vdb")
         result["grids"] = infoJson({inspectFile(out, "")})["files"][0]["grids"];
     return result;
 }
 
-void run(const ConvertWords& words) {
-    const ProgressStyle style = words.reports.start();
-    catchInterrupts();
+/// What --json says; null without it.
+Json convertFiles(const Files& files, const ConvertWords& words, ProgressStyle style) {
     convert::ConvertOptions options = readWords(words);
     Stages bar(style);
     std::vector<std::string> notes, warnings;
@@ -254,23 +258,54 @@ void run(const ConvertWords& words) {
         endIfInterrupted();
         bar.show(stage, fraction);
     };
+    prepareFolder(files.back(), words.mkdir);
+    const auto start = std::chrono::steady_clock::now();
+    convert::convert(Files(files.begin(), files.end() - 1), files.back(), options);
+    if (!words.reports.json) return {};
+    bar.clear();
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    return resultJson(files, notes, warnings, time.count());
+}
+
+void convertFrames(const ConvertWords& words, ProgressStyle style) {
+    checkFrameInputs(Files(words.files.begin(), words.files.end() - 1));
+    Json all = Json::array();
+    std::vector<int> skipped;
+    const FrameReport report = forEachFrame(words.frames, [&](int frame) {
+        Files files;
+        for (const std::filesystem::path& file : words.files) files.push_back(inFrame(file, frame));
+        if (words.skipExisting && allExist({files.back()})) {
+            skipped.push_back(frame);
+            return exitDone;
+        }
+        spdlog::info("frame {}", frame);
+        Json ofFrame{{"frame", frame}};
+        if (const Json result = convertFiles(files, words, style); !result.is_null())
+            ofFrame.update(result);
+        all.push_back(std::move(ofFrame));
+        return exitDone;
+    });
+    if (!skipped.empty())
+        spdlog::info("frame{} {}: there already", skipped.size() == 1 ? "" : "s",
+                     frameRangeText(skipped));
+    if (words.reports.json)
+        printJson(Json{{"frames", all}, {"failed", report.failed}, {"skipped", skipped}});
+    endUnlessDone(report);
+}
+
+void run(const ConvertWords& words) {
+    const ProgressStyle style = words.reports.start();
+    catchInterrupts();
+    readWords(words);
     if (words.files.size() < 2)
         throw usageError("'{}' is given alone: name an input and an output",
                          words.files.empty() ? "" : words.files.front().string());
-    if (const std::string pattern = framePattern(words.files.back().filename().string());
-        !pattern.empty())
-        throw usageError(
-            "'{}': {} is not filled in, and the file would be called so; one call writes one file, "
-            "so name it, or call convert for each in a shell's loop",
-            words.files.back().string(), pattern);
-    prepareFolder(words.files.back(), words.mkdir);
-    const auto start = std::chrono::steady_clock::now();
-    convert::convert(std::vector(words.files.begin(), words.files.end() - 1), words.files.back(),
-                     options);
-    if (!words.reports.json) return;
-    bar.clear();
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-    printJson(resultJson(words, notes, warnings, time.count()));
+    checkFrameOutput(words.files.back(), "", words.frames);
+    if (!words.frames.empty()) return convertFrames(words, style);
+    if (words.skipExisting && allExist({words.files.back()}))
+        return spdlog::info("{} is there already: nothing to do", words.files.back().string());
+    const Json result = convertFiles(words.files, words, style);
+    if (words.reports.json) printJson(result);
 }
 
 CLI::App& addTo(CLI::App& app, const std::string&) {
@@ -284,6 +319,10 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
         ->required()
         ->type_name("FILE");
     addMkdir(command, words->mkdir);
+    addFrames(command, words->frames,
+              "Convert these frames, such as 1-48 or 1-48x2,60. Their numbers replace the #### (or "
+              "%04d, $F4, <frame04>) in the names of inputs and output");
+    addSkipExisting(command, words->skipExisting);
     const auto add = [&](const char* group, const char* name, std::optional<std::string>& to,
                          const char* type, const char* help) {
         command.add_option(name, to, help)->type_name(type)->group(group);
@@ -340,7 +379,8 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
     words->reports.addTo(command, "Print a JSON object about what is written, on stdout");
     command.footer("Formats:\n" + convert::describeFormats() + "\n" +
                    examplesText({"woodcock convert teapot.obj teapot.vdb --voxel 0.01",
-                                 "woodcock convert slice.####.png scan.vdb --voxel 0.5"}));
+                                 "woodcock convert slice.####.png scan.vdb --voxel 0.5",
+                                 "woodcock convert fire.####.vdb fire.####.nvdb --frames 1-48"}));
     command.callback([words] { run(*words); });
     return command;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <climits>
 
+#include "tools/common/frames.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/scene_input.h"
@@ -45,7 +46,13 @@ void addOutput(CLI::App& command, RenderOptions& o) {
                         "OpenColorIO config. Without it: the scene's, then that of $OCIO, then the "
                         "one that comes with Woodcock")
             ->type_name("FILE"),
-        addMkdir(command, o.mkdir)};
+        addMkdir(command, o.mkdir),
+        addFrames(
+            command, o.frames,
+            "Draw these frames, such as 1-48 or 1-48x2,60. Their numbers replace the #### (or "
+            "%04d, $F4, <frame04>) in the names of volumes, of files in the scene, and of "
+            "outputs"),
+        addSkipExisting(command, o.skipExisting)};
     for (CLI::Option* option : options) option->group("Output");
 }
 
@@ -84,7 +91,10 @@ void addRendering(CLI::App& command, RenderOptions& o) {
             "Spend the same time, but take more samples where the error is larger and fewer "
             "elsewhere"),
         addCount(command, "--threads", o.threads, 0, 4096,
-                 "How many processor threads to use. 0 takes all cores")};
+                 "How many processor threads to use. 0 takes all cores"),
+        command.add_flag("--estimate", o.estimate,
+                         "Say how long it would take, and how much memory, from a few samples. "
+                         "Writes no picture")};
     for (CLI::Option* option : options) option->group("Rendering");
 }
 
@@ -159,9 +169,11 @@ void exclude(bool first, bool second, const char* names) {
 }  // namespace
 
 void RenderOptions::addTo(CLI::App& command) {
-    command.footer(examplesText({"woodcock render smoke.vdb -o smoke.png --res 640 --spp 64",
-                                 "woodcock render scene.toml -o scene.exr --noise 1% "
-                                 "--time-limit 10m"}));
+    command.footer(
+        examplesText({"woodcock render smoke.vdb -o smoke.png --res 640 --spp 64",
+                      "woodcock render scene.toml -o scene.exr --noise 1% "
+                      "--time-limit 10m",
+                      "woodcock render smoke.####.vdb --frames 1-48 -o smoke.####.png"}));
     command.add_option("INPUT", inputs, "A scene (.toml), or one or more volumes (.vdb, .nvdb)")
         ->required()
         ->type_name("FILE");
@@ -169,17 +181,13 @@ void RenderOptions::addTo(CLI::App& command) {
     addRendering(command, *this);
     addScene(command, *this);
     addReports(command, *this);
-    refuse(command, "--frames,--frame",
-           "one call draws one frame. Save a scene by --write-scene shot.toml, and loop: for FRAME "
-           "in 0001 0002 0003; do woodcock render shot.toml --set "
-           "\"volume[0].file=smoke.${FRAME}.vdb\" -o \"smoke.${FRAME}.png\"; done");
     refuse(command, "--denoise",
            "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for "
            "(tools/render/README.md, For denoisers)");
 }
 
 SceneInput RenderOptions::sceneInput() const {
-    SceneInput input{inputs, overrides, size, sun, choicesLook(), overlay};
+    SceneInput input{inputs, overrides, size, sun, choicesLook(), overlay, takesFrames()};
     if (orbit) input.overrides.push_back(fmt::format("camera.orbit={}", *orbit));
     if (quality && !choosesQuality())
         input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);
@@ -195,8 +203,25 @@ void RenderOptions::check() const {
             "--quality auto needs to know what for: give --time-limit, such as 60s, or --noise, "
             "such as 1%");
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
+    exclude(estimate, choosesQuality(), "--estimate and --quality auto");
+    exclude(estimate, !writeScene.empty(), "--estimate and --write-scene");
+    exclude(estimate, !stats.empty(), "--estimate and --stats");
     exclude(reports.json, stats == "-", "--json and --stats -");
     exclude(reports.json, writeScene == "-", "--json and --write-scene -");
+    if (reports.progress == "alfred" || reports.progress == "openjd")
+        for (const auto& [file, name] :
+             {std::pair(stats, "--stats"), {writeScene, "--write-scene"}})
+            if (file == "-")
+                throw usageError("{} - and --progress {} both print on stdout; give one of them",
+                                 name, reports.progress);
+    if (!frames.empty()) {
+        if (std::none_of(inputs.begin(), inputs.end(), isSceneFile)) checkFrameInputs(inputs);
+        for (const std::filesystem::path& output : outputs)
+            checkFrameOutput(output, "--output", frames);
+        if (!rendersImages())
+            throw usageError(
+                "--frames: --write-scene saves one scene for all frames; leave it out");
+    }
     for (auto layer = layers.begin(); layer != layers.end(); ++layer)
         if (std::find(layers.begin(), layer, *layer) != layer)
             throw usageError("--layers names '{}' twice", *layer);

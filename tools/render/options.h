@@ -19,6 +19,8 @@ namespace woodcock::tool {
 struct RenderOptions {
     std::vector<std::filesystem::path> inputs, outputs;
     std::filesystem::path writeScene, stats;
+    std::vector<int> frames;  ///< empty: one picture, without a number
+    bool skipExisting = false, estimate = false;
 
     std::optional<ImageSize> size;
     std::optional<PixelRectangle> crop;
@@ -48,6 +50,8 @@ struct RenderOptions {
     SceneInput sceneInput() const;
     scene::Look choicesLook() const { return plain ? scene::Look::Plain : scene::Look::Picture; }
     bool choosesQuality() const { return quality == "auto"; }
+    /// Whether names of volumes may hold a place for a frame's number.
+    bool takesFrames() const { return !frames.empty() || !rendersImages(); }
     /// Throws Error{Usage} where options contradict each other.
     void check() const;
     /// Throws Error{Usage} where an option is for another kind of file than those to be written.

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <thread>
 
 #include "tools/common/command.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/frames.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/output_folders.h"
 #include "tools/common/print.h"
 #include "tools/common/progress.h"
@@ -18,10 +21,14 @@
 #include "tools/common/stats.h"
 #include "tools/render/choices_text.h"
 #include "tools/render/choose_exposure.h"
+#include "tools/render/estimate.h"
+#include "tools/render/frame_reader.h"
 #include "tools/render/options.h"
 #include "tools/render/picture_warnings.h"
 #include "tools/render/quality_auto.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/frame_names.h"
+#include "woodcock/base/frame_range.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/toml_text.h"
 #include "woodcock/base/whole_file.h"
@@ -38,8 +45,11 @@ namespace woodcock::tool {
 
 namespace {
 
-scene::SceneDescription describeScene(const RenderOptions& options) {
-    scene::SceneDescription scene = parseInput(options.sceneInput());
+/// `frame`: that of a scene file whose name holds its number.
+scene::SceneDescription describeScene(const RenderOptions& options, std::optional<int> frame = {}) {
+    SceneInput input = options.sceneInput();
+    if (frame) input.files.front() = inFrame(input.files.front(), *frame);
+    scene::SceneDescription scene = parseInput(input);
     for (scene::VolumeDescription& volume : scene.volumes) {
         if (options.storage) volume.storage = *options.storage;
         volume.repair |= options.repair;
@@ -82,6 +92,7 @@ scene::SceneDescription describeScene(const RenderOptions& options) {
 bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 
 /// Nothing that is read may be written over, and nothing that is written may be written twice.
+/// `scene` is that of a frame, or of no sequence.
 void checkFiles(const scene::SceneDescription& scene, const RenderOptions& options) {
     std::vector<std::filesystem::path> written;
     if (options.rendersImages()) written = scene.output.files;
@@ -107,7 +118,8 @@ std::string placeOfDisplayError(const scene::SceneDescription& scene, std::strin
 }
 
 image::Outputs prepareOutputs(const scene::SceneDescription& scene, const RenderOptions& options) {
-    prepareOutput(options.stats, options.mkdir, "--stats");
+    if (options.frames.empty() || !namesFrame(options.stats.string()))
+        prepareOutput(options.stats, options.mkdir, "--stats");
     prepareOutput(options.writeScene, options.mkdir, "--write-scene");
     image::ColorConfig colour =
         scene::inPlace(scene::findPlace(scene.places, scene::keyName(scene, scene.ocio)),
@@ -134,18 +146,23 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
     }
 }
 
+/// Memory that the film holds for each pixel.
+double filmBytesPerPixel(const render::RenderSettings& settings,
+                         const scene::SceneDescription& scene) {
+    return double(sizeof(image::Film::Pixel)) +
+           (scene.surfaces.empty() ? 0 : double(sizeof(image::Film::SurfacePixel))) +
+           (settings.featureLayers ? double(sizeof(image::Film::FeaturePixel)) : 0) +
+           (scene::environmentIsHidden(scene) ? 0 : double(sizeof(image::Film::ForegroundPixel))) +
+           (settings.adaptive ? 5 * double(sizeof(double)) : 0);
+}
+
 /// Throws where the image's sums cannot be held, or not written in the end: `writing` are the bytes
 /// of a pixel that encoding takes.
 void checkMemory(const render::RenderSettings& settings, const scene::SceneDescription& scene,
                  double writing, double possible) {
     const auto crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
-    const double kept =
-        double(sizeof(image::Film::Pixel)) +
-        (scene.surfaces.empty() ? 0 : double(sizeof(image::Film::SurfacePixel))) +
-        (settings.featureLayers ? double(sizeof(image::Film::FeaturePixel)) : 0) +
-        (scene::environmentIsHidden(scene) ? 0 : double(sizeof(image::Film::ForegroundPixel))) +
-        (settings.adaptive ? 5 * double(sizeof(double)) : 0);
+    const double kept = filmBytesPerPixel(settings, scene);
     const double needed = double(crop.width()) * crop.height() * (kept + writing);
     if (needed <= possible) return;
     const double share = std::sqrt(possible / needed);
@@ -252,7 +269,8 @@ void reportNeeds(const render::Scene& scene) {
         spdlog::debug("the scene {}", unused);
 }
 
-/// One call of the command, in its phases: check, load, build, render, write.
+/// One call of the command, in its phases: check, load, build, render, write; the last four for
+/// each frame of a sequence.
 class RenderJob {
 public:
     RenderJob(const RenderOptions& options, const std::string& commandLine)
@@ -260,26 +278,79 @@ public:
 
     void run() {
         options_.check();
-        description_ = describeScene(options_);
+        description_ = describeScene(
+            options_, hasSceneFiles() ? std::optional(frameWithScene()) : std::nullopt);
         catchInterrupts();  // not while a scene that comes through a pipe is waited for
         checkWhatIsAsked();
         settings_ = renderSettings(description_, options_);
-        image::Outputs outputs = prepareOutputs(description_, options_);
-        if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
-
-        loadStart_ = std::chrono::steady_clock::now();
-        if (load()) outputs = prepareOutputs(description_, options_);
-        if (options_.rendersImages()) render(outputs);
+        if (isSequence())
+            renderFrames();
+        else
+            renderOne();
     }
 
 private:
+    using Clock = std::chrono::steady_clock;
+    using Json = nlohmann::ordered_json;
+
     const std::vector<std::filesystem::path>& files() const { return description_.output.files; }
 
+    /// Or a scene is saved that stands for one.
+    bool isSequence() const {
+        return !options_.frames.empty() ||
+               (options_.takesFrames() && scene::readsFrames(description_));
+    }
+
+    /// Each frame has a scene file of its own.
+    bool hasSceneFiles() const {
+        const std::filesystem::path& input = options_.inputs.front();
+        return !options_.frames.empty() && isSceneFile(input) && namesFrame(input.string());
+    }
+
+    /// The first that has one, or else the first.
+    int frameWithScene() const {
+        const auto found =
+            std::find_if(options_.frames.begin(), options_.frames.end(), [&](int frame) {
+                return std::filesystem::exists(inFrame(options_.inputs.front(), frame));
+            });
+        return found == options_.frames.end() ? options_.frames.front() : *found;
+    }
+
     void checkWhatIsAsked() const {
-        if (files().empty() && options_.rendersImages())
+        if (files().empty() && options_.rendersImages() && !options_.estimate)
             throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
-        if (options_.rendersImages()) options_.checkFor(files());
-        checkFiles(description_, options_);
+        if (options_.rendersImages()) {
+            options_.checkFor(files());
+            for (std::size_t i = 0; i < files().size(); ++i)
+                checkFrameOutput(
+                    files()[i],
+                    scene::findPlace(description_.places, fmt::format("output.files[{}]", i)),
+                    options_.frames);
+        }
+        if (!isSequence()) checkFiles(description_, options_);
+        if (hasSceneFiles() && options_.choosesQuality())
+            throw usageError(
+                "--quality auto chooses for one scene, and each frame has a scene file of its own");
+    }
+
+    image::Outputs preparedOutputs() const {
+        image::Outputs outputs = prepareOutputs(description_, options_);
+        if (!outputs.note().empty()) spdlog::warn("{}", outputs.note());
+        return outputs;
+    }
+
+    void renderOne() {
+        if (options_.skipExisting && options_.rendersImages() && allExist(files())) {
+            spdlog::info("{} is there already: nothing to do", files().front().string());
+            return;
+        }
+        image::Outputs outputs = preparedOutputs();
+        loadStart_ = Clock::now();
+        if (load()) outputs = prepareOutputs(description_, options_);
+        if (options_.estimate) return estimate(outputs);
+        if (!options_.rendersImages()) return;
+        if (options_.choosesQuality()) chooseSettings();
+        if (render(outputs)) endWith(exitInterrupted);
     }
 
     /// Returns whether an exposure was chosen.
@@ -289,16 +360,20 @@ private:
             options_.plain ? std::filesystem::path() : frameToChooseFrom(description_);
         loaded_ = loadAndComplete(description_, options_.choicesLook());
         checkFiles(description_, options_);  // with what --set says of lights that were chosen
-        const bool exposes = open.exposure && open.lights && !description_.lights.empty() &&
-                             !options_.plain && writesPictureOrScene();
+        const bool exposes = choosesExposure(open);
         if (exposes) {
-            description_.output.exposure = exposureFor(frame);
-            spdlog::info(
-                "chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
-                tomlNumber(description_.output.exposure));
+            const bool other = !frame.empty() && frame != description_.volumes[0].file;
+            scene::SceneDescription scene = description_;
+            if (other) scene.volumes[0].file = frame;
+            chooseExposureOf(scene, other ? scene::loadScene(scene) : loaded_);
         }
         saveScene(open);
         return exposes;
+    }
+
+    bool choosesExposure(const Openings& open) const {
+        return open.exposure && open.lights && !description_.lights.empty() && !options_.plain &&
+               writesPictureOrScene();
     }
 
     bool writesPictureOrScene() const {
@@ -308,14 +383,14 @@ private:
                });
     }
 
-    double exposureFor(const std::filesystem::path& frame) const {
-        const bool other = !frame.empty() && frame != description_.volumes[0].file;
-        scene::SceneDescription scene = description_;
-        if (other) scene.volumes[0].file = frame;
-        return chooseExposure(
-            scene::buildScene(scene, other ? scene::loadScene(scene) : loaded_), settings_,
+    /// From a complete scene, which may be another frame of this one.
+    void chooseExposureOf(const scene::SceneDescription& scene, scene::LoadedScene loaded) {
+        description_.output.exposure = chooseExposure(
+            scene::buildScene(scene, std::move(loaded)), settings_,
             image::ColorConfig(scene.ocio)
                 .displayTransform({scene.output.display, scene.output.view, scene.output.look, 0}));
+        spdlog::info("chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
+                     tomlNumber(description_.output.exposure));
     }
 
     void saveScene(const Openings& open) const {
@@ -334,33 +409,226 @@ private:
         settings_ = renderSettings(description_, options_);
     }
 
-    void render(const image::Outputs& outputs) {
-        if (options_.choosesQuality()) chooseSettings();
+    // ---- a sequence; description_ and loaded_ are those of a frame while it is drawn
+
+    void renderFrames() {
+        reader_.emplace(description_, options_.choicesLook());
+        if (hasSceneFiles())
+            reader_.emplace(description_, options_.choicesLook(),
+                            [this](int frame) { return describeScene(options_, frame); });
+        if (!hasSceneFiles() && !changesWithFrame(description_))
+            spdlog::warn(
+                "nothing in the scene changes with the frame: all pictures will be the same");
+        plan_ = planFrames(options_.frames, *reader_, options_.skipExisting);
+        const std::size_t missing = plan_.failed().size();
+        if (missing > 0 && missing == options_.frames.size())
+            throw inputError("frame {}: {}", plan_.without.front().second.front(),
+                             plan_.without.front().first);
+        for (const auto& [error, frames] : plan_.without)
+            spdlog::error("{}: {}", framesText(frames), error);
+        if (!plan_.skipped.empty()) spdlog::info("{}: there already", framesText(plan_.skipped));
+        if (!plan_.drawn.empty() || !options_.rendersImages()) chooseForAll();
+        if (options_.estimate && !plan_.drawn.empty())
+            estimate(prepareOutputs(reader_->at(plan_.drawn.front()), options_));
+        else if (options_.rendersImages() && !options_.estimate)
+            drawFrames();
+    }
+
+    static std::string framesText(const std::vector<int>& frames) {
+        return fmt::format("frame{} {}", frames.size() == 1 ? "" : "s", frameRangeText(frames));
+    }
+
+    /// Its files, so far: see FrameReader::at().
+    static bool changesWithFrame(const scene::SceneDescription& scene) {
+        return scene::readsFrames(scene);
+    }
+
+    /// Chooses what is open, alike for all frames: from the largest file of each sequence.
+    void chooseForAll() {
+        const int frame = plan_.drawn.empty() ? 0 : plan_.drawn.front();
+        scene::SceneDescription& sequence = reader_->sequence();
+        description_ = reader_->atLargest(frame);
+        checkFiles(description_, options_);
+        preparedOutputs();  // what is wrong with them is wrong for all
+        const Openings open = openingsOf(sequence);
+        if (leavesChoices(sequence) && !hasSceneFiles()) {
+            scene::LoadedScene loaded = reader_->load(description_);
+            tellOnce(spdlog::level::warn, loaded.notes);
+            for (std::size_t i = 0; i < sequence.volumes.size(); ++i)
+                if (description_.volumes[i].file != sequence.volumes[i].file)
+                    spdlog::info(
+                        "what follows is chosen from the largest file of {}, {}, and is the same "
+                        "for every frame",
+                        sequence.volumes[i].file.string(), description_.volumes[i].file.string());
+            for (const std::string& choice :
+                 scene::completeScene(sequence, loaded, options_.choicesLook()))
+                spdlog::info("{}", choice);
+            reader_->setComplete();
+            description_ = reader_->atLargest(frame);
+            if (choosesExposure(open)) {
+                reader_->loadChosen(description_, loaded);
+                chooseExposureOf(description_, std::move(loaded));
+                sequence.output.exposure = description_.output.exposure;
+            }
+        }
+        description_ = sequence;
+        saveScene(open);
+    }
+
+    void drawFrames() {
+        place_ = FramePlace{0, 0, plan_.drawn.size(), Clock::now()};
+        FrameReport report = forEachFrame(plan_.drawn, [&](int frame) { return drawFrame(frame); });
+        const std::vector<int> missing = plan_.failed();
+        report.failed.insert(report.failed.end(), missing.begin(), missing.end());
+        std::sort(report.failed.begin(), report.failed.end());
+        if (!hasOwnStats()) {
+            const Json all{
+                {"frames", stats_}, {"failed", report.failed}, {"skipped", plan_.skipped}};
+            writeStats(options_.stats, all);
+            if (options_.reports.json) writeStats("-", all);
+        }
+        endUnlessDone(report);
+    }
+
+    ExitCode drawFrame(int frame) {
+        const std::vector<int>& frames = plan_.drawn;
+        const auto next = std::find(frames.begin(), frames.end(), frame) + 1;
+        place_->frame = frame;
+        place_->index = static_cast<std::size_t>(next - frames.begin()) - 1;
+        LoadedFrame now = reader_->take(frame);
+        loadStart_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(
+                                        std::chrono::duration<double>(now.seconds));
+        description_ = std::move(now.description), loaded_ = std::move(now.loaded);
+        if (hasSceneFiles()) settings_ = renderSettings(description_, options_);
+        if (options_.choosesQuality() && place_->index == 0) {
+            chooseSettings();
+            reader_->sequence().render = description_.render;
+        }
+        if (next != frames.end()) reader_->readAhead(*next, loaded_);
+        spdlog::info("frame {}, {} of {}", frame, place_->index + 1, frames.size());
+        tellOnce(spdlog::level::warn, loaded_.notes);
+        tellOnce(spdlog::level::info, velocityNotes(description_, loaded_));
+        checkFiles(description_, options_);
+        return render(prepareOutputs(description_, options_)) ? exitInterrupted : exitDone;
+    }
+
+    /// Notes that differ in the frame's file alone are told in the first.
+    void tellOnce(spdlog::level::level_enum level, const std::vector<std::string>& notes) {
+        for (const std::string& note : notes) {
+            std::string alike = note;
+            const auto& patterns = reader_->sequence().volumes;
+            for (std::size_t i = 0; i < std::min(description_.volumes.size(), patterns.size());
+                 ++i) {
+                const std::string file = description_.volumes[i].file.string();
+                const std::string pattern = patterns[i].file.string();
+                const std::size_t at = file.empty() ? alike.npos : alike.find(file);
+                if (at != alike.npos) alike.replace(at, file.size(), pattern);
+            }
+            if (told_.insert(alike).second) spdlog::log(level, "{}", note);
+        }
+    }
+
+    /// Each frame's counts go into a file of its own.
+    bool hasOwnStats() const { return namesFrame(options_.stats.string()); }
+
+    // ---- no picture
+
+    /// Says what this would take.
+    void estimate(const image::Outputs& outputs) {
+        const double pixels = settings_.crop
+                                  ? double(settings_.crop->width()) * settings_.crop->height()
+                                  : double(settings_.width) * settings_.height;
+        std::vector<FrameTrial> trials;
+        constexpr std::size_t mostTrials = 5;
+        std::uintmax_t largest = 0;
+        for (const int frame : plan_.drawn)
+            largest = std::max(largest, bytesOfVolumes(reader_->at(frame)));
+        for (const int frame : spreadFrames(plan_.drawn, mostTrials)) {
+            LoadedFrame loaded = reader_->take(frame);
+            description_ = std::move(loaded.description), loaded_ = std::move(loaded.loaded);
+            trials.push_back({.frame = frame, .loadSeconds = loaded.seconds});
+            measure(trials.back());
+        }
+        if (trials.empty()) {
+            trials.push_back({.loadSeconds = secondsSince(loadStart_)});
+            measure(trials.back());
+            largest = trials.back().fileBytes;
+        }
+        double scenes = 0;
+        for (const FrameTrial& trial : trials) scenes = std::max(scenes, trial.sceneBytes);
+        // The trials held the scenes that rendering holds, and next to no picture.
+        const double fixed =
+            std::max(0.0, static_cast<double>(peakMemoryBytes()) -
+                              (trials.size() > 1 ? 2 : 1) * scenes) +
+            pixels * (filmBytesPerPixel(settings_, description_) + outputs.bytesPerPixel());
+        const RenderEstimate estimate = estimateAll(
+            std::move(trials), std::max<std::size_t>(1, plan_.drawn.size()), fixed, largest);
+        if (options_.reports.json)
+            printJson(estimateJson(estimate));
+        else if (options_.reports.printsText())
+            printText(estimateText(estimate));
+    }
+
+    void measure(FrameTrial& trial) {
+        const auto start = Clock::now();
+        trial.fileBytes = bytesOfVolumes(description_);
+        trial.sceneBytes = bytesOf(loaded_);
+        const render::Scene scene = scene::buildScene(description_, std::move(loaded_));
+        trial.loadSeconds += secondsSince(start);
+        if (!measureRender(scene, settings_, trial, [] { return !interrupted(); }))
+            endWith(exitInterrupted);
+    }
+
+    static double secondsSince(Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    static std::uintmax_t bytesOfVolumes(const scene::SceneDescription& scene) {
+        std::uintmax_t bytes = 0;
+        for (const scene::VolumeDescription& volume : scene.volumes) {
+            std::error_code none;
+            const std::uintmax_t size = std::filesystem::file_size(volume.file, none);
+            if (!none) bytes += size;
+        }
+        return bytes;
+    }
+
+    // ---- a picture
+
+    /// Returns whether it was interrupted. What was drawn by then is written, but not of a frame:
+    /// it would pass for a finished one.
+    bool render(const image::Outputs& outputs) {
         PictureWarnings warnings(description_, loaded_);
         std::vector<std::string> notes;
         const render::Scene scene = scene::buildScene(description_, std::move(loaded_), &notes);
-        for (const std::string& note : notes) spdlog::info("{}", note);
-        const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - loadStart_;
-        endIfInterrupted();
+        for (const std::string& note : notes) tellInFirst(note);
+        const std::chrono::duration<double> loading = Clock::now() - loadStart_;
+        if (interrupted()) return true;
         for (const std::string& warning : render::precisionWarnings(scene))
             spdlog::warn("{}", warning);
         warnUnlessEmpty(warnings.ofCamera(scene));
 
         checkMemoryLeft(settings_, description_, outputs);
-        reportNeeds(scene);
-        const render::RenderResult result = renderWithProgress(scene, settings_, style_);
+        if (!place_ || place_->index == 0) reportNeeds(scene);
+        const render::RenderResult result = renderWithProgress(scene, settings_, style_, place_);
+        const bool stopped = result.reason == render::StopReason::Interrupted;
+        if (stopped && place_) return true;
         reportResult(result, settings_);
         const std::string digest = scene::sceneDigest(description_);
         write(result, outputs, digest);
         if (result.film.mostSamples() > 0) warnUnlessEmpty(warnings.ofPicture(scene, result));
-        writeStats(result, digest, loading.count());
-        if (result.reason == render::StopReason::Interrupted) endWith(exitInterrupted);
-        if (result.film.mostSamples() == 0)
+        keepStats(result, digest, loading.count());
+        if (result.film.mostSamples() == 0 && !stopped)
             throw failure(
                 "nothing was rendered within twice the time limit of {}: nothing is written. Paths "
                 "may be without end: look for media of albedo 1 that fill all space, or give "
                 "max_bounces or max_scatterings",
                 formatDuration(settings_.timeLimit));
+        return stopped;
+    }
+
+    void tellInFirst(const std::string& note) {
+        if (!place_ || told_.insert(note).second) spdlog::info("{}", note);
     }
 
     void write(const render::RenderResult& result, const image::Outputs& outputs,
@@ -377,13 +645,28 @@ private:
         }
     }
 
-    void writeStats(const render::RenderResult& result, const std::string& digest,
-                    double loadSeconds) const {
-        const std::string stats = statsText(
+    void keepStats(const render::RenderResult& result, const std::string& digest,
+                   double loadSeconds) {
+        Json stats = statsJson(
             result, settings_, digest, loadSeconds,
             result.film.mostSamples() > 0 ? files() : std::vector<std::filesystem::path>());
-        if (!options_.stats.empty()) writeTextFile(options_.stats, stats);
-        if (options_.reports.json) writeTextFile("-", stats);
+        if (!place_) {
+            writeStats(options_.stats, stats);
+            if (options_.reports.json) writeStats("-", stats);
+            return;
+        }
+        Json ofFrame{{"frame", place_->frame}};
+        ofFrame.update(stats);
+        if (hasOwnStats()) {
+            const std::filesystem::path file = inFrame(options_.stats, place_->frame);
+            prepareOutput(file, options_.mkdir, "--stats");
+            writeStats(file, ofFrame);
+        }
+        stats_.push_back(std::move(ofFrame));
+    }
+
+    static void writeStats(const std::filesystem::path& file, const Json& stats) {
+        if (!file.empty()) writeTextFile(file, jsonText(stats, 4) + "\n");
     }
 
     const RenderOptions& options_;
@@ -392,7 +675,13 @@ private:
     scene::SceneDescription description_;
     render::RenderSettings settings_;
     scene::LoadedScene loaded_;
-    std::chrono::steady_clock::time_point loadStart_;
+    Clock::time_point loadStart_;
+
+    std::optional<FrameReader> reader_;  // of a sequence, as all that follows
+    FramePlan plan_;
+    std::optional<FramePlace> place_;
+    std::vector<Json> stats_;
+    std::set<std::string> told_;
 };
 
 CLI::App& addTo(CLI::App& app, const std::string& commandLine) {

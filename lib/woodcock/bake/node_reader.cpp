@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "woodcock/bake/parameters.h"
+#include "woodcock/base/frame_names.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/base/random.h"
 
@@ -89,7 +90,9 @@ std::size_t NodeReader::choice(std::string_view key, std::span<const std::string
 }
 
 std::filesystem::path NodeReader::file(std::string_view key) {
-    files_.push_back(need(key).path(base_));
+    std::filesystem::path file = need(key).path(source_->directory);
+    if (source_->frame) file = withFrame(file.string(), *source_->frame);
+    files_.push_back(std::move(file));
     return files_.back();
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "woodcock/bake/node.h"
+#include "woodcock/bake/recipe.h"
 #include "woodcock/base/toml_reader.h"
 
 namespace woodcock::bake {
@@ -26,11 +27,11 @@ public:
     /// itself), and returns its entry.
     using AddInput = std::function<int(const TomlValue&)>;
 
-    NodeReader(TomlTable table, const ParameterSet& parameters, std::filesystem::path base,
+    NodeReader(TomlTable table, const ParameterSet& parameters, const RecipeText& source,
                const Graph& graph, AddInput add)
         : table_(std::move(table)),
           parameters_(&parameters),
-          base_(std::move(base)),
+          source_(&source),
           graph_(&graph),
           add_(std::move(add)) {}
 
@@ -47,7 +48,7 @@ public:
     std::string text(std::string_view key, std::string_view example);
     std::size_t choice(std::string_view key, std::span<const std::string> known,
                        std::size_t otherwise);
-    std::filesystem::path file(std::string_view key = "file");
+    std::filesystem::path file(std::string_view key = "file");  ///< that of the frame
     std::vector<TomlValue> list(std::string_view key, std::string_view expected);
     double numberOf(const TomlValue& value, NumberRange range = {}) const;
     Vec3d vectorOf(const TomlValue& value) const;
@@ -72,7 +73,7 @@ private:
 
     TomlTable table_;
     const ParameterSet* parameters_;
-    std::filesystem::path base_;
+    const RecipeText* source_;
     const Graph* graph_;
     AddInput add_;
     std::vector<std::string> known_{"type"};

@@ -209,7 +209,7 @@ private:
 
     int addNode(const TomlValue& value) {
         if (!value.isTable()) throw value.error("is not a node; expected a table with a type");
-        NodeReader reader(value.table(), recipe_->parameters, source_.directory, recipe_->graph,
+        NodeReader reader(value.table(), recipe_->parameters, source_, recipe_->graph,
                           [this](const TomlValue& input) { return addValue(input); });
         if (++depth_ > deepest) throw value.error("is nested more than {} nodes deep", deepest);
         Graph::Entry entry = makeNode(reader);

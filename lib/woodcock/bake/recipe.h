@@ -47,6 +47,7 @@ struct RecipeText {
     std::string text;
     std::string name;                 ///< for messages: the file
     std::filesystem::path directory;  ///< that relative paths in it start from
+    std::optional<int> frame = {};    ///< filled into the names of its files, see withFrame()
 };
 
 /// "size=3": a parameter's new value, and the option that gave it, for messages.

@@ -8,8 +8,13 @@
 #include <charconv>
 #include <regex>
 
+#include "woodcock/base/frame_range.h"
+
 namespace woodcock {
 namespace {
+
+/// No file system has longer paths, and the matching of patterns is recursive.
+constexpr size_t longestName = 4096;
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -48,6 +53,38 @@ std::optional<long long> valueOf(std::string_view number) {
     return value;
 }
 
+std::optional<int> intOf(std::string_view number) {
+    const auto value = valueOf(number);
+    if (!value || *value < -largestFrame || *value > largestFrame) return std::nullopt;
+    return static_cast<int>(*value);
+}
+
+/// A pattern that can be filled in.
+struct Place {
+    size_t begin, end;  ///< in the name
+    int digits;         ///< at least
+};
+
+/// The first one from `from` on.
+std::optional<Place> findPlace(const std::string& name, size_t from) {
+    if (name.size() > longestName) return std::nullopt;
+    static const std::regex patterns(
+        R"((#{2,}|@{2,})|(^|[/._-])([#@])(?=[/._-]|$)|%(?:0([1-9]|[1-5][0-9]))?d(?![A-Za-z]))"
+        R"(|\$F([0-9]{0,2})(?![A-Za-z0-9_])|\$\{F([0-9]{0,2})\}|<(?:f|F|frame|Frame|FRAME)([0-9]{0,2})>)");
+    std::smatch match;
+    const auto begin = name.begin() + static_cast<std::ptrdiff_t>(from);
+    const auto flags =
+        from > 0 ? std::regex_constants::match_prev_avail : std::regex_constants::match_default;
+    if (!std::regex_search(begin, name.end(), match, patterns, flags)) return std::nullopt;
+    const auto at = [&](size_t group) { return from + static_cast<size_t>(match.position(group)); };
+    const size_t end = at(0) + static_cast<size_t>(match.length(0));
+    if (match[1].matched) return Place{at(1), end, static_cast<int>(match.length(1))};
+    if (match[3].matched) return Place{at(3), end, 1};
+    for (size_t group = 4; group < match.size(); ++group)
+        if (match[group].matched) return Place{at(0), end, intOf(match[group].str()).value_or(1)};
+    return Place{at(0), end, 1};
+}
+
 /// Compares numbers by value, then by spelling.
 bool isBefore(const std::string& a, const std::string& b) {
     const auto x = valueOf(a), y = valueOf(b);
@@ -66,16 +103,57 @@ std::string framePattern(std::string_view name) {
     // name.
     static const std::array<std::regex, 6> patterns{
         std::regex(R"(#{2,}|@{2,})"),
-        std::regex(R"((^|[/._-])([#@])(?=[._-]|$))"),
+        std::regex(R"((^|[/._-])([#@])(?=[/._-]|$))"),
         std::regex(R"(%[0-9]*d(?![A-Za-z]))"),
         std::regex(R"(\$(F[0-9]*|FF|FRAME|frame)(?![A-Za-z0-9_])|\$\{(F[0-9]*|FF|FRAME|frame)\})"),
         std::regex(R"(<(f|F|frame|Frame|FRAME)[0-9]*>|\{(f|frame|FRAME)(:[^{}]*)?\})"),
         std::regex(R"(\{[0-9]+\.\.[0-9]+\}|\*)")};
     std::cmatch match;
+    if (name.size() > longestName) return {};
     for (size_t i = 0; i < patterns.size(); ++i)
         if (std::regex_search(name.data(), name.data() + name.size(), match, patterns[i]))
             return i == 1 ? match[2].str() : match[0].str();
     return {};
+}
+
+std::string withFrame(const std::string& name, int frame) {
+    std::string filled;
+    size_t from = 0;
+    while (const auto place = findPlace(name, from)) {
+        filled += name.substr(from, place->begin - from);
+        filled += fmt::format("{:0{}}", frame, place->digits);
+        from = place->end;
+    }
+    return filled + name.substr(from);
+}
+
+bool namesFrame(const std::string& name) { return findPlace(name, 0).has_value(); }
+
+std::vector<int> framesOnDisk(const std::string& name) {
+    namespace fs = std::filesystem;
+    std::vector<int> frames;
+    const auto place = findPlace(name, 0);
+    if (!place) return frames;
+    // What is in the folder of the first pattern, and has a number there.
+    const size_t slash = name.rfind('/', place->begin);
+    const size_t start = slash == std::string::npos ? 0 : slash + 1;
+    const size_t end = std::min(name.find('/', place->end), name.size());
+    const std::string folder = name.substr(0, start);
+    const std::string before = name.substr(start, place->begin - start);
+    std::error_code none;
+    for (fs::directory_iterator file(folder.empty() ? "." : folder, none), last;
+         !none && file != last; file.increment(none)) {
+        const std::string found = file->path().filename().string();
+        if (!found.starts_with(before)) continue;
+        size_t digits = before.size() < found.size() && found[before.size()] == '-';
+        while (before.size() + digits < found.size() && isDigit(found[before.size() + digits]))
+            ++digits;
+        const auto frame = intOf(std::string_view(found).substr(before.size(), digits));
+        if (!frame || withFrame(name.substr(0, end), *frame) != folder + found) continue;
+        if (fs::exists(withFrame(name, *frame), none)) frames.push_back(*frame);
+    }
+    std::sort(frames.begin(), frames.end());
+    return frames;
 }
 
 FrameSeries seriesOfPattern(const std::string& name) {
@@ -159,18 +237,19 @@ std::optional<FrameSeries> seriesOf(std::span<const std::filesystem::path> frame
     return series;
 }
 
-std::string shellNumbers(const std::vector<std::string>& numbers) {
-    constexpr size_t few = 6;
-    const bool long_ = numbers.size() > few;
-    bool even = long_ && valueOf(numbers.front()).value_or(-1) >= 0;
-    for (size_t i = 1; even && i < numbers.size(); ++i) {
-        const auto a = valueOf(numbers[i - 1]), b = valueOf(numbers[i]);
-        even = a && b && *b == *a + 1 && numbers[i].size() >= numbers[i - 1].size();
+std::optional<std::string> patternOf(const FrameSeries& series) {
+    if (series.numbers.empty()) return std::nullopt;
+    const size_t digits = series.numbers.front().size();
+    for (const std::string& pattern : {std::string(digits, '#'), std::string("%d")}) {
+        const std::string name = series.name(pattern);
+        const bool each = std::all_of(
+            series.numbers.begin(), series.numbers.end(), [&](const std::string& number) {
+                const auto value = intOf(number);
+                return value && withFrame(name, *value) == series.name(number);
+            });
+        if (each) return name;
     }
-    // Numbers without leading zeros may grow by a digit; padded ones keep their width.
-    even = even && (numbers.front().size() == numbers.back().size() || numbers.front()[0] != '0');
-    if (even) return fmt::format("{{{}..{}}}", numbers.front(), numbers.back());
-    return fmt::format("{}", fmt::join(numbers, " "));
+    return std::nullopt;
 }
 
 }  // namespace woodcock

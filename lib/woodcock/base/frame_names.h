@@ -14,6 +14,17 @@ namespace woodcock {
 /// "$F4", "${FRAME}", "<frame04>", "{frame}", "{0009..0011}", "*". Empty where there is none.
 std::string framePattern(std::string_view name);
 
+/// The name with `frame` in place of each pattern that can be filled in: "####" and "@@@@" (as many
+/// digits as there are signs), "%d" and "%04d", "$F", "$F4" and "${F4}", "<frame04>", "<f04>" and
+/// the like. Larger numbers are written whole, and a minus counts as a digit. Other patterns stay.
+std::string withFrame(const std::string& name, int frame);
+
+/// Whether withFrame() fills in anything.
+bool namesFrame(const std::string& name);
+
+/// The numbers of the files on disk that withFrame() finds, rising. Folders may hold patterns, too.
+std::vector<int> framesOnDisk(const std::string& name);
+
 /// Files whose names differ in one number only.
 struct FrameSeries {
     std::string before, after;         ///< the text around the number, directories included
@@ -37,7 +48,9 @@ std::vector<std::filesystem::path> framesAmong(std::span<const std::filesystem::
 /// The series of `frames` from framesAmong(); absent where they differ in more than one number.
 std::optional<FrameSeries> seriesOf(std::span<const std::filesystem::path> frames);
 
-/// "0009 0010 0011", or "{0009..0020}" for many without a gap: the words of a loop in a shell.
-std::string shellNumbers(const std::vector<std::string>& numbers);
+/// "f.####.vdb" of f.0009.vdb and f.0010.vdb, "f.%d.vdb" of f.9.vdb and f.10.vdb: the name with
+/// the pattern that withFrame() turns into each of the series. Absent where there is none, as for
+/// f.9.vdb beside f.0010.vdb.
+std::optional<std::string> patternOf(const FrameSeries& series);
 
 }  // namespace woodcock

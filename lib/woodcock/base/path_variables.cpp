@@ -15,6 +15,12 @@ std::string variable(const std::string& name) {
                      name);
 }
 
+/// $F, $F4: a frame's number, as withFrame() fills it in, and no variable.
+bool isFrame(std::string_view name) {
+    return name.starts_with('F') && name.size() <= 3 &&
+           name.find_first_not_of("0123456789", 1) == name.npos;
+}
+
 bool isNameLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 }  // namespace
@@ -40,8 +46,12 @@ std::filesystem::path expandPath(std::string_view text) {
         const bool closed = !braces || (end < text.size() && text[end] == '}');
         if (end == begin || !closed)
             throw inputError("'$' must be followed by a variable's name (write $$ for a dollar)");
-        expanded += variable(std::string(text.substr(begin, end - begin)));
-        i = braces ? end + 1 : end;
+        const std::string_view name = text.substr(begin, end - begin);
+        const size_t next = braces ? end + 1 : end;
+        expanded += isFrame(name) ? std::string(text.substr(begin - (braces ? 2 : 1),
+                                                            next - begin + (braces ? 2 : 1)))
+                                  : variable(std::string(name));
+        i = next;
     }
     return expanded;
 }

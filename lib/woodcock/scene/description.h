@@ -123,8 +123,28 @@ using PhaseDescription =
     std::variant<IsotropicPhase, HenyeyGreensteinPhase, TwoLobePhase, RayleighPhase, DrainePhase,
                  MiePhase, FournierForandPhase, TablePhase>;
 
+/// What is shown where a sequence of files has none: outside of its first and last file...
+enum class OutsideRule { Error, Hold, Black, Repeat, PingPong };
+/// ... and between them.
+enum class MissingRule { Error, Hold, Black };
+/// Their names in scene files, in the same order.
+inline const std::array<std::string, 5> outsideNames{"error", "hold", "black", "repeat",
+                                                     "ping_pong"};
+inline const std::array<std::string, 3> missingNames{"error", "hold", "black"};
+
+/// Of a file whose name holds a frame's number, as withFrame() fills it in: frame `start` shows
+/// file number 1 + offset, and so on. See sequenceFile().
+struct FileSequence {
+    int start = 1, offset = 0;
+    OutsideRule outside = OutsideRule::Error;
+    MissingRule missing = MissingRule::Error;
+    bool operator==(const FileSequence&) const = default;
+};
+
 struct VolumeDescription {
     std::filesystem::path file;  ///< empty for a HomogeneousBox
+    FileSequence sequence = {};
+    bool black = false;  ///< no key says it: this frame has no file, and nothing is drawn
     std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
     /// q = scale x grid: radiance per world unit. Its grid is that of a GridCoefficient; in a box,
     /// none.

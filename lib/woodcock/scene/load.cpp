@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <string>
-#include <tuple>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/regular_file.h"
@@ -74,31 +72,88 @@ grid::GridReach reachOf(const VolumeDescription& volume) {
                                                                  : grid::GridReach::Everywhere;
 }
 
+/// What glows of a temperature grid.
+struct LoadedGlow {
+    LoadedField field;
+    float ambient = 0, hottest = 0;  ///< values of the grid: its background, its largest
+};
+
 /// Reads files and grids, each once.
 class Loader {
 public:
-    /// `usual`: the storage of volumes that say nothing.
-    Loader(grid::Storage usual, grid::Lookup lookup) : usual_(usual), lookup_(lookup) {}
+    Loader(const RenderDescription& render, LoadCache& cache)
+        : usual_(render.storage), lookup_(render.lookup), cache_(cache) {}
 
-    const grid::VdbFile& file(const std::filesystem::path& path) {
-        if (const auto found = files_.find(path); found != files_.end()) return found->second;
-        const grid::VdbFile& listed = files_[path] = grid::listGrids(path);
-        note(listed.warning);
-        return listed;
+    const grid::VdbFile& file(const VolumeDescription& volume) {
+        static const grid::VdbFile nothing;
+        if (volume.black) return nothing;
+        return cache_.get<grid::VdbFile>(cacheName("file", volume.file.string()), [&] {
+            grid::VdbFile listed = grid::listGrids(volume.file);
+            note(listed.warning);
+            return listed;
+        });
     }
 
     LoadedField field(const VolumeDescription& volume, const std::string& name, Purpose purpose,
                       grid::GridReach reach) {
-        const grid::VdbFile& vdb = file(volume.file);
+        const grid::VdbFile& vdb = file(volume);
         if (vdb.grids.empty()) return nothingOf(vdb, name);
         grid::FoundGrid found =
             name.empty() ? grid::findGrid(vdb, grid::GridRole::Density) : grid::findGrid(vdb, name);
         const bool albedo = purpose == Purpose::Albedo;
         if (albedo) reach = grid::GridReach::Everywhere;
-        const auto key = std::tuple(volume.file, found.grid.uniqueName, storageOf(volume),
-                                    volume.repair, purpose, reach);
-        if (const auto known = fields_.find(key); known != fields_.end()) return known->second;
+        return cache_.get<LoadedField>(
+            cacheName("field", volume.file.string(), found.grid.uniqueName, storageOf(volume),
+                      lookup_, volume.repair, purpose, reach),
+            [&] { return readField(volume, vdb, std::move(found), purpose, reach); });
+    }
+
+    /// What glows of a temperature grid, for volumes of one scale and offset.
+    LoadedField blackbody(const VolumeDescription& volume, float& ambient) {
+        const BlackbodyDescription& b = *volume.blackbody;
+        const grid::VdbFile& vdb = file(volume);
+        if (vdb.grids.empty()) return nothingOf(vdb, b.temperature);
+        grid::FoundGrid found = b.temperature.empty()
+                                    ? grid::findGrid(vdb, grid::GridRole::Temperature)
+                                    : grid::findGrid(vdb, b.temperature);
+        const std::string name = found.grid.uniqueName;
+        const LoadedGlow& glow =
+            cache_.get<LoadedGlow>(cacheName("glow", volume.file.string(), name, storageOf(volume),
+                                             lookup_, volume.repair, b.scale, b.offset),
+                                   [&] { return readGlow(volume, vdb, std::move(found)); });
+        const double brightest =
+            double{glow.field.field->range().max} * b.intensity * b.colour.maximum();
+        if (!(brightest < std::numeric_limits<float>::max()))
+            throw inputError(
+                "grid '{}' in {} is too hot: up to {:.6g} kelvins, whose light no "
+                "float holds; scale and offset turn its values into kelvins",
+                name, vdb.path.string(), b.scale * double{glow.hottest} + b.offset);
+        ambient = glow.ambient;
+        return glow.field;
+    }
+
+    /// The largest value of a grid that is only spoken of; 0 where that is not known, or would take
+    /// long.
+    float largest(const VolumeDescription& volume, const std::string& name) {
+        constexpr std::uint64_t long_ = std::uint64_t{64} << 20;
+        const grid::VdbFile& vdb = file(volume);
+        const grid::FoundGrid found = grid::findGrid(vdb, name);
+        if (found.grid.fileBytes > long_) return 0;
+        try {
+            const grid::LoadOptions options{.nonNegative = false, .repair = true};
+            return grid::loadGrid(vdb, found.grid, options).statistics.voxels.max[0];
+        } catch (const Error&) {
+            return 0;  // what is wrong with it is told where it is used
+        }
+    }
+
+    std::vector<std::string> takeNotes() { return std::move(notes_); }
+
+private:
+    LoadedField readField(const VolumeDescription& volume, const grid::VdbFile& vdb,
+                          grid::FoundGrid found, Purpose purpose, grid::GridReach reach) {
         note(std::move(found.note));
+        const bool albedo = purpose == Purpose::Albedo;
         // A velocity that happens to be nowhere negative is no density.
         const bool velocity =
             purpose == Purpose::Density && grid::isNamedFor(found.grid, grid::GridRole::Velocity);
@@ -117,67 +172,38 @@ public:
         if (!albedo && volume.inside.empty()) noteBackground(vdb, found.grid, grid.field);
         if (albedo) note(limitAlbedo(vdb, found.grid, options, grid.field));
         grid.field.setLookup(lookup_);
-        const LoadedField loaded{std::make_shared<grid::Field>(std::move(grid.field)),
-                                 grid.worldFromIndex, found.grid.uniqueName};
-        return fields_[key] = loaded;
+        return {std::make_shared<grid::Field>(std::move(grid.field)), grid.worldFromIndex,
+                found.grid.uniqueName};
     }
-
-    /// What glows of a temperature grid. Each volume has its own scale, so nothing is shared.
-    LoadedField blackbody(const VolumeDescription& volume, float& ambient) {
+    LoadedGlow readGlow(const VolumeDescription& volume, const grid::VdbFile& vdb,
+                        grid::FoundGrid found) {
         const BlackbodyDescription& b = *volume.blackbody;
-        const grid::VdbFile& vdb = file(volume.file);
-        if (vdb.grids.empty()) return nothingOf(vdb, b.temperature);
-        grid::FoundGrid found = b.temperature.empty()
-                                    ? grid::findGrid(vdb, grid::GridRole::Temperature)
-                                    : grid::findGrid(vdb, b.temperature);
         note(std::move(found.note));
+        LoadedGlow glow;
         grid::LoadOptions options{.reach = grid::GridReach::ActiveVoxels,
                                   .storage = storageOf(volume),
                                   .nonNegative = false,
                                   .repair = volume.repair};
         options.convert = [&](grid::FieldSource source) {
-            ambient = source.background[0];
+            glow.ambient = source.background[0];
             return medium::blackbodySource(std::move(source), b.scale, b.offset);
         };
         grid::LoadedGrid grid = grid::loadGrid(vdb, found.grid, options);
         for (std::string& text : grid.notes) note(std::move(text));
-        const double brightest = double{grid.field.range().max} * b.intensity * b.colour.maximum();
-        if (!(brightest < std::numeric_limits<float>::max()))
-            throw inputError(
-                "grid '{}' in {} is too hot: up to {:.6g} kelvins, whose light no "
-                "float holds; scale and offset turn its values into kelvins",
-                found.grid.uniqueName, vdb.path.string(),
-                b.scale * double{grid.statistics.voxels.max[0]} + b.offset);
+        glow.hottest = grid.statistics.voxels.max[0];
         grid.field.setLookup(lookup_);
-        return {std::make_shared<grid::Field>(std::move(grid.field)), grid.worldFromIndex,
-                found.grid.uniqueName};
+        glow.field = {std::make_shared<grid::Field>(std::move(grid.field)), grid.worldFromIndex,
+                      found.grid.uniqueName};
+        return glow;
     }
-
-    /// The largest value of a grid that is only spoken of; 0 where that is not known, or would take
-    /// long.
-    float largest(const VolumeDescription& volume, const std::string& name) {
-        constexpr std::uint64_t long_ = std::uint64_t{64} << 20;
-        const grid::VdbFile& vdb = file(volume.file);
-        const grid::FoundGrid found = grid::findGrid(vdb, name);
-        if (found.grid.fileBytes > long_) return 0;
-        try {
-            const grid::LoadOptions options{.nonNegative = false, .repair = true};
-            return grid::loadGrid(vdb, found.grid, options).statistics.voxels.max[0];
-        } catch (const Error&) {
-            return 0;  // what is wrong with it is told where it is used
-        }
-    }
-
-    std::vector<std::string> takeNotes() { return std::move(notes_); }
-
-private:
     grid::Storage storageOf(const VolumeDescription& volume) const {
         return volume.storage == grid::Storage::Auto ? usual_ : volume.storage;
     }
     /// Of a file without grids, as some programs write frames that hold nothing.
     LoadedField nothingOf(const grid::VdbFile& vdb, const std::string& name) {
-        note(fmt::format("{} holds no grids: there is nothing in it to be drawn",
-                         vdb.path.string()));
+        if (!vdb.path.empty())
+            note(fmt::format("{} holds no grids: there is nothing in it to be drawn",
+                             vdb.path.string()));
         return {std::make_shared<grid::Field>(grid::buildField({}, grid::Storage::Float)),
                 {},
                 name.empty() ? "density" : name};
@@ -201,11 +227,7 @@ private:
 
     grid::Storage usual_;
     grid::Lookup lookup_;
-    std::map<std::filesystem::path, grid::VdbFile> files_;
-    std::map<std::tuple<std::filesystem::path, std::string, grid::Storage, bool, Purpose,
-                        grid::GridReach>,
-             LoadedField>
-        fields_;
+    LoadCache& cache_;
     std::vector<std::string> notes_;
 };
 
@@ -246,19 +268,24 @@ void requireDarkBackground(const grid::VdbFile& file, const LoadedField& emissio
 /// The table that the phase function of `d` names; `path` is that of d's keys.
 template <class D>
 std::optional<medium::PhaseTable> loadPhase(const SceneDescription& scene, const D& d,
-                                            const std::string& path) {
+                                            const std::string& path, LoadCache& cache) {
     const auto* table = d.phase ? std::get_if<TablePhase>(&*d.phase) : nullptr;
     if (!table) return std::nullopt;
     const std::string place =
         findPlace(scene.places,
                   fmt::format("{}.{}.{}", path, keyName(d, d.phase), keyName(*table, table->file)));
-    return inPlace(place, [&] { return medium::readPhaseTable(table->file, table->normalise); });
+    return inPlace(place, [&] {
+        return cache.get<medium::PhaseTable>(
+            cacheName("phase", table->file.string(), table->normalise),
+            [&] { return medium::readPhaseTable(table->file, table->normalise); });
+    });
 }
 
-LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader) {
+LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader,
+                        LoadCache& cache) {
     const VolumeDescription& volume = scene.volumes[index];
     LoadedVolume loaded;
-    loaded.phase = loadPhase(scene, volume, fmt::format("volume[{}]", index));
+    loaded.phase = loadPhase(scene, volume, fmt::format("volume[{}]", index), cache);
     if (std::holds_alternative<HomogeneousBox>(volume.coefficients)) return loaded;
     const auto placeOf = [&](const auto& member) {
         return findPlace(scene.places,
@@ -269,7 +296,7 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
                                                    keyName(*c, c->grid)));
     };
     const grid::VdbFile& file = inPlace(
-        placeOf(volume.file), [&]() -> const grid::VdbFile& { return loader.file(volume.file); });
+        placeOf(volume.file), [&]() -> const grid::VdbFile& { return loader.file(volume); });
     // The first of these that was written is to blame.
     const auto load = [&](const std::string& grid, Purpose purpose,
                           const std::vector<std::string>& places, grid::GridReach reach) {
@@ -327,23 +354,38 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
 }
 
 template <class L>
-LoadedLight loadLight(const L&) {
+LoadedLight readLight(const L&) {
     return {};
 }
-LoadedLight loadLight(const EnvironmentDescription& environment) {
-    if (environment.image.empty()) return {};
+LoadedLight readLight(const EnvironmentDescription& environment) {
     image::Image image = image::readImage(environment.image);
     return {.map = {image.width, image.height, std::move(image.rgb)}};
 }
-LoadedLight loadLight(const PointDescription& point) {
-    if (point.ies.empty()) return {};
+LoadedLight readLight(const PointDescription& point) {
     constexpr std::uint64_t mostBytes = 1 << 24;  // 500 times as much as the largest files have
     const std::string text = readRegularFile(point.ies, "photometric file", mostBytes);
     return {.profile = std::make_shared<const light::IesProfile>(
                 light::IesProfile::read(text, point.ies.string()))};
 }
 
-void loadLights(const SceneDescription& scene, LoadedScene& loaded) {
+template <class L>
+std::filesystem::path fileOfLight(const L&) {
+    return {};
+}
+std::filesystem::path fileOfLight(const EnvironmentDescription& light) { return light.image; }
+std::filesystem::path fileOfLight(const PointDescription& light) { return light.ies; }
+
+/// Without a cache, nothing is held twice: images of skies may be large.
+template <class L>
+LoadedLight loadLight(const L& light, LoadCache* cache) {
+    const std::filesystem::path file = fileOfLight(light);
+    if (file.empty()) return {};
+    if (!cache) return readLight(light);
+    return cache->get<LoadedLight>(cacheName("light", file.string()),
+                                   [&] { return readLight(light); });
+}
+
+void loadLights(const SceneDescription& scene, LoadedScene& loaded, LoadCache* cache) {
     loaded.lights.clear();
     for (size_t i = 0; i < scene.lights.size(); ++i)
         std::visit(
@@ -354,36 +396,40 @@ void loadLights(const SceneDescription& scene, LoadedScene& loaded) {
                     if (key.files && place.empty())
                         place =
                             findPlace(scene.places, fmt::format("light[{}].{}", i, key.info.name));
-                loaded.lights.push_back(inPlace(place, [&] { return loadLight(light); }));
+                loaded.lights.push_back(inPlace(place, [&] { return loadLight(light, cache); }));
             },
             scene.lights[i].light);
 }
 
 }  // namespace
 
-LoadedScene loadScene(const SceneDescription& scene) {
+LoadedScene loadScene(const SceneDescription& scene, LoadCache* kept) {
+    LoadCache own;
+    LoadCache& cache = kept ? *kept : own;
     LoadedScene loaded;
-    Loader loader(scene.render.storage, scene.render.lookup);
+    Loader loader(scene.render, cache);
     for (size_t i = 0; i < scene.volumes.size(); ++i)
-        loaded.volumes.push_back(loadVolume(scene, i, loader));
-    loadLights(scene, loaded);
+        loaded.volumes.push_back(loadVolume(scene, i, loader, cache));
+    loadLights(scene, loaded, kept);
     loaded.notes = loader.takeNotes();
-    loaded.surfaces = loadSurfaces(scene, loaded.notes);
-    loaded.textures = loadTextures(scene);
+    loaded.surfaces = loadSurfaces(scene, loaded.notes, cache);
+    loaded.textures = loadTextures(scene, cache);
     for (size_t i = 0; i < scene.surfaces.size(); ++i) {
         loaded.interiorPhases.emplace_back();
         const SurfaceDescription& surface = scene.surfaces[i];
         if (surface.interior)
-            loaded.interiorPhases.back() =
-                loadPhase(scene, *surface.interior,
-                          fmt::format("surface[{}].{}", i, keyName(surface, surface.interior)));
+            loaded.interiorPhases.back() = loadPhase(
+                scene, *surface.interior,
+                fmt::format("surface[{}].{}", i, keyName(surface, surface.interior)), cache);
     }
+    cache.forgetUnused();
     return loaded;
 }
 
-void loadChosen(const SceneDescription& scene, LoadedScene& loaded) {
-    if (loaded.lights.size() != scene.lights.size()) loadLights(scene, loaded);
-    Loader loader(scene.render.storage, scene.render.lookup);
+void loadChosen(const SceneDescription& scene, LoadedScene& loaded, LoadCache* kept) {
+    LoadCache own;
+    if (loaded.lights.size() != scene.lights.size()) loadLights(scene, loaded, kept);
+    Loader loader(scene.render, kept ? *kept : own);
     for (size_t i = 0; i < scene.volumes.size(); ++i) {
         LoadedVolume& volume = loaded.volumes[i];
         if (scene.volumes[i].blackbody && !volume.blackbody)

@@ -12,6 +12,7 @@
 #include "woodcock/light/ies_profile.h"
 #include "woodcock/medium/phase/phase_table.h"
 #include "woodcock/scene/description.h"
+#include "woodcock/scene/load_cache.h"
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/surface/texture.h"
 
@@ -62,12 +63,13 @@ struct LoadedScene {
     std::vector<std::string> notes;  ///< what the user should know
 };
 
-/// Reads the grids and meshes that the scene uses, each once, and its images. Throws Error{Input}
+/// Reads the grids and meshes that the scene uses, each once, and its images; what `cache` knows
+/// from the scene before is taken from there, and its notes are not repeated. Throws Error{Input}
 /// that names the place in the scene, the file and the grid.
-LoadedScene loadScene(const SceneDescription& scene);
+LoadedScene loadScene(const SceneDescription& scene, LoadCache* cache = nullptr);
 
 /// What completeScene() chose and loadScene() could not know of: images of lights, as --set asked
 /// for them, and grids that glow. Throws Error{Input}.
-void loadChosen(const SceneDescription& scene, LoadedScene& loaded);
+void loadChosen(const SceneDescription& scene, LoadedScene& loaded, LoadCache* cache = nullptr);
 
 }  // namespace woodcock::scene

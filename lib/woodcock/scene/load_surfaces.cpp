@@ -5,10 +5,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string_view>
-#include <tuple>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/printable.h"
@@ -101,33 +99,32 @@ private:
 /// What a colour space conversion of white may give.
 constexpr float almostOne = 1 + 1e-4f;
 
+using TexturePointer = std::shared_ptr<const surface::TextureImage>;
+
 /// Reads images, each once.
 class Reader {
 public:
-    explicit Reader(const SceneDescription& scene) : scene_(scene) {}
+    Reader(const SceneDescription& scene, LoadCache& cache) : scene_(scene), cache_(cache) {}
 
-    std::shared_ptr<const surface::TextureImage> read(const std::filesystem::path& file,
-                                                      const std::string& colourSpace,
-                                                      const std::string& place) {
-        auto& image = known_[{file, colourSpace}];
-        if (image) return image;
-        if (!config_)
-            inPlace(findPlace(scene_.places, keyName(scene_, scene_.ocio)),
-                    [&] { config_.emplace(scene_.ocio); });
-        inPlace(place, [&] {
-            image::Image read = image::readTexture(file, colourSpace, *config_);
-            image = std::make_shared<surface::TextureImage>(read.width, read.height,
-                                                            std::move(read.rgb));
-        });
-        return image;
+    TexturePointer read(const std::filesystem::path& file, const std::string& colourSpace,
+                        const std::string& place) {
+        return cache_.get<TexturePointer>(
+            cacheName("texture", file.string(), colourSpace, scene_.ocio.string()), [&] {
+                if (!config_)
+                    inPlace(findPlace(scene_.places, keyName(scene_, scene_.ocio)),
+                            [&] { config_.emplace(scene_.ocio); });
+                return inPlace(place, [&]() -> TexturePointer {
+                    image::Image read = image::readTexture(file, colourSpace, *config_);
+                    return std::make_shared<surface::TextureImage>(read.width, read.height,
+                                                                   std::move(read.rgb));
+                });
+            });
     }
 
 private:
     const SceneDescription& scene_;
+    LoadCache& cache_;
     std::optional<image::ColorConfig> config_;
-    std::map<std::pair<std::filesystem::path, std::string>,
-             std::shared_ptr<const surface::TextureImage>>
-        known_;
 };
 
 struct NamedTexture {
@@ -170,8 +167,8 @@ mesh::SurfaceMesh readShape(const MeshShape& shape, std::optional<double> angle)
 /// Makes meshes, each once.
 class SurfaceLoader {
 public:
-    SurfaceLoader(const SceneDescription& scene, std::vector<std::string>& notes)
-        : scene_(scene), notes_(notes) {}
+    SurfaceLoader(const SceneDescription& scene, std::vector<std::string>& notes, LoadCache& cache)
+        : scene_(scene), notes_(notes), cache_(cache) {}
 
     LoadedSurface load(size_t index) {
         const SurfaceDescription& surface = scene_.surfaces[index];
@@ -187,8 +184,12 @@ public:
             surface.shape);
         loaded.instances = surface.instances;
         if (!surface.instanceFile.empty()) {
-            const auto more = inPlace(placeOf(surface.instances),
-                                      [&] { return readInstanceFile(surface.instanceFile); });
+            const auto& more =
+                inPlace(placeOf(surface.instances), [&]() -> const std::vector<Affine3d>& {
+                    return cache_.get<std::vector<Affine3d>>(
+                        cacheName("instances", surface.instanceFile.string()),
+                        [&] { return readInstanceFile(surface.instanceFile); });
+                });
             loaded.instances.insert(loaded.instances.end(), more.begin(), more.end());
         }
         if (loaded.instances.empty()) loaded.instances.emplace_back();
@@ -198,18 +199,18 @@ public:
 private:
     LoadedSurface shaped(const MeshShape& shape, const SurfaceDescription& surface,
                          const SurfaceNature& nature) {
-        const auto key =
-            std::tuple(shape.file, shape.levelSet, surface.smooth.value_or(-1), nature.encloses);
-        Mesh& mesh = files_[key];
-        if (!mesh) {
-            mesh::SurfaceMesh read = readShape(shape, surface.smooth);
-            if (read.droppedTriangles > 0)
-                notes_.push_back(fmt::format("{} holds {} triangle{} of no area: left out",
-                                             shape.file.string(), read.droppedTriangles,
-                                             read.droppedTriangles == 1 ? "" : "s"));
-            if (nature.encloses) close(read, shape.file.string());
-            mesh = std::make_shared<mesh::SurfaceMesh>(std::move(read));
-        }
+        const Mesh& mesh = cache_.get<Mesh>(
+            cacheName("mesh", shape.file.string(), shape.levelSet, surface.smooth.value_or(-1),
+                      nature.encloses),
+            [&]() -> Mesh {
+                mesh::SurfaceMesh read = readShape(shape, surface.smooth);
+                if (read.droppedTriangles > 0)
+                    notes_.push_back(fmt::format("{} holds {} triangle{} of no area: left out",
+                                                 shape.file.string(), read.droppedTriangles,
+                                                 read.droppedTriangles == 1 ? "" : "s"));
+                if (nature.encloses) close(read, shape.file.string());
+                return std::make_shared<mesh::SurfaceMesh>(std::move(read));
+            });
         return {mesh, Affine3d::translate(mesh->mesh.origin), {}};
     }
     LoadedSurface shaped(const LatheShape& shape, const SurfaceDescription& surface,
@@ -267,7 +268,7 @@ private:
 
     const SceneDescription& scene_;
     std::vector<std::string>& notes_;
-    std::map<std::tuple<std::filesystem::path, std::string, double, bool>, Mesh> files_;
+    LoadCache& cache_;
     Mesh box_, sphere_, disk_, rectangle_;
 };
 
@@ -314,9 +315,9 @@ std::vector<Affine3d> readInstanceFile(const std::filesystem::path& file) {
 }
 
 std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
-                                        std::vector<std::string>& notes) {
+                                        std::vector<std::string>& notes, LoadCache& cache) {
     std::vector<LoadedSurface> loaded;
-    SurfaceLoader loader(scene, notes);
+    SurfaceLoader loader(scene, notes, cache);
     for (size_t i = 0; i < scene.surfaces.size(); ++i) loaded.push_back(loader.load(i));
     checkFillings(scene, loaded);
     return loaded;
@@ -331,9 +332,9 @@ surface::Texture makeTexture(const TextureDescription& description,
 }
 
 std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
-    const SceneDescription& scene) {
+    const SceneDescription& scene, LoadCache& cache) {
     std::vector<std::shared_ptr<const surface::TextureImage>> textures;
-    Reader reader(scene);
+    Reader reader(scene, cache);
     for (size_t i = 0; i < scene.materials.size(); ++i) {
         const NamedTexture named =
             std::visit([](const auto& m) { return textureOf(m); }, scene.materials[i].material);

@@ -10,6 +10,7 @@
 #include "woodcock/base/vec.h"
 #include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/scene/description.h"
+#include "woodcock/scene/load_cache.h"
 #include "woodcock/surface/texture.h"
 
 namespace woodcock::scene {
@@ -26,13 +27,13 @@ struct LoadedSurface {
 /// are checked, and turned over where they face inwards, which a note tells. Throws Error{Input}
 /// with the place in the scene.
 std::vector<LoadedSurface> loadSurfaces(const SceneDescription& scene,
-                                        std::vector<std::string>& notes);
+                                        std::vector<std::string>& notes, LoadCache& cache);
 
 /// The image of each material, each file read once; null where it has none. Throws Error{Input}
 /// with the place in the scene on images that cannot be read, and on such as would make a surface
 /// reflect more light than it gets.
 std::vector<std::shared_ptr<const surface::TextureImage>> loadTextures(
-    const SceneDescription& scene);
+    const SceneDescription& scene, LoadCache& cache);
 
 /// The description's colour times the image. What reflects is brought down to 1 where rounding put
 /// it above.

@@ -24,10 +24,9 @@ std::uint64_t sizeOfRegularFile(const std::filesystem::path& file, std::string_v
             const std::string pattern = framePattern(file.string());
             throw inputError("{} does not exist{}", file.string(),
                              pattern.empty() ? ""
-                                             : fmt::format("; '{}' is not filled in with frame "
-                                                           "numbers: name one frame's file, or "
-                                                           "write ${{FRAME}} in a scene and set "
-                                                           "FRAME for each frame",
+                                             : fmt::format("; '{}' stands for a frame's "
+                                                           "number: name one frame's file, or "
+                                                           "give --frames where a command has it",
                                                            pattern));
         }
         throw inputError("cannot open {}: {}", file.string(), std::strerror(errno));

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "woodcock/base/frame_names.h"
+#include "woodcock/base/frame_range.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
@@ -107,6 +109,50 @@ std::vector<Key<V>> densityKeys() {
     };
 }
 
+template <class Rule>
+Value<Rule> sequenceRule(std::string what, std::vector<std::pair<Rule, std::string>> known) {
+    // As Blender has them.
+    known.emplace_back(Rule::Black, "clip");
+    known.emplace_back(Rule::Hold, "extend");
+    return choice(std::move(what), std::move(known));
+}
+
+template <class Rule, class Names>
+std::vector<std::pair<Rule, std::string>> namedRules(const Names& names) {
+    std::vector<std::pair<Rule, std::string>> known;
+    for (size_t i = 0; i < names.size(); ++i) known.emplace_back(static_cast<Rule>(i), names[i]);
+    return known;
+}
+
+std::vector<Key<V>> sequenceKeys() {
+    const std::string sequence = "file = \"a.####.vdb\"";
+    return {
+        key({.name = "frame_start",
+             .doc = "of a sequence, `file = \"smoke.####.vdb\"`: the frame that shows file number "
+                    "1 + `offset`",
+             .type = "integer",
+             .beside = sequence},
+            &V::sequence, &FileSequence::start, integer(-largestFrame, largestFrame)),
+        key({.name = "offset",
+             .doc = "of a sequence: frame n shows the file of number n - `frame_start` + 1 + "
+                    "`offset`",
+             .type = "integer",
+             .beside = sequence},
+            &V::sequence, &FileSequence::offset, integer(-largestFrame, largestFrame)),
+        key({.name = "outside",
+             .doc = "of a sequence: what is shown before its first and behind its last file, see "
+                    "\"Frames\". `\"clip\"` is `\"black\"`, and `\"extend\"` is `\"hold\"`",
+             .beside = sequence},
+            &V::sequence, &FileSequence::outside,
+            sequenceRule("rule", namedRules<OutsideRule>(outsideNames))),
+        key({.name = "missing",
+             .doc = "of a sequence: what is shown where a file is missing between others",
+             .beside = sequence},
+            &V::sequence, &FileSequence::missing,
+            sequenceRule("rule", namedRules<MissingRule>(missingNames))),
+    };
+}
+
 std::vector<Key<V>> coefficientKeys() {
     return joined(
         std::vector{key({.name = "file",
@@ -114,7 +160,7 @@ std::vector<Key<V>> coefficientKeys() {
                          .fallback = "that or `box` must be given"},
                         &V::file, path()),
                     boxOfVolume()},
-        densityKeys(),
+        sequenceKeys(), densityKeys(),
         std::vector{absorption(),
                     separateKey("sigma_s", "the same for scattering", &Separate::sigmaS),
                     boxCoefficient("sigma_a", &Homogeneous::sigmaA),
@@ -182,8 +228,8 @@ std::vector<Key<V>> volumeKeys() {
 }
 
 void checkBox(const TomlTable& table, V& volume, Homogeneous& box) {
-    for (const char* key :
-         {"density", "albedo_grid", "blackbody", "storage", "background", "repair"})
+    for (const char* key : {"density", "albedo_grid", "blackbody", "storage", "background",
+                            "repair", "frame_start", "offset", "outside", "missing"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
     if (const auto v = table.find("emission"); v && !volume.emission->grid.empty())
@@ -213,6 +259,18 @@ void nameDensity(const TomlTable& table, V& volume) {
     }
 }
 
+/// One frame's file in place of a sequence, by --set, leaves its keys without a meaning.
+void checkSequence(const TomlTable& table, V& volume) {
+    if (namesFrame(volume.file.string())) return;
+    volume.sequence = {};
+    if (table.need("file", "").place().starts_with(overrideMark)) return;
+    for (const char* key : {"frame_start", "offset", "outside", "missing"})
+        if (const auto v = table.find(key))
+            throw v->error(
+                "is for a sequence, and file names none: write \"smoke.####.vdb\", with #### where "
+                "a frame's number goes");
+}
+
 void checkVolume(const TomlTable& table, V& volume) {
     if (auto* box = std::get_if<Homogeneous>(&volume.coefficients)) {
         checkBox(table, volume, *box);
@@ -221,6 +279,7 @@ void checkVolume(const TomlTable& table, V& volume) {
             throw table.error(
                 "has neither file nor box; give file = \"smoke.vdb\" or "
                 "box = {{ min = [0, 0, 0], max = [1, 1, 1] }}");
+        checkSequence(table, volume);
         nameDensity(table, volume);
     }
 }
