@@ -349,6 +349,29 @@ TEST_F(Render, OrbitTurnsTheCamera) {
     EXPECT_NEAR(a.z - middle.z, middle.z - b.z, 0.1);
 }
 
+TEST_F(Render, TheShutterIsThatOfTheCommandLine) {
+    const auto shutter = [&](const std::string& text) {
+        const ProgramResult result =
+            render({"smoke.vdb"}, {"--shutter", text, "--write-scene", file("open.toml")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return parseScene(dir / "open.toml").camera.shutter;
+    };
+    EXPECT_EQ(shutter("0.5"), (camera::Shutter{-0.25, 0.25}));
+    EXPECT_EQ(shutter("0,0.75"), (camera::Shutter{0, 0.75}));
+    EXPECT_EQ(shutter("-1,-0.5"), (camera::Shutter{-1, -0.5}));
+    for (const auto& [text, told] : std::vector<std::pair<std::string, std::string>>{
+             {"0.5,-0.5",
+              "--shutter: '0.5,-0.5' closes before it opens; expected OPEN,CLOSE such as "
+              "-0.25,0.25"},
+             {"-1", "--shutter: '-1' is not a number from 0 to 1000"},
+             {"1,2,3", "--shutter: '2,3'"}}) {
+        const ProgramResult wrong =
+            render({"smoke.vdb"}, {"--shutter", text, "--write-scene", file("open.toml")});
+        EXPECT_EQ(wrong.exitCode, 2);
+        EXPECT_NE(wrong.err.find(told), std::string::npos) << wrong.err;
+    }
+}
+
 TEST_F(Render, SmallNumbersAndWordsAreTaken) {
     const auto picture = [&](const Words& options) {
         Words all{"-o", file("x.png")};

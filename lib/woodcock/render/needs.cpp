@@ -5,6 +5,13 @@
 
 namespace woodcock::render {
 
+namespace {
+
+/// Whether anything is not at the same place at all times of the shutter.
+bool moves(const Scene&) { return false; }
+
+}  // namespace
+
 Needs findNeeds(const Scene& scene) {
     Needs n = scene.forcedNeeds;
     Box3d bounds;  // of what scatters
@@ -22,6 +29,7 @@ Needs findNeeds(const Scene& scene) {
     for (const medium::Medium& medium : scene.interiorMedia) look(medium);
     n.surfaces |= scene.surfaces != nullptr;
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
+    n.motion |= scene.shutter.length() > 0 && moves(scene);
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
         const Vec3d p = *scene.lights.traits(i).position;
@@ -54,6 +62,7 @@ std::string namesOf(const Needs& n, bool used) {
     tell(n.lightSampling, "light sampling");
     tell(n.localLights, "equiangular sampling");
     tell(n.surfaces, "surfaces");
+    tell(n.motion, "motion");
     return list;
 }
 

@@ -142,8 +142,11 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
         if (notes) notes->push_back(std::move(note));
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
     return {buildMedium(description, loaded, ""),
-            buildLights(description, std::move(loaded.lights), surfaces), camera,
-            std::move(surfaces.set), std::move(surfaces.interiorMedia)};
+            buildLights(description, std::move(loaded.lights), surfaces),
+            camera,
+            std::move(surfaces.set),
+            std::move(surfaces.interiorMedia),
+            description.camera.shutter};
 }
 
 bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {

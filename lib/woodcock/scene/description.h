@@ -17,6 +17,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/spectrum.h"
+#include "woodcock/camera/shutter.h"
 #include "woodcock/grid/field_source.h"
 #include "woodcock/mesh/faceted_mesh.h"
 #include "woodcock/render/approximations.h"
@@ -278,11 +279,13 @@ struct CameraDescription {
     /// at; a positive angle takes it to its right. A camera that is chosen frames the volumes then
     /// from all sides.
     std::optional<double> orbit = {};
+    camera::Shutter shutter = {};
     bool operator==(const CameraDescription&) const = default;
 };
 
 struct RenderDescription {
     int width = 960, height = 540;
+    double fps = 24;  ///< frames per second, of what moves by so much in a second
     int spp = 64;
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited

@@ -2,6 +2,7 @@
 #include "woodcock/render/stages/spawn.h"
 
 #include "woodcock/render/stages/camera_layers.h"
+#include "woodcock/render/stages/event_numbers.h"
 #include "woodcock/render/stages/light.h"
 
 namespace woodcock::render {
@@ -12,7 +13,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     const PathTracer::Options& options = traced.options;
     const SampleSequence sequence(options.seed, job.x, job.y, job.sample);
     const auto u = sequence.draw(0);
-    const float time = 0;  // nothing moves, so none is drawn
+    const float time = traced.needs.motion ? drawTime(sequence) : 0;
     const camera::CameraRay ray =
         traced.scene.camera.ray(job.x + u[0], job.y + u[1], options.width, options.height, time);
     result = {};

@@ -62,6 +62,38 @@ Key<C> matrixKey() {
     return key;
 }
 
+camera::Shutter readShutter(const TomlValue& value, Base) {
+    constexpr double longest = 1000;  // frames
+    if (!value.isArray()) {
+        const double length = value.number({0, longest});
+        return {-length / 2, length / 2};
+    }
+    const auto times = value.elements("[open, close], in frames", 2);
+    const camera::Shutter shutter{times[0].number({-longest, longest}),
+                                  times[1].number({-longest, longest})};
+    if (shutter.length() < 0)
+        throw value.error("closes at {}, before it opens at {}; give [open, close]", shutter.close,
+                          shutter.open);
+    return shutter;
+}
+
+Key<C> shutterKey() {
+    return key({.name = "shutter",
+                .doc = "for how many frames light is collected, around the frame of the picture: "
+                       "0.5 is a shutter of 180 degrees. Or when it opens and closes, in frames "
+                       "after that frame. 0: a sharp picture of one moment. See \"Motion blur\"",
+                .comment = "frames after the frame of the picture: opens, closes"},
+               &C::shutter,
+               Value<camera::Shutter>{"number >= 0, or `[open, close]`",
+                                      {"[-0.5, 0.25]", "0.5"},
+                                      readShutter,
+                                      [](const camera::Shutter& s, const SceneWriter&) {
+                                          if (s == camera::Shutter{}) return std::string("0");
+                                          return fmt::format("[{}, {}]", tomlNumber(s.open),
+                                                             tomlNumber(s.close));
+                                      }});
+}
+
 /// The keys of cameras of one kind alone.
 Key<C> only(C::Kind kind, Key<C> key) {
     key.belongs = [=](const C& c) { return c.kind == kind; };
@@ -135,6 +167,7 @@ std::vector<Key<C>> placeKeys() {
                              "wrote, `[0, 0, 1]`"},
                 &LookAt::up, &PartialPose::up),
         matrixKey(),
+        shutterKey(),
     };
 }
 
