@@ -12,6 +12,10 @@
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
 
+namespace woodcock::grid {
+class Motion;
+}
+
 namespace woodcock::medium {
 
 /// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It
@@ -25,6 +29,7 @@ public:
         Box3d box;                ///< of object space; only without a field
         Affine3d worldFromIndex;  ///< or world from object, without a field
         Rgb scale{1.0f};          ///< q where f is 1
+        std::shared_ptr<const grid::Motion> motion = {};  ///< of the field; null: it stands still
     };
     /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
     /// field has a background without limits: a medium that emits everywhere is infinitely bright.

@@ -14,6 +14,11 @@
 #include "woodcock/medium/emission.h"
 #include "woodcock/medium/phase.h"
 
+namespace woodcock::grid {
+class Motion;
+class MovedRanges;
+}  // namespace woodcock::grid
+
 namespace woodcock::medium {
 
 /// One additive part of the medium: sigma_t(x) = (absorption + scattering) x f(x) and sigma_s(x) =
@@ -33,6 +38,8 @@ public:
         PhaseFunction phase = {};
         double majorantScale = 1;      ///< > 1 loosens the majorants; see MajorantGrid::Options
         int majorantSmallestLog2 = 1;  ///< coarsens them
+        std::shared_ptr<const grid::Motion> motion = {};  ///< of the field; null: it stands still
+        std::shared_ptr<const grid::Motion> albedoMotion = {};  ///< the same motion, of the albedo
     };
     explicit MediumPart(Description description);
 
@@ -61,6 +68,13 @@ public:
     /// a Description.
     bool extinctionVaries() const { return d_.albedo && loss_ != 1; }
     float largestExtinction() const { return largestExtinction_; }
+    /// Bounds of the field where it moves or is moved; null where it stands as its file has it.
+    const grid::MovedRanges* moved() const { return moved_.get(); }
+    /// False where the field is read at an index position of the part's extent as it is; true where
+    /// that has to be placedInField().
+    bool readElsewhere() const { return readElsewhere_; }
+    /// Takes an index position to where the field is read for it; false where the part is 0 there.
+    bool placedInField(Vec3d& index, float time) const;
     const grid::Field* field() const { return d_.field.get(); }
     const grid::Field* albedo() const { return d_.albedo.get(); }
     const grid::MajorantGrid& majorants() const { return *majorants_; }
@@ -84,10 +98,11 @@ public:
         return !(leave < enter * (1 - 1e-9));
     }
     Vec3d albedoIndex(Vec3d world) const { return albedoIndexFromWorld_.point(world); }
-    /// Index-space box outside which f is the background.
+    /// Index-space box outside which f is the background, at all times.
     const Box3d& support() const { return support_; }
     grid::Range background() const { return background_; }
-    /// Index-space box outside which f is 0 although the field has a background; else null.
+    /// Index-space box outside which f is 0 although the field has a background; else null. Where
+    /// it moves, that is 0 outside of the support.
     const Box3d* limits() const { return limits_ ? &*limits_ : nullptr; }
     /// Index-space box of the part, but for a background without limits.
     const Box3d& extent() const { return limits_ ? *limits_ : support_; }
@@ -111,6 +126,8 @@ private:
     void takeCoefficients();
     Rgb albedo(Vec3d world, float time) const;
     Box3d findReach() const;
+    grid::MajorantGrid bounds(const grid::MajorantGrid::Options& options) const;
+    double meanOfField() const;
 
     Description d_;
     float loss_ = 1;
@@ -118,6 +135,8 @@ private:
     Affine3d indexFromWorld_, albedoIndexFromWorld_;
     Box3d support_;
     std::optional<Box3d> limits_;
+    std::shared_ptr<const grid::MovedRanges> moved_;
+    bool readElsewhere_ = false;
     Box3d reach_;  // of world space: a little more than where f is not 0
     grid::Range background_;
     float largestExtinction_ = 0;

@@ -103,7 +103,7 @@ public:
         : part_(&part),
           index_(index),
           ray_(part.indexRay(q.origin, q.direction)),
-          walk_(part, ray_, q.tMax),
+          walk_(part, ray_, q.tMax, q.time),
           depth_(-std::log(u)) {
         walk_.setLive(part, liveChannels<N>(q.throughput));
     }
@@ -239,7 +239,7 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
                TrackingCounters& counters) {
     const grid::IndexRay ray = part.indexRay(q.origin, q.direction);
     const Spectrum<N> extinction = channels<N>(part.extinction());
-    RefinedWalk walk(part, ray, q.tMax);
+    RefinedWalk walk(part, ray, q.tMax, q.time);
     grid::Segment s{0, 0, {}};
     Spectrum<N> ratio = q.contribution;
     const auto least = [&] { return Varies ? 0.0f : s.range.min; };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
+#include "woodcock/grid/motion.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
@@ -8,7 +9,16 @@ namespace woodcock::render {
 namespace {
 
 /// Whether anything is not at the same place at all times of the shutter.
-bool moves(const Scene&) { return false; }
+bool moves(const medium::Medium& medium) {
+    const auto does = [](const std::shared_ptr<const grid::Motion>& motion) {
+        return motion && motion->moves();
+    };
+    for (const medium::MediumPart& p : medium.parts)
+        if (does(p.description().motion) || does(p.description().albedoMotion)) return true;
+    for (const medium::EmissionPart& p : medium.emission)
+        if (does(p.description().motion)) return true;
+    return false;
+}
 
 }  // namespace
 
@@ -22,6 +32,7 @@ Needs findNeeds(const Scene& scene) {
         }
         n.overlap |= medium.parts.size() > 1;
         n.emission |= !medium.emission.empty();
+        n.motion |= scene.shutter.length() > 0 && moves(medium);
         const Box3d box = medium.worldBounds();
         if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
     };
@@ -29,7 +40,6 @@ Needs findNeeds(const Scene& scene) {
     for (const medium::Medium& medium : scene.interiorMedia) look(medium);
     n.surfaces |= scene.surfaces != nullptr;
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
-    n.motion |= scene.shutter.length() > 0 && moves(scene);
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
         const Vec3d p = *scene.lights.traits(i).position;
