@@ -164,8 +164,12 @@ TEST_F(Render, VelocitiesThatNothingUsesAreSaid) {
     velocity.colour = [](Vec3i) { return Vec3d{1, 2, 3}; };
     velocity.gridClass = "staggered";
     writeVdb(dir / "moving.vdb", {cube(), velocity});
-    const std::string said = "moving.vdb: its velocities ('vel') are not used: there is no motion";
+    const std::string said =
+        "moving.vdb: its velocities ('vel') are not used, as the shutter opens";
     expectSaid(render({"moving.vdb"}, {"-o", file("x.exr")}), 0, {"info: ", said});
+    expectNotSaid(render({"moving.vdb"}, {"-o", file("x.exr"), "--shutter", "0.5"}), "not used");
+    expectSaid(render({"smoke.vdb"}, {"-o", file("x.exr"), "--shutter", "0.5"}), 0,
+               {"smoke.vdb: it has no velocities: it stands still while the shutter is open"});
     expectNotSaid(render({"smoke.vdb"}, {"-o", file("x.exr")}), "velocities");
     // As a colour they are used.
     expectNotSaid(renderScene("[[volume]]\nfile = \"moving.vdb\"\nscale = 1\nrepair = true\n"

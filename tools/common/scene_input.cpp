@@ -115,13 +115,24 @@ namespace {
 
 void tellOfVelocities(const scene::SceneDescription& scene, const scene::LoadedScene& loaded) {
     std::set<std::filesystem::path> told;
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (const std::string& grid = loaded.volumes[i].velocities;
-            !grid.empty() && told.insert(scene.volumes[i].file).second)
+    const bool open = scene.camera.shutter != camera::Shutter{};
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        const std::filesystem::path& file = scene.volumes[i].file;
+        const scene::LoadedVolume& volume = loaded.volumes[i];
+        if (file.empty() || volume.velocity || !told.insert(file).second) continue;
+        const std::string& grid = volume.velocities;
+        if (open && scene.needsVelocities(scene.volumes[i]))
             spdlog::info(
-                "{}: its velocities ('{}') are not used: there is no motion blur yet, so what "
-                "moves is drawn sharp",
-                scene.volumes[i].file.string(), grid);
+                "{}: {}: it stands still while the shutter is open", file.string(),
+                grid.empty()
+                    ? "it has no velocities"
+                    : fmt::format("its velocities ('{}') are 0, or not three of them", grid));
+        else if (!open && !grid.empty())
+            spdlog::info(
+                "{}: its velocities ('{}') are not used, as the shutter opens for no time; "
+                "--shutter 0.5 blurs what moves",
+                file.string(), grid);
+    }
 }
 
 }  // namespace

@@ -345,6 +345,7 @@ private:
         for (const std::string& warning : render::precisionWarnings(scene))
             spdlog::warn("{}", warning);
         warnUnlessEmpty(warnings.ofCamera(scene));
+        for (const std::string& warning : warnings.ofMotion(scene)) spdlog::warn("{}", warning);
 
         checkMemoryLeft(settings_, description_, outputs);
         reportNeeds(scene);

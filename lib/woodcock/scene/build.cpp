@@ -141,7 +141,11 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
     for (std::string& note : coarsenForCamera(description, camera, loaded))
         if (notes) notes->push_back(std::move(note));
     BuiltSurfaces surfaces = buildSurfaces(description, loaded);
-    return {buildMedium(description, loaded, ""),
+    medium::Medium medium = buildMedium(description, loaded, "");
+    if (notes)
+        for (std::string& note : motionNotes(description, loaded, medium, ""))
+            notes->push_back(std::move(note));
+    return {std::move(medium),
             buildLights(description, std::move(loaded.lights), surfaces),
             camera,
             std::move(surfaces.set),

@@ -56,6 +56,10 @@ medium::Medium buildMedium(const SceneDescription& description, const LoadedScen
 std::vector<size_t> volumesOfParts(const SceneDescription& description, const LoadedScene& loaded,
                                    std::string_view inside);
 
+/// How far each volume of that medium moves while the shutter is open, and what that costs.
+std::vector<std::string> motionNotes(const SceneDescription& description, const LoadedScene& loaded,
+                                     const medium::Medium& medium, std::string_view inside);
+
 /// Biased: halves the resolution of each grid (see coarsened()) as often as its voxels, by their
 /// longest edge, stay at most description.render.levelOfDetail pixels wide where the box of what it
 /// holds is next to the camera. Albedos are weighted by density where both grids have one

@@ -124,6 +124,19 @@ using PhaseDescription =
     std::variant<IsotropicPhase, HenyeyGreensteinPhase, TwoLobePhase, RayleighPhase, DrainePhase,
                  MiePhase, FournierForandPhase, TablePhase>;
 
+/// How a volume's grids are moved while the shutter is open.
+struct VelocityDescription {
+    std::string grid;  ///< of vectors, or what three of numbers are named after; empty: by its role
+    double scale = 1;
+    enum class Unit { Second, Frame } unit = Unit::Second;  ///< distance per ...
+    /// Staggered voxels hold their components on faces; or all as if in the middle of voxels.
+    enum class Sampling { AsStored, Collocated } sampling = Sampling::AsStored;
+    bool operator==(const VelocityDescription&) const = default;
+
+    /// Of a frame, in the unit of the velocities' time, and scaled.
+    double timeOfFrame(double fps) const { return scale / (unit == Unit::Second ? fps : 1); }
+};
+
 struct VolumeDescription {
     std::filesystem::path file;  ///< empty for a HomogeneousBox
     std::variant<DensityCoefficients, SeparateCoefficients, HomogeneousBox> coefficients;
@@ -133,7 +146,8 @@ struct VolumeDescription {
     std::optional<BlackbodyDescription> blackbody = {};
     float g = 0;                                 ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     std::optional<PhaseDescription> phase = {};  ///< in place of Henyey-Greenstein
-    Affine3d worldFromObject;                    ///< applied after the grid's own transform
+    VelocityDescription velocity = {};
+    Affine3d worldFromObject;  ///< applied after the grid's own transform
     std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all
     grid::Storage storage = grid::Storage::Auto;
     /// Absent: Clip, and Endless inside of a surface.
@@ -338,6 +352,11 @@ decltype(auto) inPlace(const std::string& place, Action action) {
 /// What is absent (lights, the camera's pose, a density's name and scale) is chosen by
 /// completeScene() of scene/defaults.h, which says what it chose.
 struct SceneDescription {
+    /// Whether velocities have a say in the picture.
+    bool needsVelocities(const VolumeDescription& volume) const {
+        return camera.shutter != camera::Shutter{} && volume.velocity.scale != 0;
+    }
+
     std::vector<VolumeDescription> volumes;
     std::vector<LightDescription> lights;
     /// Overrides of lights ("light[0].azimuth=200") where there are none: of those that are chosen.
