@@ -22,5 +22,6 @@ std::vector<Check> lamps();
 std::vector<Check> skies();
 std::vector<Check> extremes();
 std::vector<Check> emission();
+std::vector<Check> motion();
 
 }  // namespace woodcock::proof
