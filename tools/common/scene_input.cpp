@@ -11,6 +11,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
 #include "woodcock/image/image_format.h"
+#include "woodcock/scene/animation.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/scene_file.h"
@@ -57,9 +58,12 @@ std::vector<std::string> sunOverrides(const scene::SceneDescription& scene,
 scene::SceneDescription parseAtAnySize(const SceneInput& input,
                                        std::vector<std::string> overrides) {
     scene::SceneDescription scene = parseWith(input, overrides);
-    if (!input.sun) return scene;
-    for (std::string& set : sunOverrides(scene, *input.sun)) overrides.push_back(std::move(set));
-    return parseWith(input, overrides);
+    if (input.sun) {
+        for (std::string& set : sunOverrides(scene, *input.sun))
+            overrides.push_back(std::move(set));
+        scene = parseWith(input, overrides);
+    }
+    return input.frame ? scene::atFrame(scene, *input.frame) : scene;
 }
 
 }  // namespace

@@ -116,6 +116,11 @@ void addScene(CLI::App& command, RenderOptions& o) {
             "Turn the camera to its right around what it looks at, for turntables. A camera that "
             "Woodcock chooses then stands far enough for all sides")
             ->type_name("DEGREES"),
+        addParsed(
+            command, "--frame", o.frame,
+            [](const std::string& text) { return parseNumber(text, -1e9, 1e9); },
+            "The frame of a scene's animated values. It may lie between two frames; default 0")
+            ->type_name("FRAME"),
         addParsed(command, "--shutter", o.shutter, parseShutter,
                   "For how many frames the shutter is open, around the frame: 0.5 for 180 degrees. "
                   "Or when it opens and closes, in frames after that frame")
@@ -196,7 +201,8 @@ void RenderOptions::addTo(CLI::App& command) {
 }
 
 SceneInput RenderOptions::sceneInput() const {
-    SceneInput input{inputs, overrides, size, sun, choicesLook(), overlay};
+    SceneInput input{inputs, overrides, size, sun, choicesLook(), {}, overlay};
+    input.frame = frame;
     if (orbit) input.overrides.push_back(fmt::format("camera.orbit={}", *orbit));
     if (!shutter.empty()) input.overrides.push_back("camera.shutter=" + shutter);
     if (quality && !choosesQuality())

@@ -349,6 +349,14 @@ decltype(auto) inPlace(const std::string& place, Action action) {
     }
 }
 
+/// What a scene keeps of an animated value; see animation.h.
+struct AnimatedValue {
+    std::string table;  ///< "volume[0]"
+    std::string key;    ///< of that table: "transform"; or of a table in there: "colour.times"
+    std::string value;  ///< TOML, with its curves; without any where it only stands beside one
+    bool operator==(const AnimatedValue&) const = default;
+};
+
 /// What is absent (lights, the camera's pose, a density's name and scale) is chosen by
 /// completeScene() of scene/defaults.h, which says what it chose.
 struct SceneDescription {
@@ -367,7 +375,9 @@ struct SceneDescription {
     RenderDescription render;
     OutputDescription output;
     std::filesystem::path ocio;  ///< OpenColorIO config of this scene; empty: $OCIO, then built-in
-    Places places;               ///< of all its values
+    std::vector<AnimatedValue> animation;  ///< all else is as it is at `frame`
+    double frame = 0;
+    Places places;  ///< of all its values
     bool operator==(const SceneDescription&) const = default;
 };
 

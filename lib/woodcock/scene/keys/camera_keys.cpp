@@ -52,6 +52,7 @@ Key<C> matrixKey() {
                 .type = matrix().type,
                 .fallback = "none",
                 .comment = "world from camera, which looks along -z",
+                .moves = true,
                 .examples = matrix().examples};
     key.read = [](const TomlValue& v, C& c, Base base) { c.pose = readPose(v, base); };
     key.write = [](const C& c, const SceneWriter&) -> std::optional<Written> {
@@ -145,14 +146,15 @@ std::vector<Key<C>> placeKeys() {
                 };
                 return shift;
             }()),
-        key({.name = "orbit",
+        atRest(key(
+            {.name = "orbit",
              .doc = "turns the camera to its right by so many degrees, about the up axis, around "
                     "what it looks at (with a `matrix`: around the middle of the scene). Lights "
                     "stay. A camera that is *chosen* then keeps one distance for all angles, from "
                     "which every side fits. `render --orbit DEGREES` does the same. A scene that "
                     "is saved has the turned camera",
              .comment = "degrees to its right, around what it sees"},
-            &C::orbit, number({-1e6, 1e6})),
+            &C::orbit, number({-1e6, 1e6}))),
         poseKey({.name = "eye",
                  .doc = "position; without it, it is *chosen*",
                  .fallback = "*chosen* to frame the volumes and surfaces"},

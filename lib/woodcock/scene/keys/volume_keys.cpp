@@ -23,7 +23,9 @@ Value<GridCoefficient> gridCoefficient() {
             },
             [](const GridCoefficient& c, const SceneWriter& out) {
                 return c.grid.empty() ? tomlColour(c.scale) : inlineTable(c, out);
-            }};
+            },
+            {},
+            true};
 }
 
 /// The grid says itself what it is times.
