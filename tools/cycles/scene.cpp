@@ -404,6 +404,9 @@ std::string cyclesScene(const scene::SceneDescription& scene, const scene::Loade
     if (scene.render.approximations.transparentShadows)
         throw cyclesRefusal(placeInRender(scene, scene.render.approximations.transparentShadows),
                             "Woodcock's transparent shadows");
+    if (scene.camera.shutter.length() > 0 && !scene.animation.empty())
+        throw cyclesRefusal(scene::findPlace(scene.places, "camera.shutter"),
+                            "animated values while the shutter is open");
     json volumes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         VolumeWriter(scene, loaded, i).addTo(volumes);

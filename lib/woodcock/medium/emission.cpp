@@ -7,6 +7,14 @@
 
 namespace woodcock::medium {
 
+void moveToRest(const MovingTransform& motion, float time, Vec3d& origin, Vec3d& direction) {
+    const Affine3d rest = motion.at(double{time}).inverse();
+    origin = rest.point(origin), direction = rest.vector(direction);
+}
+void moveToRest(const MovingTransform& motion, float time, Vec3d& point) {
+    point = motion.at(double{time}).inverse().point(point);
+}
+
 EmissionPart::EmissionPart(Description description) : d_(std::move(description)) {
     const double determinant = d_.worldFromIndex.determinant();
     if (!std::isfinite(determinant) || determinant == 0)
@@ -46,6 +54,7 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
 }
 
 Rgb EmissionPart::value(Vec3d world, float time) const {
+    if (d_.movement) moveToRest(*d_.movement, time, world);
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? d_.scale : Rgb(0.0f);
     const bool ends = d_.field->limits() || d_.motion;
@@ -59,7 +68,7 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
     pieces_.clear();
     double first = std::numeric_limits<double>::infinity();
     for (const EmissionPart& part : parts)
-        part.walk(q.origin, q.direction, q.tMax, [&](double t0, double t1, double bound) {
+        part.walk(q.origin, q.direction, q.time, q.tMax, [&](double t0, double t1, double bound) {
             pieces_.push_back({.part = &part, .t0 = t0, .t1 = t1, .bound = bound});
             first = std::min(first, t0);
         });

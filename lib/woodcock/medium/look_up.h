@@ -9,8 +9,9 @@ namespace woodcock::medium {
 // A part of the medium at (position, time). Tracking, marching, emission, equiangular points and
 // layers all ask here.
 //
-// Time is that of the path, from 0 to 1 within the shutter. A part that moves is read where its
-// matter was at the time of its file: see grid::Motion.
+// Time is that of the path, from 0 to 1 within the shutter. Index positions of a part whose
+// transform moves are those of that time: see MediumPart::indexRay(). A part that moves by
+// velocities is read where its matter was at the time of its file: see grid::Motion.
 
 /// How a field is read: one voxel, chosen at random by the weights of the interpolation. For values
 /// that enter linearly: the noise then causes no bias.
@@ -47,7 +48,7 @@ template <int N, class How>
 [[gnu::always_inline]] inline Spectrum<N> albedoAt(const MediumPart& part, Vec3d world, float time,
                                                    How how) {
     const grid::Field& field = *part.albedo();
-    Vec3d index = part.albedoIndex(world);
+    Vec3d index = part.albedoIndex(world, time);
     if (const auto& motion = part.description().albedoMotion) [[unlikely]]
         index = motion->source(index, time);
     return read<N>(field, field.nearSupport(index), how);

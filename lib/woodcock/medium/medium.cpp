@@ -119,6 +119,7 @@ Box3d MediumPart::findReach() const {
 }
 
 Rgb MediumPart::value(Vec3d world, float time) const {
+    if (d_.movement) moveToRest(*d_.movement, time, world);
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return Rgb(support_.contains(p) ? 1.0f : 0.0f);
     if (limits_ && !limits_->contains(p)) return {};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "woodcock/base/affine.h"
+#include "woodcock/base/moving_transform.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/cell_walk.h"
 #include "woodcock/grid/field.h"
@@ -35,6 +36,9 @@ public:
         Rgb scattering{1.0f};                       ///< sigma_s where f (and albedo) is 1
         std::shared_ptr<const grid::Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
         Affine3d albedoWorldFromIndex;
+        /// The part moves within the shutter: where it takes a point of the world, in which the
+        /// transforms above place the part at rest. Null: it stands still.
+        std::shared_ptr<const MovingTransform> movement = {};
         PhaseFunction phase = {};
         double majorantScale = 1;      ///< > 1 loosens the majorants; see MajorantGrid::Options
         int majorantSmallestLog2 = 1;  ///< coarsens them
@@ -82,11 +86,13 @@ public:
     /// others. The first thread that asks makes them.
     const grid::MajorantGrid& marchCells() const;
 
-    grid::IndexRay indexRay(Vec3d origin, Vec3d direction) const {
+    /// A ray in the part's index space, as the part stands at a time within the shutter.
+    grid::IndexRay indexRay(Vec3d origin, Vec3d direction, float time = 0) const {
+        if (d_.movement) moveToRest(*d_.movement, time, origin, direction);
         return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
     }
-    /// False only where the ray surely does not meet this part before tMax: a quick test, with a
-    /// margin for rounding. `inverse`: one over each component of the direction.
+    /// False only where the ray surely does not meet this part before tMax, at any time: a quick
+    /// test, with a margin for rounding. `inverse`: one over each component of the direction.
     bool mayMeet(Vec3d origin, Vec3d inverse, double tMax) const {
         double enter = 0, leave = tMax;
         for (int i = 0; i < 3; ++i) {
@@ -97,7 +103,10 @@ public:
         }
         return !(leave < enter * (1 - 1e-9));
     }
-    Vec3d albedoIndex(Vec3d world) const { return albedoIndexFromWorld_.point(world); }
+    Vec3d albedoIndex(Vec3d world, float time) const {
+        if (d_.movement) moveToRest(*d_.movement, time, world);
+        return albedoIndexFromWorld_.point(world);
+    }
     /// Index-space box outside which f is the background, at all times.
     const Box3d& support() const { return support_; }
     grid::Range background() const { return background_; }
@@ -107,7 +116,11 @@ public:
     /// Index-space box of the part, but for a background without limits.
     const Box3d& extent() const { return limits_ ? *limits_ : support_; }
     bool unbounded() const { return background_.max > 0 && !limits_; }
-    Box3d worldBounds() const { return d_.worldFromIndex.box(extent()); }
+    /// World box of the extent, of the whole shutter.
+    Box3d worldBounds() const {
+        const Box3d box = d_.worldFromIndex.box(extent());
+        return d_.movement && !extent().empty() ? d_.movement->box(box) : box;
+    }
 
     /// f, sigma_t and sigma_s at a world position and a time within the shutter, in full: by
     /// trilinear interpolation, or as the field's look-up has it.

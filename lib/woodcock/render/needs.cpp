@@ -14,9 +14,11 @@ bool moves(const medium::Medium& medium) {
         return motion && motion->moves();
     };
     for (const medium::MediumPart& p : medium.parts)
-        if (does(p.description().motion) || does(p.description().albedoMotion)) return true;
+        if (p.description().movement || does(p.description().motion) ||
+            does(p.description().albedoMotion))
+            return true;
     for (const medium::EmissionPart& p : medium.emission)
-        if (does(p.description().motion)) return true;
+        if (p.description().movement || does(p.description().motion)) return true;
     return false;
 }
 
@@ -39,6 +41,8 @@ Needs findNeeds(const Scene& scene) {
     look(scene.medium);
     for (const medium::Medium& medium : scene.interiorMedia) look(medium);
     n.surfaces |= scene.surfaces != nullptr;
+    n.motion |= scene.camera.motion || scene.lights.moves() ||
+                (scene.surfaces && scene.surfaces->geometry.moves());
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {

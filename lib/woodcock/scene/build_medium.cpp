@@ -91,7 +91,8 @@ std::vector<Part> parts(const Moving& moving, const HomogeneousBox& c) {
 }
 
 /// Parts that emit nothing are left out.
-std::vector<medium::EmissionPart> emission(const Moving& moving) {
+std::vector<medium::EmissionPart> emission(const Moving& moving,
+                                           const std::shared_ptr<const MovingTransform>& movement) {
     const VolumeDescription& volume = moving.volume;
     const LoadedVolume& loaded = moving.loaded;
     std::vector<medium::EmissionPart> all;
@@ -106,6 +107,7 @@ std::vector<medium::EmissionPart> emission(const Moving& moving) {
             part.box = std::get<HomogeneousBox>(volume.coefficients).box;
         }
         part.scale = scale;
+        part.movement = movement;
         if (scale.maximum() > 0) all.emplace_back(std::move(part));
     };
     if (volume.emission) add(loaded.emission, volume.emission->scale);
@@ -197,7 +199,7 @@ medium::PhaseFunction buildPhase(float g, const std::optional<PhaseDescription>&
 }
 
 medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
-                           std::string_view inside) {
+                           const Movements& movements, std::string_view inside) {
     medium::Medium medium;
     for (size_t i = 0; i < description.volumes.size(); ++i) {
         const VolumeDescription& volume = description.volumes[i];
@@ -206,9 +208,10 @@ medium::Medium buildMedium(const SceneDescription& description, const LoadedScen
         for (Part part : activeParts(moving)) {
             part.phase = buildPhase(volume.g, volume.phase, loaded.volumes[i].phase);
             part.majorantScale = description.render.majorantScale;
+            part.movement = movements.volumes[i];
             medium.parts.emplace_back(std::move(part));
         }
-        for (medium::EmissionPart& part : emission(moving))
+        for (medium::EmissionPart& part : emission(moving, movements.volumes[i]))
             medium.emission.push_back(std::move(part));
     }
     return medium;

@@ -23,5 +23,6 @@ std::vector<Check> skies();
 std::vector<Check> extremes();
 std::vector<Check> emission();
 std::vector<Check> motion();
+std::vector<Check> motionOfTransforms();
 
 }  // namespace woodcock::proof

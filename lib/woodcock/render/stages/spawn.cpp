@@ -30,11 +30,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     PathState<N, Surfaces>& p = batch.paths[i];
     ++batch.counters.paths;
     if constexpr (Surfaces)
-        p.surfaces.way = BoundaryWalk(
-            traced.surfaces->rayStart(traced.scene.camera.kind == camera::Camera::Kind::Perspective
-                                          ? traced.aroundCamera
-                                          : traced.surfaces->cameraPosition(p.origin),
-                                      p.direction));
+        p.surfaces.way = BoundaryWalk(traced.startOf(p.origin, p.direction, p.time));
     if (options.depthLayers || options.featureLayers) sampleCameraLayers(traced, p);
     addLightHits(traced, batch, i, nullptr);
     if (traced.needs.emission) p.equiangular = u[3];
