@@ -42,6 +42,7 @@ bake "$ladder/recipes/voxel.toml" voxel --voxel 0.5
 bake "$ladder/recipes/colour.toml" colour --voxel 0.05
 bake "$ladder/recipes/ball.toml" ball --voxel 0.05
 bake "$ladder/recipes/fire.toml" fire --voxel 0.05
+bake "$ladder/recipes/moving.toml" moving --voxel 0.05
 bake cumulus cloud --resolution 96 --set size=2
 # A luminaire without symmetry, in steps so fine that programs interpolate it alike.
 awk 'BEGIN {

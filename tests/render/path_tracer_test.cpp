@@ -74,6 +74,29 @@ TEST(PathTracer, ResultsDoNotDependOnTheRestOfTheBatch) {
     EXPECT_EQ(ofAll.shadowCollisions, ofEach.shadowCollisions);
 }
 
+/// The time is drawn in dimensions of its own.
+TEST(PathTracer, WhatStandsStillHasTheSameBitsAtAnyTime) {
+    const Scene scene = fogsAndGlass();
+    Needs needs = findNeeds(scene);
+    ASSERT_FALSE(needs.motion);
+    PathTracer::Options options;
+    options.width = options.height = 12;
+    const std::vector<PathJob> jobs = someJobs();
+    const auto trace = [&] {
+        std::vector<PathResult> results(jobs.size());
+        RenderCounters counters;
+        EXPECT_TRUE(PathTracer::make(scene, needs, options)
+                        ->trace(
+                            jobs, results, [] { return false; }, counters));
+        return results;
+    };
+    const auto sharp = trace();
+    needs.motion = true;
+    const auto moving = trace();
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+        EXPECT_EQ(sharp[i].film.radiance, moving[i].film.radiance);
+}
+
 TEST(PathTracer, AStoppedCallLeavesTheCountersAndTheNextCallAlone) {
     const Scene scene = fogsAndGlass();
     PathTracer::Options options;

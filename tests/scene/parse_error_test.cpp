@@ -243,7 +243,14 @@ TEST(ParseErrors, OfCameras) {
               "scene.toml:4:8: unknown camera type 'fisheye'; known: perspective, orthographic");
     EXPECT_EQ(sectionMistake("[camera]\ntype = \"orthographic\"\nfov = 30"),
               "scene.toml:5:1: unknown key 'fov' in an orthographic [camera]; known keys: type, "
-              "height, shift, orbit, eye, look_at, up, matrix");
+              "height, shift, orbit, eye, look_at, up, matrix, shutter");
+    EXPECT_EQ(sectionMistake("[camera]\nshutter = -0.5"),
+              "scene.toml:4:11: camera.shutter is -0.5; it must lie between 0 and 1000");
+    EXPECT_EQ(sectionMistake("[camera]\nshutter = [0.25, -0.25]"),
+              "scene.toml:4:11: camera.shutter closes at -0.25, before it opens at 0.25; give "
+              "[open, close]");
+    EXPECT_EQ(sectionMistake("[camera]\nshutter = [0.25]"),
+              "scene.toml:4:11: camera.shutter has 1 element; expected [open, close], in frames");
     EXPECT_EQ(
         sectionMistake(
             "[camera]\nmatrix = [[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
@@ -265,6 +272,8 @@ TEST(ParseErrors, OfRenderSettings) {
               "scene.toml:4:14: render.resolution is an integer; expected [width, height]");
     EXPECT_EQ(sectionMistake("[render]\nspp = 0"),
               "scene.toml:4:7: render.spp is 0; it must lie between 1 and 2147483647");
+    EXPECT_EQ(sectionMistake("[render]\nfps = 0"),
+              "scene.toml:4:7: render.fps is 0; it must be positive");
     EXPECT_EQ(sectionMistake("[render]\nspp = 1.5"),
               "scene.toml:4:7: render.spp is a float; expected an integer");
     EXPECT_EQ(sectionMistake("[render]\nseed = -1"),

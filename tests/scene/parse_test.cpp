@@ -180,6 +180,9 @@ TEST(Parse, Cameras) {
     const auto shifted = section("[camera]\nshift = [0.25, -1]").camera;
     EXPECT_EQ(shifted.shift, (std::array<double, 2>{0.25, -1}));
     EXPECT_EQ(section("[camera]\nfov = 20").camera.shift, (std::array<double, 2>{0, 0}));
+    EXPECT_EQ(section("[camera]\nfov = 20").camera.shutter, camera::Shutter{});
+    EXPECT_EQ(section("[camera]\nshutter = 0.5").camera.shutter, (camera::Shutter{-0.25, 0.25}));
+    EXPECT_EQ(section("[camera]\nshutter = [0, 1]").camera.shutter, (camera::Shutter{0, 1}));
     const auto angleOnly = section("[camera]\nfov = 20").camera;
     EXPECT_FALSE(angleOnly.pose);
     EXPECT_EQ(angleOnly.fovY, 20);

@@ -108,6 +108,35 @@ GridSpec smallGrid(const std::string& name, double value, double background = 0,
     return grid;
 }
 
+TEST(CyclesScene, MotionBecomesThatOfCycles) {
+    const TempDir dir;
+    GridSpec velocity{.name = "vel", .type = VdbType::Vec3s, .box = {{0, 0, 0}, {3, 3, 3}}};
+    velocity.worldFromIndex = smallGrid("", 1).worldFromIndex;
+    velocity.colour = [](Vec3i) { return Vec3d{1, -2, 3}; };
+    velocity.gridClass = "unknown";
+    const auto scene = [&](const std::string& keys, const std::string& shutter) {
+        return written("[[volume]]\nfile = \"" + (dir / "a.vdb").string() + "\"\n" + keys +
+                       "[[light]]\ntype = \"environment\"\n[camera]\nshutter = " + shutter +
+                       "\n[render]\nfps = 12\n");
+    };
+    writeVdb(dir / "a.vdb", {smallGrid("density", 1), velocity});
+    const nlohmann::json moving = scene("velocity_scale = 2\n", "0.5");
+    EXPECT_EQ(moving["volumes"][0]["velocity"]["grid"], "vel");
+    EXPECT_EQ(moving["volumes"][0]["velocity"]["scale"], 2);
+    EXPECT_EQ(moving["camera"]["shutter"], 0.5);
+    EXPECT_EQ(moving["camera"]["fps"], 12);
+    EXPECT_EQ(scene("velocity_unit = \"frame\"\n", "1")["volumes"][0]["velocity"]["scale"], 12);
+    EXPECT_TRUE(scene("", "0")["volumes"][0]["velocity"].is_null());
+    expectError(ErrorKind::Input, "a shutter that is not open for as long before the frame",
+                [&] { scene("", "[0, 0.5]"); });
+    velocity.gridClass = "staggered";
+    writeVdb(dir / "a.vdb", {smallGrid("density", 1), velocity});
+    expectError(ErrorKind::Input, "staggered velocities", [&] { scene("", "0.5"); });
+    EXPECT_EQ(
+        scene("velocity_sampling = \"collocated\"\n", "0.5")["volumes"][0]["velocity"]["grid"],
+        "vel");
+}
+
 class CyclesFire : public testing::Test {
 protected:
     void SetUp() override {

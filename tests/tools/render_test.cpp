@@ -170,8 +170,12 @@ TEST_F(Render, VelocitiesThatNothingUsesAreSaid) {
     velocity.colour = [](Vec3i) { return Vec3d{1, 2, 3}; };
     velocity.gridClass = "staggered";
     writeVdb(dir / "moving.vdb", {cube(), velocity});
-    const std::string said = "moving.vdb: its velocities ('vel') are not used: there is no motion";
+    const std::string said =
+        "moving.vdb: its velocities ('vel') are not used, as the shutter opens";
     expectSaid(render({"moving.vdb"}, {"-o", file("x.exr")}), 0, {"info: ", said});
+    expectNotSaid(render({"moving.vdb"}, {"-o", file("x.exr"), "--shutter", "0.5"}), "not used");
+    expectSaid(render({"smoke.vdb"}, {"-o", file("x.exr"), "--shutter", "0.5"}), 0,
+               {"smoke.vdb: it has no velocities: it stands still while the shutter is open"});
     expectNotSaid(render({"smoke.vdb"}, {"-o", file("x.exr")}), "velocities");
     // As a colour they are used.
     expectNotSaid(renderScene("[[volume]]\nfile = \"moving.vdb\"\nscale = 1\nrepair = true\n"
@@ -353,6 +357,29 @@ TEST_F(Render, OrbitTurnsTheCamera) {
     const Vec3d middle{7.5, 7.5, 7.5}, a = eye("smoke.vdb", "0"), b = eye("smoke.vdb", "180");
     EXPECT_NEAR(a.x - middle.x, middle.x - b.x, 0.1);
     EXPECT_NEAR(a.z - middle.z, middle.z - b.z, 0.1);
+}
+
+TEST_F(Render, TheShutterIsThatOfTheCommandLine) {
+    const auto shutter = [&](const std::string& text) {
+        const ProgramResult result =
+            render({"smoke.vdb"}, {"--shutter", text, "--write-scene", file("open.toml")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return parseScene(dir / "open.toml").camera.shutter;
+    };
+    EXPECT_EQ(shutter("0.5"), (camera::Shutter{-0.25, 0.25}));
+    EXPECT_EQ(shutter("0,0.75"), (camera::Shutter{0, 0.75}));
+    EXPECT_EQ(shutter("-1,-0.5"), (camera::Shutter{-1, -0.5}));
+    for (const auto& [text, told] : std::vector<std::pair<std::string, std::string>>{
+             {"0.5,-0.5",
+              "--shutter: '0.5,-0.5' closes before it opens; expected OPEN,CLOSE such as "
+              "-0.25,0.25"},
+             {"-1", "--shutter: '-1' is not a number from 0 to 1000"},
+             {"1,2,3", "--shutter: '2,3'"}}) {
+        const ProgramResult wrong =
+            render({"smoke.vdb"}, {"--shutter", text, "--write-scene", file("open.toml")});
+        EXPECT_EQ(wrong.exitCode, 2);
+        EXPECT_NE(wrong.err.find(told), std::string::npos) << wrong.err;
+    }
 }
 
 TEST_F(Render, SmallNumbersAndWordsAreTaken) {

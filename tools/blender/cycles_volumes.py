@@ -147,6 +147,17 @@ def check_alike(description):
                                         description["albedo_grid"]))
 
 
+def move(volume, velocity):
+    """Cycles finds velocities by their name, also where it should not."""
+    if not velocity:
+        volume.velocity_grid = "no such grid"
+        volume.velocity_scale = 0.0
+        return
+    volume.velocity_grid = velocity["grid"]  # or what three are named after
+    volume.velocity_unit = "SECOND"
+    volume.velocity_scale = velocity["scale"]
+
+
 def add_grid(scene, name, description, interpolation):
     volume = bpy.data.volumes.new(name)
     volume.filepath = description["file"]
@@ -155,6 +166,7 @@ def add_grid(scene, name, description, interpolation):
     volume.render.precision = "FULL"
     volume.render.clipping = 0.0
     volume.render.space = "WORLD"  # densities as they are, whatever the object's scale
+    move(volume, description["velocity"])
     material = bpy.data.materials.new(name)
     nodes = Nodes(material)
     output = nodes.add("ShaderNodeOutputMaterial")

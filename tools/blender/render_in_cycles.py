@@ -73,7 +73,6 @@ def set_up_image(scene, settings, out):
     render.film_transparent = False
     render.use_border = False
     render.use_compositing = render.use_sequencer = False
-    render.use_motion_blur = False
     render.dither_intensity = 0.0
     if settings["threads"]:
         render.threads_mode = "FIXED"
@@ -89,7 +88,21 @@ def set_up_image(scene, settings, out):
     render.filepath = out
 
 
+def set_up_shutter(scene, description):
+    """The shutter is open around the frame, as long before it as after it."""
+    render = scene.render
+    render.use_motion_blur = description["shutter"] > 0
+    if not render.use_motion_blur:
+        return
+    render.motion_blur_shutter = description["shutter"]
+    position = render if hasattr(render, "motion_blur_position") else scene.cycles
+    position.motion_blur_position = "CENTER"
+    render.fps = max(1, round(description["fps"]))
+    render.fps_base = render.fps / description["fps"]
+
+
 def add_camera(scene, description):
+    set_up_shutter(scene, description)
     camera = bpy.data.cameras.new("camera")
     camera.sensor_fit = "VERTICAL"
     camera.shift_x, camera.shift_y = description["shift"]

@@ -11,6 +11,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
 #include "woodcock/image/image_format.h"
+#include "woodcock/scene/animation.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/scene_file.h"
@@ -57,9 +58,12 @@ std::vector<std::string> sunOverrides(const scene::SceneDescription& scene,
 scene::SceneDescription parseAtAnySize(const SceneInput& input,
                                        std::vector<std::string> overrides) {
     scene::SceneDescription scene = parseWith(input, overrides);
-    if (!input.sun) return scene;
-    for (std::string& set : sunOverrides(scene, *input.sun)) overrides.push_back(std::move(set));
-    return parseWith(input, overrides);
+    if (input.sun) {
+        for (std::string& set : sunOverrides(scene, *input.sun))
+            overrides.push_back(std::move(set));
+        scene = parseWith(input, overrides);
+    }
+    return input.frame ? scene::atFrame(scene, *input.frame) : scene;
 }
 
 }  // namespace
@@ -115,13 +119,24 @@ std::vector<std::string> velocityNotes(const scene::SceneDescription& scene,
                                        const scene::LoadedScene& loaded) {
     std::set<std::filesystem::path> told;
     std::vector<std::string> notes;
-    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        if (const std::string& grid = loaded.volumes[i].velocities;
-            !grid.empty() && told.insert(scene.volumes[i].file).second)
+    const bool open = scene.camera.shutter != camera::Shutter{};
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+        const std::filesystem::path& file = scene.volumes[i].file;
+        const scene::LoadedVolume& volume = loaded.volumes[i];
+        if (file.empty() || volume.velocity || !told.insert(file).second) continue;
+        const std::string& grid = volume.velocities;
+        if (open && scene.needsVelocities(scene.volumes[i]))
             notes.push_back(fmt::format(
-                "{}: its velocities ('{}') are not used: there is no motion blur yet, so what "
-                "moves is drawn sharp",
-                scene.volumes[i].file.string(), grid));
+                "{}: {}: it stands still while the shutter is open", file.string(),
+                grid.empty()
+                    ? "it has no velocities"
+                    : fmt::format("its velocities ('{}') are 0, or not three of them", grid)));
+        else if (!open && !grid.empty())
+            notes.push_back(fmt::format(
+                "{}: its velocities ('{}') are not used, as the shutter opens for no time; "
+                "--shutter 0.5 blurs what moves",
+                file.string(), grid));
+    }
     return notes;
 }
 

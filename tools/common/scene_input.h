@@ -21,6 +21,7 @@ struct SceneInput {
     std::optional<ImageSize> size;                      ///< of --res
     std::optional<std::pair<double, double>> sun = {};  ///< of --sun: elevation and azimuth
     scene::Look look = scene::Look::Picture;            ///< of what is chosen
+    std::optional<double> frame = {};                   ///< of --frame; absent: 0
     bool overlay = false;  ///< of --overlay: files that look like frames belong into one picture
     bool frames = false;   ///< names of volumes may hold a place for a frame's number
 };
@@ -34,7 +35,7 @@ bool isSceneFile(const std::filesystem::path& file);
 /// several frames to be drawn.
 void checkInput(const SceneInput& input);
 
-/// The scene, at the size that is asked for.
+/// The scene, at the size and the frame that are asked for.
 scene::SceneDescription parseInput(const SceneInput& input);
 
 /// All files that are read for a scene: those that were given, and those that it names.

@@ -8,6 +8,7 @@
 #include "tools/cycles/json.h"
 #include "tools/cycles/surfaces.h"
 #include "woodcock/grid/vdb/file.h"
+#include "woodcock/grid/velocity.h"
 #include "woodcock/image/film.h"
 #include "woodcock/image/write_exr.h"
 #include "woodcock/light/graded_image.h"
@@ -30,6 +31,7 @@ public:
         : volume_(scene.volumes[index]),
           loaded_(loaded.volumes[index]),
           places_(scene.places),
+          fps_(scene.render.fps),
           name_(fmt::format("volume[{}]", index)),
           scatters_(scene.render.maxScatterings != 0) {}
 
@@ -76,7 +78,26 @@ private:
         grid["matrix"] = toJson(volume_.worldFromObject);
         grid["object_from_index"] = toJson(field.objectFromIndex);
         grid["grid"] = grid["albedo_grid"] = grid["blackbody"] = nullptr;
+        grid["velocity"] = velocityJson();
         return grid;
+    }
+
+    /// Null where the volume stands still. Per second: Cycles takes velocities per frame as they
+    /// are, whatever the shutter.
+    json velocityJson() const {
+        if (!loaded_.velocity) return nullptr;
+        const scene::VelocityDescription& v = volume_.velocity;
+        for (int i = 0; i < 3; ++i)
+            if (loaded_.velocity->source(i).offset != Vec3d{})
+                throw cyclesRefusal(place(v.sampling),
+                                    "staggered velocities: it reads them in the middle of voxels, "
+                                    "as velocity_sampling = \"collocated\" does");
+        std::string grid = loaded_.velocities;
+        if (const auto comma = grid.find(','); comma != std::string::npos) {
+            grid.resize(comma - 1);  // without the x of the first of three
+            if (grid.ends_with('.') || grid.ends_with('_')) grid.pop_back();
+        }
+        return {{"grid", grid}, {"scale", v.timeOfFrame(fps_) * fps_}};
     }
 
     /// The object among this volume's whose voxels are those of a grid; a new one without any.
@@ -150,6 +171,7 @@ private:
     const scene::VolumeDescription& volume_;
     const scene::LoadedVolume& loaded_;
     const scene::Places& places_;
+    double fps_;
     std::string name_;
     bool scatters_;
 };
@@ -302,6 +324,14 @@ json cameraJson(const scene::SceneDescription& scene) {
              {"shift", camera.shift},
              {"clip_start", 1e-6},
              {"clip_end", 1e9}};
+    const camera::Shutter& shutter = camera.shutter;
+    if (shutter.open != -shutter.close)
+        throw cyclesRefusal(
+            scene::findPlace(scene.places, "camera." + scene::keyName(camera, camera.shutter)),
+            "a shutter that is not open for as long before the frame as after it, [{}, {}]",
+            shutter.open, shutter.close);
+    out["shutter"] = shutter.length();
+    out["fps"] = scene.render.fps;
     if (orthographic)
         out["height"] = *camera.height;
     else
@@ -374,6 +404,9 @@ std::string cyclesScene(const scene::SceneDescription& scene, const scene::Loade
     if (scene.render.approximations.transparentShadows)
         throw cyclesRefusal(placeInRender(scene, scene.render.approximations.transparentShadows),
                             "Woodcock's transparent shadows");
+    if (scene.camera.shutter.length() > 0 && !scene.animation.empty())
+        throw cyclesRefusal(scene::findPlace(scene.places, "camera.shutter"),
+                            "animated values while the shutter is open");
     json volumes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
         VolumeWriter(scene, loaded, i).addTo(volumes);

@@ -98,6 +98,19 @@ void addRendering(CLI::App& command, RenderOptions& o) {
     for (CLI::Option* option : options) option->group("Rendering");
 }
 
+/// "0.5" or "-0.25,0.25", as the scene file has it.
+std::string parseShutter(const std::string& text) {
+    constexpr double longest = 1000;  // frames
+    const auto comma = text.find(',');
+    if (comma == std::string::npos) return fmt::format("{}", parseNumber(text, 0, longest));
+    const double open = parseNumber(text.substr(0, comma), -longest, longest);
+    const double close = parseNumber(text.substr(comma + 1), -longest, longest);
+    if (close < open)
+        throw usageError("'{}' closes before it opens; expected OPEN,CLOSE such as -0.25,0.25",
+                         text);
+    return fmt::format("[{}, {}]", open, close);
+}
+
 void addScene(CLI::App& command, RenderOptions& o) {
     std::vector<CLI::Option*> options{
         addList(command, "--set", o.overrides,
@@ -113,6 +126,15 @@ void addScene(CLI::App& command, RenderOptions& o) {
             "Turn the camera to its right around what it looks at, for turntables. A camera that "
             "Woodcock chooses then stands far enough for all sides")
             ->type_name("DEGREES"),
+        addParsed(
+            command, "--frame", o.frame,
+            [](const std::string& text) { return parseNumber(text, -1e9, 1e9); },
+            "The frame of a scene's animated values. It may lie between two frames; default 0")
+            ->type_name("FRAME"),
+        addParsed(command, "--shutter", o.shutter, parseShutter,
+                  "For how many frames the shutter is open, around the frame: 0.5 for 180 degrees. "
+                  "Or when it opens and closes, in frames after that frame")
+            ->type_name("LENGTH|OPEN,CLOSE"),
         addOverlay(command, o.overlay),
         command.add_flag(
             "--plain", o.plain,
@@ -187,8 +209,10 @@ void RenderOptions::addTo(CLI::App& command) {
 }
 
 SceneInput RenderOptions::sceneInput() const {
-    SceneInput input{inputs, overrides, size, sun, choicesLook(), overlay, takesFrames()};
+    SceneInput input{inputs, overrides, size, sun, choicesLook(), {}, overlay, takesFrames()};
+    input.frame = frame;
     if (orbit) input.overrides.push_back(fmt::format("camera.orbit={}", *orbit));
+    if (!shutter.empty()) input.overrides.push_back("camera.shutter=" + shutter);
     if (quality && !choosesQuality())
         input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);
     return input;

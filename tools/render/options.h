@@ -34,6 +34,8 @@ struct RenderOptions {
     std::vector<std::string> overrides;
     std::optional<std::pair<double, double>> sun;  ///< elevation, azimuth; degrees
     std::optional<double> orbit;                   ///< degrees
+    std::optional<double> frame;
+    std::string shutter;  ///< as a scene file has it; empty: its own
     std::optional<grid::Storage> storage;
     bool repair = false, overlay = false, plain = false;
 

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "tools/common/progress.h"
+#include "woodcock/grid/motion.h"
+#include "woodcock/grid/moved_ranges.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/render/view_depth.h"
 #include "woodcock/scene/build.h"
@@ -59,6 +61,27 @@ std::string PictureWarnings::ofCamera(const render::Scene& scene) {
         "out of it, leave the camera out of the scene to have one chosen, or lower the volume's "
         "scale",
         camera_, view->meanFreePath, view->depth);
+}
+
+std::vector<std::string> PictureWarnings::ofMotion(const render::Scene& scene) const {
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < scene.medium.parts.size(); ++i) {
+        const medium::MediumPart& part = scene.medium.parts[i];
+        if (!part.moved()) continue;
+        const grid::Motion& motion = *part.description().motion;
+        const Vec3d size = part.field()->extent().size();
+        const double widest = std::max({size.x, size.y, size.z});
+        const double voxels = motion.mostVoxels();
+        if (!(voxels > widest)) continue;
+        const Vec3i at = motion.velocity().fastest().voxel;
+        warnings.push_back(fmt::format(
+            "{}: its velocity at voxel [{}, {}, {}] moves by {:.3g} voxels while the shutter is "
+            "open, and the volume is {:.3g} wide. Nothing is cut off, but {:.2g} % of its blocks "
+            "have loose bounds, which take time. Look at velocity_unit, velocity_scale and "
+            "render.fps, or at that voxel",
+            volumeName(i), at.x, at.y, at.z, voxels, widest, 100 * part.moved()->looseShare()));
+    }
+    return warnings;
 }
 
 std::string PictureWarnings::whyNoLight(const render::Scene& scene,

@@ -19,6 +19,8 @@ public:
 
     /// That the camera stands inside of something dense; empty: it does not.
     std::string ofCamera(const render::Scene& scene);
+    /// Of each volume, that something moves further than the volume is wide: what that costs.
+    std::vector<std::string> ofMotion(const render::Scene& scene) const;
     /// That the finished picture is black, and the likeliest reason; empty: it is not.
     std::string ofPicture(const render::Scene& scene, const render::RenderResult& result) const;
 

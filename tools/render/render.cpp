@@ -607,6 +607,7 @@ private:
         for (const std::string& warning : render::precisionWarnings(scene))
             spdlog::warn("{}", warning);
         warnUnlessEmpty(warnings.ofCamera(scene));
+        for (const std::string& warning : warnings.ofMotion(scene)) spdlog::warn("{}", warning);
 
         checkMemoryLeft(settings_, description_, outputs);
         if (!place_ || place_->index == 0) reportNeeds(scene);

@@ -47,7 +47,9 @@ std::string NumberRange::demand(double v) const {
 
 std::string placeOf(const toml::source_region& source) {
     const std::string path = source.path ? *source.path : std::string();
-    if (path.starts_with(overrideMark)) return path;
+    const bool whole = path.starts_with(overrideMark) || path.starts_with(frameMark.substr(2)) ||
+                       path.find(frameMark) != std::string::npos;
+    if (whole) return path;
     return fmt::format("{}:{}:{}", path, source.begin.line, source.begin.column);
 }
 
@@ -87,6 +89,11 @@ std::string readTomlFile(const std::filesystem::path& file, std::string_view wha
 
 Error TomlValue::wrongType(std::string_view expected) const {
     return error("is {}; expected {}", typeName(*node_), expected);
+}
+
+bool TomlValue::isAtFrame() const {
+    const auto& path = node_->source().path;
+    return path && path->find(frameMark) != std::string::npos;
 }
 
 double TomlValue::number(NumberRange range) const {

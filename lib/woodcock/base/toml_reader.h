@@ -22,7 +22,11 @@ namespace woodcock {
 /// The source path of values that come from an override starts with this.
 inline constexpr std::string_view overrideMark = "--set ";
 
-/// "scene.toml:12:9", or the whole override ("--set volume[0].g=1.5") where the text is one.
+/// That of values of an animated key ends with this and the frame: "scene.toml:12:9, at frame 24".
+inline constexpr std::string_view frameMark = ", at frame ";
+
+/// "scene.toml:12:9", or the whole override ("--set volume[0].g=1.5") where the text is one, or
+/// with the frame of an animated value.
 std::string placeOf(const toml::source_region& source);
 
 /// The numbers that a key accepts; the default accepts every finite number.
@@ -59,6 +63,8 @@ public:
     bool isTable() const { return node_->is_table(); }
     bool isText() const { return node_->is_string(); }
     bool isArray() const { return node_->is_array(); }
+    /// Whether it is the value of an animated key at a frame.
+    bool isAtFrame() const;
 
     double number(NumberRange range = {}) const;
     int integer(int lower, int upper) const;

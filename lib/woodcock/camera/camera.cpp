@@ -3,7 +3,21 @@
 
 namespace woodcock::camera {
 
+Camera Camera::at(float time) const {
+    Camera camera = *this;
+    camera.motion.reset();
+    if (!motion) return camera;
+    if (motion->pose) camera.worldFromCamera = motion->pose->at(double{time});
+    if (motion->lens) {
+        const Lens lens = motion->lens->at(double{time});
+        camera.fovY = lens.fovY, camera.height = lens.height;
+        camera.shiftX = lens.shiftX, camera.shiftY = lens.shiftY;
+    }
+    return camera;
+}
+
 CameraRay Camera::ray(double x, double y, int pixelWidth, int pixelHeight, float time) const {
+    if (motion) return at(time).ray(x, y, pixelWidth, pixelHeight, time);
     const double h = pixelHeight;
     const double sx = (2 * x - pixelWidth) / h + 2 * shiftX;
     const double sy = (h - 2 * y) / h + 2 * shiftY;  // +-1 at top and bottom, where not shifted

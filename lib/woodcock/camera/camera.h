@@ -2,6 +2,7 @@
 #pragma once
 
 #include "woodcock/base/affine.h"
+#include "woodcock/camera/camera_motion.h"
 
 namespace woodcock::camera {
 
@@ -22,7 +23,11 @@ struct Camera {
     /// How far the film is moved to the right and upwards, in heights of the picture (a lens
     /// shift): the camera sees what lies there without turning.
     double shiftX = 0, shiftY = 0;
+    /// How it moves within the shutter: then all of this is as at the frame. Null: it stands still.
+    std::shared_ptr<const CameraMotion> motion = {};
 
+    /// As it is at a time within the shutter, and without motion.
+    Camera at(float time) const;
     /// The ray through film position (x, y), in pixels of an image of width x height, y down, at a
     /// time within the shutter.
     CameraRay ray(double x, double y, int width, int height, float time = 0) const;

@@ -2,6 +2,7 @@
 #include "woodcock/grid/grid_roles.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <limits>
@@ -191,6 +192,77 @@ FoundGrid findGrid(const VdbFile& file, GridRole role) {
     throw inputError("no {} grid in {} (looked for: {}); it has: {}; name the grid to use{}",
                      roleName(role), file.path.string(), names, describeGrids(file),
                      points ? "; `woodcock convert IN OUT.vdb` makes a density of points" : "");
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 3> componentEndings{".", "_", ""};
+
+/// The scalar grids that `base` and three endings name; none unless all three are there.
+VelocityGrids threeComponents(const VdbFile& file, std::string_view base) {
+    for (const std::string_view ending : componentEndings) {
+        VelocityGrids grids;
+        for (const char axis : {'x', 'y', 'z'}) {
+            const std::string name = lowerCase(base) + std::string(ending) + axis;
+            const auto* grid =
+                firstWhere(file, [&](const GridListing& g) { return lowerCase(g.name) == name; });
+            if (grid && grid->channels == 1) grids.push_back(*grid);
+        }
+        if (grids.size() == 3) return grids;
+    }
+    return {};
+}
+
+/// "vel" of "vel.x"; empty where the name does not end like that.
+std::string baseOfComponent(const std::string& name) {
+    const std::string lower = lowerCase(name);
+    if (lower.size() < 2 || lower.back() != 'x') return {};
+    const bool separated =
+        lower.size() > 2 &&
+        std::string_view("._").find(lower[lower.size() - 2]) != std::string_view::npos;
+    return name.substr(0, name.size() - (separated ? 2 : 1));
+}
+
+std::string vectorGrids(const VdbFile& file) {
+    std::vector<std::string> names;
+    for (const GridListing& grid : file.grids)
+        if (grid.usable() && grid.channels == 3) names.push_back(grid.uniqueName);
+    return names.empty() ? "it has no vector grids" : "vector grids there: " + joinNames(names);
+}
+
+}  // namespace
+
+VelocityGrids findVelocities(const VdbFile& file, std::string_view name) {
+    VelocityGrids three = threeComponents(file, name);
+    const bool exists = std::any_of(file.grids.begin(), file.grids.end(), [&](const auto& g) {
+        return lowerCase(g.uniqueName) == lowerCase(name) || lowerCase(g.name) == lowerCase(name);
+    });
+    if (!exists && !three.empty()) return three;
+    const GridListing grid = findGrid(file, name).grid;
+    if (grid.channels == 3) return {grid};
+    if (const std::string base = baseOfComponent(grid.name); !base.empty()) {
+        three = threeComponents(file, base);
+        if (!three.empty()) return three;
+    }
+    throw inputError(
+        "grid '{}' in {} is of type {}; velocities are a vector grid, or three scalar ones such as "
+        "vel.x, vel.y and vel.z; {}",
+        grid.uniqueName, file.path.string(), grid.valueType, vectorGrids(file));
+}
+
+VelocityGrids findVelocities(const VdbFile& file) {
+    for (std::string_view name : namesOf(GridRole::Velocity)) {
+        const auto* grid = firstWhere(file, [&](const GridListing& g) {
+            return lowerCase(g.name) == name && g.channels == 3;
+        });
+        if (grid) return {*grid};
+    }
+    for (std::string_view name : namesOf(GridRole::Velocity))
+        if (VelocityGrids three = threeComponents(file, name); !three.empty()) return three;
+    const auto* onFaces = firstWhere(file, [](const GridListing& g) {
+        return g.channels == 3 && g.gridClass == GridClass::Staggered;
+    });
+    return onFaces ? VelocityGrids{*onFaces} : VelocityGrids{};
 }
 
 bool isNamedFor(const GridListing& grid, GridRole role) {

@@ -27,6 +27,16 @@ FoundGrid findGrid(const VdbFile& file, std::string_view name);
 /// the file holds.
 FoundGrid findGrid(const VdbFile& file, GridRole role);
 
+/// The grids that hold a volume's velocities: one of vectors, or three with a component each.
+using VelocityGrids = std::vector<GridListing>;
+
+/// Those of this name: a vector grid, or the name before the endings of three scalar ones (".x",
+/// "_x", "x", in any case), or the first of these. Errors: Input, where there is no such grid,
+/// where it is of another kind, or where one of three is missing.
+VelocityGrids findVelocities(const VdbFile& file, std::string_view name);
+/// Those of the usual names, or of staggered vectors; empty: there are none.
+VelocityGrids findVelocities(const VdbFile& file);
+
 /// Whether the grid's name is one of the role's usual names, in any case.
 bool isNamedFor(const GridListing& grid, GridRole role);
 

@@ -91,10 +91,10 @@ struct Split {
     bool finest = false;  ///< 64 cells of 2^3 voxels, else 8 of 4^3
 };
 
-/// The cheapest way to split a block whose own cost is `whole`; no cells where none is cheaper.
-Split cheapestSplit(const Field& field, Vec3i block, double whole,
+/// The cheapest way to split a block whose own cost is `whole`, of its 64 finest cells; no cells
+/// where none is cheaper.
+Split cheapestSplit(std::array<Range, 64> fine, double whole,
                     const MajorantGrid::Options& options) {
-    std::array<Range, 64> fine = finestRanges(field, block);
     std::array<Range, 8> coarse = halved(fine);
     double fineCost = 0, coarseCost = 0;
     for (Range& r : fine) {
@@ -172,15 +172,18 @@ private:
 
 }  // namespace
 
-MajorantGrid::MajorantGrid(const Field& field, const Options& options) {
-    table_ = blockRanges(field).map<Entry>([&](Range r) {
-        return Entry{scaled(r, options), blockLog2};
-    });
-    splitLooseBlocks(field, options);
+MajorantGrid::MajorantGrid(const Field& field, const Options& options)
+    : MajorantGrid(
+          blockRanges(field), [&](Vec3i block) { return finestRanges(field, block); }, options) {}
+
+MajorantGrid::MajorantGrid(const BlockTable<Range>& blocks, const FinestRanges& finest,
+                           const Options& options) {
+    table_ = blocks.map<Entry>([&](Range r) { return Entry{scaled(r, options), blockLog2}; });
+    splitLooseBlocks(finest, options);
     mergeBlocks(options);
 }
 
-void MajorantGrid::splitLooseBlocks(const Field& field, const Options& options) {
+void MajorantGrid::splitLooseBlocks(const FinestRanges& finest, const Options& options) {
     if (options.smallestLog2 >= blockLog2) return;
     constexpr double leastGain = 2 * stepCost;
     const auto costOf = [&](const Entry& e) {
@@ -194,7 +197,7 @@ void MajorantGrid::splitLooseBlocks(const Field& field, const Options& options) 
     std::vector<Split> splits(blocks.size());
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
         const double whole = costOf(*table_.find(blocks[i]).value);
-        splits[i] = cheapestSplit(field, blocks[i], whole, options);
+        splits[i] = cheapestSplit(finest(blocks[i]), whole, options);
     });
     std::size_t parts = 0;
     for (const Split& split : splits) parts += split.cells.size();

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "woodcock/grid/block_table.h"
@@ -32,8 +33,14 @@ public:
         int log2Size;
     };
 
+    /// Bounds of the 64 cells of 2^3 voxels in a block, x first.
+    using FinestRanges = std::function<std::array<Range, 64>(Vec3i block)>;
+
     MajorantGrid() = default;
     MajorantGrid(const Field& field, const Options& options);
+    /// Of bounds that were found otherwise: of all blocks, and of the parts of one.
+    MajorantGrid(const BlockTable<Range>& blocks, const FinestRanges& finest,
+                 const Options& options);
 
     Cell find(Vec3i voxel) const {
         const auto found = table_.find({voxel.x >> 3, voxel.y >> 3, voxel.z >> 3});
@@ -71,7 +78,7 @@ private:
     }
 
     /// Splits bricks whose bounds are loose enough to pay for it.
-    void splitLooseBlocks(const Field& field, const Options& options);
+    void splitLooseBlocks(const FinestRanges& finest, const Options& options);
     /// Merges blocks into larger cells, region by region, where a step that is saved is worth the
     /// looser bounds.
     void mergeBlocks(const Options& options);

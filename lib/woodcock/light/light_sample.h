@@ -33,6 +33,7 @@ struct ScatterPoint {
     Vec3d position;
     Vec3d forward;  ///< unit: the way the path came along
     const medium::PhaseFunction* phase = &medium::isotropicScattering;
+    float time = 0;  ///< of the path, within the shutter
 
     /// The phase function's density, per steradian, towards a unit vector.
     double phaseTowards(Vec3d towards) const { return phase->value(dot(forward, towards)); }

@@ -5,7 +5,11 @@
 
 namespace woodcock::light {
 
-LightSet::LightSet(std::vector<Light> lights) : lights_(std::move(lights)) {
+LightSet::LightSet(std::vector<Light> lights, Motions motions)
+    : lights_(std::move(lights)),
+      motions_(std::move(motions)),
+      moves_(std::any_of(motions_.begin(), motions_.end(),
+                         [](const auto& m) { return m != nullptr; })) {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const auto index = static_cast<int>(i);
         const LightTraits& traits = traits_.emplace_back(lights_[i].traits());
@@ -21,6 +25,27 @@ const MeshLight* LightSet::mesh() const {
     return mesh_ < 0 ? nullptr : &std::get<MeshLight>(lights_[static_cast<std::size_t>(mesh_)]);
 }
 
+void LightSet::toRest(const MovingTransform& motion, float time, Vec3d& point, Vec3d& direction) {
+    const Affine3d rest = motion.at(double{time}).inverse();
+    point = rest.point(point), direction = rest.vector(direction);
+}
+
+LightSample LightSet::sampleMoved(int light, const MovingTransform& motion, Vec3d from, double u0,
+                                  double u1, float time) const {
+    const Affine3d there = motion.at(double{time});
+    LightSample s = (*this)[light].sample(there.inverse().point(from), u0, u1);
+    s.direction = there.vector(s.direction);
+    return s;
+}
+
+double LightSet::importance(int light, const ScatterPoint& at) const {
+    const auto* motion = motionOf(light);
+    if (!motion) return (*this)[light].importance(at);
+    ScatterPoint atRest = at;
+    toRest(*motion, at.time, atRest.position, atRest.forward);
+    return (*this)[light].importance(atRest);
+}
+
 void LightSet::pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const {
     if (sampled_.size() == 1) {
         probabilities[0] = 1;
@@ -28,7 +53,7 @@ void LightSet::pickProbabilities(const ScatterPoint& at, std::span<float> probab
     }
     double total = 0;
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
-        const double p = (*this)[sampled_[i]].importance(at);
+        const double p = importance(sampled_[i], at);
         probabilities[i] = static_cast<float>(std::min(p, 1e30));
         total += probabilities[i];
     }

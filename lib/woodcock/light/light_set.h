@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "woodcock/base/moving_transform.h"
 #include "woodcock/light/light.h"
 
 namespace woodcock::light {
 
-/// The lights of a scene, and the choice among them.
+/// The lights of a scene, and the choice among them. Local lights may move within the shutter, by
+/// rotations and translations: a light is asked where it is at rest, for points that were taken
+/// there. Times are those of paths, within the shutter.
 class LightSet {
 public:
     LightSet() = default;
-    explicit LightSet(std::vector<Light> lights);
+    /// `motions`, of each light or of none: from where the light is at rest to where it is at a
+    /// time; null: it stands still.
+    using Motions = std::vector<std::shared_ptr<const MovingTransform>>;
+    explicit LightSet(std::vector<Light> lights, Motions motions = {});
 
     const std::vector<Light>& lights() const { return lights_; }
     const Light& operator[](int light) const { return lights_[static_cast<std::size_t>(light)]; }
+    /// Its position is that at rest: see position().
     const LightTraits& traits(int light) const { return traits_[static_cast<std::size_t>(light)]; }
+    bool moves() const { return moves_; }  ///< whether any light does
 
     /// Indices of the lights that next-event estimation samples: all but constant environments,
     /// which the phase function samples perfectly by itself.
@@ -36,12 +45,35 @@ public:
     /// zero.
     void pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const;
 
-    LightSample sample(int light, Vec3d from, double u0, double u1) const {
+    LightSample sample(int light, Vec3d from, double u0, double u1, float time = 0) const {
+        if (const auto* motion = motionOf(light)) [[unlikely]]
+            return sampleMoved(light, *motion, from, u0, u1, time);
         return (*this)[light].sample(from, u0, u1);
     }
     /// 0 for emissive surfaces: a direction does not say which triangle it meets. Ask mesh().
-    double pdf(int light, Vec3d from, Vec3d direction) const {
+    double pdf(int light, Vec3d from, Vec3d direction, float time = 0) const {
+        if (const auto* motion = motionOf(light)) [[unlikely]]
+            toRest(*motion, time, from, direction);
         return (*this)[light].pdf(from, direction);
+    }
+    /// Where a ray meets the light; see Light::meet().
+    LightHit meet(int light, Vec3d origin, Vec3d direction, float time = 0) const {
+        if (const auto* motion = motionOf(light)) [[unlikely]]
+            toRest(*motion, time, origin, direction);
+        return (*this)[light].meet(origin, direction);
+    }
+    /// See Light::narrow().
+    void narrow(int light, Vec3d origin, Vec3d direction, float time, double& t0,
+                double& t1) const {
+        if (const auto* motion = motionOf(light)) [[unlikely]]
+            toRest(*motion, time, origin, direction);
+        (*this)[light].narrow(origin, direction, t0, t1);
+    }
+    /// Of a local light; see LightTraits.
+    std::optional<Vec3d> position(int light, float time = 0) const {
+        const std::optional<Vec3d>& at = traits(light).position;
+        const auto* motion = motionOf(light);
+        return motion && at ? motion->at(double{time}).point(*at) : at;
     }
 
     /// Radiance that an infinitely far light (environment, a sun's disc) sends from a direction
@@ -55,7 +87,17 @@ public:
     float typicalRadiance(const Box3d& bounds) const;
 
 private:
+    const MovingTransform* motionOf(int light) const {
+        return moves_ ? motions_[static_cast<std::size_t>(light)].get() : nullptr;
+    }
+    LightSample sampleMoved(int light, const MovingTransform& motion, Vec3d from, double u0,
+                            double u1, float time) const;
+    static void toRest(const MovingTransform& motion, float time, Vec3d& point, Vec3d& direction);
+    double importance(int light, const ScatterPoint& at) const;
+
     std::vector<Light> lights_;
+    Motions motions_;
+    bool moves_ = false;
     std::vector<LightTraits> traits_;
     std::vector<int> sampled_, local_, meetable_, distant_;
     int mesh_ = -1;

@@ -2,9 +2,18 @@
 #include "woodcock/medium/emission.h"
 
 #include "woodcock/base/error.h"
+#include "woodcock/grid/moved_ranges.h"
 #include "woodcock/medium/look_up.h"
 
 namespace woodcock::medium {
+
+void moveToRest(const MovingTransform& motion, float time, Vec3d& origin, Vec3d& direction) {
+    const Affine3d rest = motion.at(double{time}).inverse();
+    origin = rest.point(origin), direction = rest.vector(direction);
+}
+void moveToRest(const MovingTransform& motion, float time, Vec3d& point) {
+    point = motion.at(double{time}).inverse().point(point);
+}
 
 EmissionPart::EmissionPart(Description description) : d_(std::move(description)) {
     const double determinant = d_.worldFromIndex.determinant();
@@ -29,17 +38,27 @@ EmissionPart::EmissionPart(Description description) : d_(std::move(description))
                 "is infinitely bright",
                 field.background(c));
         }
-    support_ = field.support(), extent_ = field.extent();
     // As if the brightest voxel were one collision wide: cells that separate bright from dark, and
     // few others.
     const double largest = std::max(std::abs(field.range().min), std::abs(field.range().max));
-    majorants_ = grid::MajorantGrid(field, {largest > 0 ? 1 / largest : 1, 1, 1});
+    const grid::MajorantGrid::Options options{largest > 0 ? 1 / largest : 1, 1, 1};
+    if (d_.motion) {
+        const grid::MovedRanges moved(d_.field, d_.motion);
+        support_ = extent_ = moved.support();
+        background_ = 0;
+        majorants_ = {moved.blocks(), [&](Vec3i block) { return moved.finest(block); }, options};
+    } else {
+        support_ = field.support(), extent_ = field.extent();
+        majorants_ = grid::MajorantGrid(field, options);
+    }
 }
 
 Rgb EmissionPart::value(Vec3d world, float time) const {
+    if (d_.movement) moveToRest(*d_.movement, time, world);
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return support_.contains(p) ? d_.scale : Rgb(0.0f);
-    if (extent_.empty() || (d_.field->limits() && !extent_.contains(p))) return Rgb(0.0f);
+    const bool ends = d_.field->limits() || d_.motion;
+    if (extent_.empty() || (ends && !extent_.contains(p))) return Rgb(0.0f);
     return d_.scale * glowAt(*this, p, time);
 }
 
@@ -49,7 +68,7 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
     pieces_.clear();
     double first = std::numeric_limits<double>::infinity();
     for (const EmissionPart& part : parts)
-        part.walk(q.origin, q.direction, q.tMax, [&](double t0, double t1, double bound) {
+        part.walk(q.origin, q.direction, q.time, q.tMax, [&](double t0, double t1, double bound) {
             pieces_.push_back({.part = &part, .t0 = t0, .t1 = t1, .bound = bound});
             first = std::min(first, t0);
         });

@@ -7,12 +7,22 @@
 #include <vector>
 
 #include "woodcock/base/affine.h"
+#include "woodcock/base/moving_transform.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/cell_walk.h"
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
 
+namespace woodcock::grid {
+class Motion;
+}
+
 namespace woodcock::medium {
+
+/// Takes a point, or a ray, from the world at a time to the world in which what moves is at rest.
+/// Out of line: only what moves pays for it.
+void moveToRest(const MovingTransform& motion, float time, Vec3d& origin, Vec3d& direction);
+void moveToRest(const MovingTransform& motion, float time, Vec3d& point);
 
 /// One additive part of the emission: q(x) = scale x f(x), radiance per world unit of length. It
 /// does not depend on absorption. It is zero outside of its field's support or, where the field has
@@ -25,19 +35,27 @@ public:
         Box3d box;                ///< of object space; only without a field
         Affine3d worldFromIndex;  ///< or world from object, without a field
         Rgb scale{1.0f};          ///< q where f is 1
+        std::shared_ptr<const grid::Motion> motion = {};  ///< of the field; null: it stands still
+        std::shared_ptr<const MovingTransform> movement = {};  ///< as of MediumPart::Description
     };
     /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
     /// field has a background without limits: a medium that emits everywhere is infinitely bright.
     explicit EmissionPart(Description description);
 
     const Description& description() const { return d_; }
-    Box3d worldBounds() const { return d_.worldFromIndex.box(extent_); }
+    /// World box, of the whole shutter.
+    Box3d worldBounds() const {
+        const Box3d box = d_.worldFromIndex.box(extent_);
+        return d_.movement && !extent_.empty() ? d_.movement->box(box) : box;
+    }
     /// q at a world position and a time within the shutter, by full trilinear interpolation.
     Rgb value(Vec3d world, float time = 0) const;
-    /// Calls visit(t0, t1, bound) for the pieces of a ray before tMax where q may differ from 0;
+    /// Calls visit(t0, t1, bound) for the pieces of a ray before tMax where q may differ from 0 at
+    /// its time;
     /// no channel of |q| exceeds `bound` there.
     template <class F>
-    void walk(Vec3d origin, Vec3d direction, double tMax, F&& visit) const {
+    void walk(Vec3d origin, Vec3d direction, float time, double tMax, F&& visit) const {
+        if (d_.movement) moveToRest(*d_.movement, time, origin, direction);
         const grid::IndexRay ray{indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
         double begin = 0, end = tMax;
         if (extent_.empty() || !grid::clip(ray, extent_, begin, end)) return;

@@ -23,7 +23,8 @@ Vec3d densityNormal(const Medium& medium, Vec3d world, float time) {
         for (int axis = 0; axis < 3; ++axis) {
             Vec3d step;
             step[axis] = 1;
-            step = step * (1 / length(part.indexRay({}, step).direction));  // a voxel, in world
+            step =
+                step * (1 / length(part.indexRay({}, step, time).direction));  // a voxel, in world
             const double difference = double{part.sigmaT(world + step, time).mean()} -
                                       double{part.sigmaT(world - step, time).mean()};
             gradient[axis] += difference / (2 * step[axis]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "woodcock/grid/motion.h"
 #include "woodcock/medium/medium.h"
 
 namespace woodcock::medium {
@@ -8,8 +9,9 @@ namespace woodcock::medium {
 // A part of the medium at (position, time). Tracking, marching, emission, equiangular points and
 // layers all ask here.
 //
-// Time is that of the path, from 0 to 1 within the shutter. Parts stand still, so nothing reads it
-// yet. One that moves is read where its matter was.
+// Time is that of the path, from 0 to 1 within the shutter. Index positions of a part whose
+// transform moves are those of that time: see MediumPart::indexRay(). A part that moves by
+// velocities is read where its matter was at the time of its file: see grid::Motion.
 
 /// How a field is read: one voxel, chosen at random by the weights of the interpolation. For values
 /// that enter linearly: the noise then causes no bias.
@@ -34,25 +36,32 @@ Spectrum<N> read(const grid::Field& field, Vec3d index, InFull) {
 
 /// f of a part that has a field, at an index position within the part's extent.
 template <int N, class How>
-[[gnu::always_inline]] inline Spectrum<N> densityAt(const MediumPart& part, Vec3d index,
-                                                    float /*time*/, How how) {
-    const grid::Field& field = *part.field();
-    if (part.unbounded()) index = field.nearSupport(index);  // else it is inside
-    return read<N>(field, index, how);
+[[gnu::always_inline]] inline Spectrum<N> densityAt(const MediumPart& part, Vec3d index, float time,
+                                                    How how) {
+    if (part.readElsewhere()) [[unlikely]]
+        if (!part.placedInField(index, time)) return Spectrum<N>(0.0f);
+    return read<N>(*part.field(), index, how);
 }
 
 /// The albedo of a part that has a grid of it.
 template <int N, class How>
-[[gnu::always_inline]] inline Spectrum<N> albedoAt(const MediumPart& part, Vec3d world,
-                                                   float /*time*/, How how) {
+[[gnu::always_inline]] inline Spectrum<N> albedoAt(const MediumPart& part, Vec3d world, float time,
+                                                   How how) {
     const grid::Field& field = *part.albedo();
-    return read<N>(field, field.nearSupport(part.albedoIndex(world)), how);
+    Vec3d index = part.albedoIndex(world, time);
+    if (const auto& motion = part.description().albedoMotion) [[unlikely]]
+        index = motion->source(index, time);
+    return read<N>(field, field.nearSupport(index), how);
 }
 
 /// What a part emits where its field, scaled by Description::scale, does: the field at an index
 /// position within the part's extent.
-inline Rgb glowAt(const EmissionPart& part, Vec3d index, float /*time*/) {
+inline Rgb glowAt(const EmissionPart& part, Vec3d index, float time) {
     const grid::Field& field = *part.description().field;
+    if (const auto& motion = part.description().motion) [[unlikely]] {
+        index = motion->source(index, time);
+        if (field.limits() && !field.limits()->contains(index)) return {};
+    }
     return read<3>(field, field.nearSupport(index), InFull{});
 }
 

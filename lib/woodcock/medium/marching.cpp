@@ -57,7 +57,7 @@ public:
     March(const MediumPart& part, const MarchSettings& settings, const Query& q,
           RandomStream random)
         : part_(&part),
-          ray_(part.indexRay(q.origin, q.direction)),
+          ray_(part.indexRay(q.origin, q.direction, q.time)),
           walk_(part, part.marchCells(), ray_, q.tMax),
           time_(q.time),
           stepsPerLength_(length(ray_.direction) / settings.step),

@@ -3,6 +3,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/random.h"
+#include "woodcock/grid/moved_ranges.h"
 #include "woodcock/medium/look_up.h"
 
 namespace woodcock::medium {
@@ -14,11 +15,18 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     indexFromWorld_ = d_.worldFromIndex.inverse();
     albedoIndexFromWorld_ = d_.albedoWorldFromIndex.inverse();
     takeCoefficients();
-    support_ = d_.field ? d_.field->support() : d_.box;
-    if (d_.field) {
+    if (d_.motion && d_.field) {
+        moved_ = std::make_shared<grid::MovedRanges>(d_.field, d_.motion);
+        support_ = moved_->support();
+        background_ = moved_->outside();
+    } else if (d_.field) {
+        support_ = d_.field->support();
         limits_ = d_.field->limits();
         background_ = d_.field->storedRange(d_.field->blocks().outside());
+    } else {
+        support_ = d_.box;
     }
+    readElsewhere_ = moved_ || unbounded();
     reach_ = findReach();
     if (!d_.field) {
         meanExtinction_ = largestExtinction_;
@@ -26,17 +34,40 @@ MediumPart::MediumPart(Description description) : d_(std::move(description)) {
     }
     const double voxelWidth = std::cbrt(std::abs(determinant));
     majorants_ = std::make_shared<grid::MajorantGrid>(
-        *d_.field, grid::MajorantGrid::Options{largestExtinction_ * voxelWidth, d_.majorantScale,
-                                               d_.majorantSmallestLog2});
+        bounds({largestExtinction_ * voxelWidth, d_.majorantScale, d_.majorantSmallestLog2}));
+    meanExtinction_ = meanOfField() * double{largestExtinction_};
+}
+
+grid::MajorantGrid MediumPart::bounds(const grid::MajorantGrid::Options& options) const {
+    if (!moved_) return {*d_.field, options};
+    return {moved_->blocks(), [&](Vec3i block) { return moved_->finest(block); }, options};
+}
+
+double MediumPart::meanOfField() const {
     const Box3d& box = extent();
-    if (box.empty()) return;
+    if (box.empty()) return 0;
     RandomStream random(hashOf(0x6d65616e));
     constexpr int samples = 4096;
+    double mean = 0;
     for (int i = 0; i < samples; ++i) {
         const Vec3d u{random.uniform(), random.uniform(), random.uniform()};
-        meanExtinction_ += d_.field->stochastic(box.lower + box.size() * u, random.bits()) *
-                           double{largestExtinction_} / samples;
+        Vec3d index = box.lower + box.size() * u;
+        const std::uint64_t bits = random.bits();
+        const auto time = static_cast<float>((i + 0.5) / samples);
+        if (moved_ && !placedInField(index, time)) continue;
+        mean += double{d_.field->stochastic(index, bits)} / samples;
     }
+    return mean;
+}
+
+bool MediumPart::placedInField(Vec3d& index, float time) const {
+    if (d_.motion) {
+        index = d_.motion->source(index, time);
+        if (const auto& limits = d_.field->limits(); limits && !limits->contains(index))
+            return false;
+    }
+    index = d_.field->nearSupport(index);
+    return true;
 }
 
 const grid::MajorantGrid& MediumPart::marchCells() const {
@@ -44,7 +75,7 @@ const grid::MajorantGrid& MediumPart::marchCells() const {
         if (!d_.field || !(d_.field->range().max > 0)) return;
         // As if the optical depth were huge: then no cells that differ are merged.
         const double deep = 1e9 / d_.field->range().max;
-        marchCells_->cells = grid::MajorantGrid(*d_.field, {deep, 1, grid::blockLog2});
+        marchCells_->cells = bounds({deep, 1, grid::blockLog2});
     });
     return marchCells_->cells;
 }
@@ -88,10 +119,11 @@ Box3d MediumPart::findReach() const {
 }
 
 Rgb MediumPart::value(Vec3d world, float time) const {
+    if (d_.movement) moveToRest(*d_.movement, time, world);
     const Vec3d p = indexFromWorld_.point(world);
     if (!d_.field) return Rgb(support_.contains(p) ? 1.0f : 0.0f);
     if (limits_ && !limits_->contains(p)) return {};
-    return densityAt<3>(*this, d_.field->nearSupport(p), time, InFull{});
+    return densityAt<3>(*this, moved_ ? p : d_.field->nearSupport(p), time, InFull{});
 }
 
 Rgb MediumPart::albedo(Vec3d world, float time) const {

@@ -7,12 +7,18 @@
 #include <vector>
 
 #include "woodcock/base/affine.h"
+#include "woodcock/base/moving_transform.h"
 #include "woodcock/base/spectrum.h"
 #include "woodcock/grid/cell_walk.h"
 #include "woodcock/grid/field.h"
 #include "woodcock/grid/majorants.h"
 #include "woodcock/medium/emission.h"
 #include "woodcock/medium/phase.h"
+
+namespace woodcock::grid {
+class Motion;
+class MovedRanges;
+}  // namespace woodcock::grid
 
 namespace woodcock::medium {
 
@@ -30,9 +36,14 @@ public:
         Rgb scattering{1.0f};                       ///< sigma_s where f (and albedo) is 1
         std::shared_ptr<const grid::Field> albedo;  ///< null: 1; values in [0, 1], 1 or 3 channels
         Affine3d albedoWorldFromIndex;
+        /// The part moves within the shutter: where it takes a point of the world, in which the
+        /// transforms above place the part at rest. Null: it stands still.
+        std::shared_ptr<const MovingTransform> movement = {};
         PhaseFunction phase = {};
         double majorantScale = 1;      ///< > 1 loosens the majorants; see MajorantGrid::Options
         int majorantSmallestLog2 = 1;  ///< coarsens them
+        std::shared_ptr<const grid::Motion> motion = {};  ///< of the field; null: it stands still
+        std::shared_ptr<const grid::Motion> albedoMotion = {};  ///< the same motion, of the albedo
     };
     explicit MediumPart(Description description);
 
@@ -61,6 +72,13 @@ public:
     /// a Description.
     bool extinctionVaries() const { return d_.albedo && loss_ != 1; }
     float largestExtinction() const { return largestExtinction_; }
+    /// Bounds of the field where it moves or is moved; null where it stands as its file has it.
+    const grid::MovedRanges* moved() const { return moved_.get(); }
+    /// False where the field is read at an index position of the part's extent as it is; true where
+    /// that has to be placedInField().
+    bool readElsewhere() const { return readElsewhere_; }
+    /// Takes an index position to where the field is read for it; false where the part is 0 there.
+    bool placedInField(Vec3d& index, float time) const;
     const grid::Field* field() const { return d_.field.get(); }
     const grid::Field* albedo() const { return d_.albedo.get(); }
     const grid::MajorantGrid& majorants() const { return *majorants_; }
@@ -68,11 +86,13 @@ public:
     /// others. The first thread that asks makes them.
     const grid::MajorantGrid& marchCells() const;
 
-    grid::IndexRay indexRay(Vec3d origin, Vec3d direction) const {
+    /// A ray in the part's index space, as the part stands at a time within the shutter.
+    grid::IndexRay indexRay(Vec3d origin, Vec3d direction, float time = 0) const {
+        if (d_.movement) moveToRest(*d_.movement, time, origin, direction);
         return {indexFromWorld_.point(origin), indexFromWorld_.vector(direction)};
     }
-    /// False only where the ray surely does not meet this part before tMax: a quick test, with a
-    /// margin for rounding. `inverse`: one over each component of the direction.
+    /// False only where the ray surely does not meet this part before tMax, at any time: a quick
+    /// test, with a margin for rounding. `inverse`: one over each component of the direction.
     bool mayMeet(Vec3d origin, Vec3d inverse, double tMax) const {
         double enter = 0, leave = tMax;
         for (int i = 0; i < 3; ++i) {
@@ -83,16 +103,24 @@ public:
         }
         return !(leave < enter * (1 - 1e-9));
     }
-    Vec3d albedoIndex(Vec3d world) const { return albedoIndexFromWorld_.point(world); }
-    /// Index-space box outside which f is the background.
+    Vec3d albedoIndex(Vec3d world, float time) const {
+        if (d_.movement) moveToRest(*d_.movement, time, world);
+        return albedoIndexFromWorld_.point(world);
+    }
+    /// Index-space box outside which f is the background, at all times.
     const Box3d& support() const { return support_; }
     grid::Range background() const { return background_; }
-    /// Index-space box outside which f is 0 although the field has a background; else null.
+    /// Index-space box outside which f is 0 although the field has a background; else null. Where
+    /// it moves, that is 0 outside of the support.
     const Box3d* limits() const { return limits_ ? &*limits_ : nullptr; }
     /// Index-space box of the part, but for a background without limits.
     const Box3d& extent() const { return limits_ ? *limits_ : support_; }
     bool unbounded() const { return background_.max > 0 && !limits_; }
-    Box3d worldBounds() const { return d_.worldFromIndex.box(extent()); }
+    /// World box of the extent, of the whole shutter.
+    Box3d worldBounds() const {
+        const Box3d box = d_.worldFromIndex.box(extent());
+        return d_.movement && !extent().empty() ? d_.movement->box(box) : box;
+    }
 
     /// f, sigma_t and sigma_s at a world position and a time within the shutter, in full: by
     /// trilinear interpolation, or as the field's look-up has it.
@@ -111,6 +139,8 @@ private:
     void takeCoefficients();
     Rgb albedo(Vec3d world, float time) const;
     Box3d findReach() const;
+    grid::MajorantGrid bounds(const grid::MajorantGrid::Options& options) const;
+    double meanOfField() const;
 
     Description d_;
     float loss_ = 1;
@@ -118,6 +148,8 @@ private:
     Affine3d indexFromWorld_, albedoIndexFromWorld_;
     Box3d support_;
     std::optional<Box3d> limits_;
+    std::shared_ptr<const grid::MovedRanges> moved_;
+    bool readElsewhere_ = false;
     Box3d reach_;  // of world space: a little more than where f is not 0
     grid::Range background_;
     float largestExtinction_ = 0;

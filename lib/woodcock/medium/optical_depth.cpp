@@ -5,11 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "woodcock/medium/medium.h"
+#include "woodcock/medium/look_up.h"
 
 namespace woodcock::medium {
 
-Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1) {
+Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1,
+                      float time) {
     Vec3d depth;
     std::vector<double> planes;
     for (const MediumPart& part : medium.parts) {
@@ -32,6 +33,17 @@ Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, doubl
                 continue;
             }
             const grid::Field& field = *part.field();
+            if (part.moved()) {
+                const double length = s.t1 - s.t0;
+                const auto points = static_cast<int>(
+                    std::ceil(std::max(1.0, 8 * length * woodcock::length(ray.direction))));
+                for (int i = 0; i < points; ++i) {
+                    const Rgb f = densityAt<3>(part, ray.at(s.t0 + length * (i + 0.5) / points),
+                                               time, InFull{});
+                    add(length / points, [&](int c) { return double{f[c]}; });
+                }
+                continue;
+            }
             const double shift = field.lookup() == grid::Lookup::Nearest ? 0.5 : 0;
             planes = {s.t0, s.t1};
             for (int i = 0; i < 3; ++i) {

@@ -12,6 +12,10 @@ struct Medium;
 /// rounding): trilinear density is a cubic along a ray inside a cell of the voxel lattice, where
 /// two-point Gauss-Legendre is exact; nearest lookups are constant between planes halfway between
 /// voxels. Slow: the reference for the estimators. Not for parts whose extinctionVaries().
-Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1);
+///
+/// The density of a part that moves is no polynomial along a ray. It is integrated at the ray's
+/// time by eight points for each voxel's width: not exact.
+Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1,
+                      float time = 0);
 
 }  // namespace woodcock::medium

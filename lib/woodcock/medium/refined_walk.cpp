@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "woodcock/grid/moved_ranges.h"
+
 namespace woodcock::medium {
 
 namespace {
@@ -61,6 +63,14 @@ grid::Range between(const grid::Field& field, Vec3i v, Vec3d a, Vec3d b, int cha
     return {value, value};
 }
 
+/// The same where the field moves: of the box around the way from a to b.
+grid::Range movedBetween(const grid::MovedRanges& moved, Vec3d a, Vec3d b, float time,
+                         int channel) {
+    const grid::Range r = moved.close({min(a, b), max(a, b)}, time, channel);
+    return {static_cast<float>(std::max(0.0, double{r.min} * (1 - slack))),
+            static_cast<float>(double{r.max} * (1 + slack))};
+}
+
 /// base + more, not rounded below it.
 float above(float base, double more) { return static_cast<float>((base + more) * (1 + slack)); }
 
@@ -87,11 +97,12 @@ grid::Segment RefinedWalk::piece(const MediumPart& part, const grid::IndexRay& r
     tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) > shallowCell;
     if (!tight_) return {t, cell_.t1, cell_.range};
     const grid::Field& field = *part.field();
+    const grid::MovedRanges* moved = part.moved();
     const double shift = field.lookup() == grid::Lookup::Nearest ? 0.5 : 0;  // cubes around voxels
     const Vec3d from = ray.at(t);
-    Vec3i v = floorToInt(from + Vec3d{shift, shift, shift});
+    Vec3i v = moved ? Vec3i{} : floorToInt(from + Vec3d{shift, shift, shift});
     double end = cell_.t1;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3 && !moved; ++i) {
         const double d = ray.direction[i];
         if (d == 0) continue;
         const auto faceAhead = [&] { return (v[i] - shift + (d > 0 ? 1 : 0) - ray.origin[i]) / d; };
@@ -107,7 +118,8 @@ grid::Segment RefinedWalk::piece(const MediumPart& part, const grid::IndexRay& r
         for (int c = 0; c < field.channels(); ++c) {
             if (!grey && !(live_ >> c & 1)) continue;
             grid::Range& r = channel[static_cast<std::size_t>(c)];
-            r = between(field, v, from, ray.at(end), c);
+            r = moved ? movedBetween(*moved, from, ray.at(end), time_, c)
+                      : between(field, v, from, ray.at(end), c);
             const double share = grey ? 1 : part.extinction()[c] / largest;
             largestMin = std::max(largestMin, static_cast<float>(r.min * share));
             range.min = std::min(range.min, r.min);

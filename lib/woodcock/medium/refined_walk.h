@@ -14,8 +14,9 @@ namespace woodcock::medium {
 /// may be chosen anew at any collision for the rest of the ray.
 class RefinedWalk {
 public:
-    RefinedWalk(const MediumPart& part, const grid::IndexRay& ray, double tMax)
-        : walk_(part, ray, tMax), extinction_(part.largestExtinction()) {}
+    /// `time`: of the ray, within the shutter.
+    RefinedWalk(const MediumPart& part, const grid::IndexRay& ray, double tMax, float time = 0)
+        : walk_(part, ray, tMax), extinction_(part.largestExtinction()), time_(time) {}
 
     /// Sets the channels, as bits, that still carry energy. From the next segment or cut on, only
     /// these set the rate of collisions. Otherwise a channel of optical depth 1e12 would set the
@@ -62,8 +63,9 @@ private:
     grid::Segment piece(const MediumPart& part, const grid::IndexRay& ray, double t);
 
     PartWalk walk_;
-    unsigned live_ = 7;             // bits of channels
-    float extinction_;              // the largest of them
+    unsigned live_ = 7;  // bits of channels
+    float extinction_;   // the largest of them
+    float time_;
     bool stale_ = false;            // `live_` has changed since the last cut
     grid::Segment cell_{0, 0, {}};  // that is being cut
     int collisions_ = 0;

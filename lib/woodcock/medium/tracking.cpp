@@ -102,8 +102,8 @@ public:
     CollisionProcess(const MediumPart& part, int index, const DistanceQuery<N>& q, double u)
         : part_(&part),
           index_(index),
-          ray_(part.indexRay(q.origin, q.direction)),
-          walk_(part, ray_, q.tMax),
+          ray_(part.indexRay(q.origin, q.direction, q.time)),
+          walk_(part, ray_, q.tMax, q.time),
           depth_(-std::log(u)) {
         walk_.setLive(part, liveChannels<N>(q.throughput));
     }
@@ -237,9 +237,9 @@ Spectrum<N> relativeExtinction(const MediumPart& part, const Spectrum<N>& albedo
 template <int N, bool Varies>
 bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
                TrackingCounters& counters) {
-    const grid::IndexRay ray = part.indexRay(q.origin, q.direction);
+    const grid::IndexRay ray = part.indexRay(q.origin, q.direction, q.time);
     const Spectrum<N> extinction = channels<N>(part.extinction());
-    RefinedWalk walk(part, ray, q.tMax);
+    RefinedWalk walk(part, ray, q.tMax, q.time);
     grid::Segment s{0, 0, {}};
     Spectrum<N> ratio = q.contribution;
     const auto least = [&] { return Varies ? 0.0f : s.range.min; };

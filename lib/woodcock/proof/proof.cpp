@@ -78,7 +78,8 @@ const std::vector<Check>& checks() {
         for (const auto& subject :
              {closedForms(), singleScattering(), slabs(), surfaces(), surfacesTogether(),
               roughSurfaces(), properties(), sampling(), phaseFunctions(), lightSampling(),
-              aimedPoints(), flatLights(), lampsInFog(), skies(), extremes(), emission()})
+              aimedPoints(), flatLights(), lampsInFog(), skies(), extremes(), emission(), motion(),
+              motionOfTransforms()})
             list.insert(list.end(), subject.begin(), subject.end());
         std::stable_sort(list.begin(), list.end(),
                          [](const Check& a, const Check& b) { return a.kind < b.kind; });

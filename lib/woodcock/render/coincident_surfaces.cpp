@@ -194,10 +194,11 @@ bool NestedMedia::startsOn(const surface::SurfaceHit& hit, std::uint32_t emitter
     });
 }
 
-NestedMedia::CameraPosition NestedMedia::cameraPosition(Vec3d position) const {
-    CameraPosition start{position, {}, {}};
+NestedMedia::CameraPosition NestedMedia::cameraPosition(Vec3d position, float time) const {
+    CameraPosition start{position, {}, {}, time};
     surface::SurfaceHit place;
     place.position = position;
+    place.time = time;
     set_.geometry.coincidentSurfaces(place, start.touched);
     if (!anyHolds_) return start;
     const auto touched = [&](std::uint32_t instance) {
@@ -205,7 +206,7 @@ NestedMedia::CameraPosition NestedMedia::cameraPosition(Vec3d position) const {
             start.touched.begin(), start.touched.end(),
             [&](const surface::CoincidentSurface& s) { return s.instance == instance; });
     };
-    for (const std::uint32_t instance : set_.geometry.enclosing(position, holds_))
+    for (const std::uint32_t instance : set_.geometry.enclosing(position, holds_, time))
         if (objectOf(instance).cameraVisible && !touched(instance)) start.inside.enter(instance);
     return start;
 }
@@ -223,6 +224,7 @@ NestedMedia::RayStart NestedMedia::rayStart(const CameraPosition& start, Vec3d d
     }
     place.left.emplace();
     place.left->position = start.position;
+    place.left->time = start.time;
     place.left->instance = std::numeric_limits<std::uint32_t>::max();
     place.left->coincident.any = true;
     place.left->coincident.layer = FromCamera;

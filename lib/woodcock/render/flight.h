@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "woodcock/light/light.h"
+#include "woodcock/light/light_set.h"
 #include "woodcock/medium/medium.h"
 #include "woodcock/render/equiangular.h"
 
@@ -41,12 +41,12 @@ struct Flight {
     const MediumSummary* medium = nullptr;
 
     /// Distances at which a local light may shine on the medium.
-    Equiangular equiangular(const light::Light& light, Vec3d lightPosition) const {
+    Equiangular equiangular(const light::LightSet& lights, int light, Vec3d lightPosition) const {
         double t0 = 0, t1 = tMax;
         if (!medium->unbounded && !grid::clip({origin, direction}, medium->bounds, t0, t1))
             return {};
         const double entry = t0;
-        light.narrow(origin, direction, t0, t1);
+        lights.narrow(light, origin, direction, time, t0, t1);
         return {origin, direction, lightPosition, t0, t1, length(medium->bounds.size()) * 1e-9,
                 entry};
     }
@@ -66,10 +66,12 @@ struct FlightShare {
     bool all = true;  ///< the event's alone: nothing was chosen on its flight
     Flight flight = {};
     double t = 0;
-    /// The event's part of the light from a light; `position`: absent where it is not local.
-    double operator()(const light::Light& light, const std::optional<Vec3d>& position) const {
-        if (all || !position) return 1;
-        const Equiangular e = flight.equiangular(light, *position);
+    /// The event's part of the light from a light.
+    double operator()(const light::LightSet& lights, int light) const {
+        if (all) return 1;
+        const std::optional<Vec3d> position = lights.position(light, flight.time);
+        if (!position) return 1;  // it is not local
+        const Equiangular e = flight.equiangular(lights, light, *position);
         const double other = e.pdf(t);
         const double own = flight.density(e, t);
         return own + other > 0 ? own / (own + other) : 1;

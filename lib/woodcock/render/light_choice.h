@@ -46,7 +46,7 @@ public:
     /// The density, per steradian, with which next-event estimation at `from` would sample this
     /// direction to this light.
     double pdf(int light, const light::ScatterPoint& from, Vec3d direction) {
-        const double pdf = lights_.pdf(light, from.position, direction);
+        const double pdf = lights_.pdf(light, from.position, direction, from.time);
         return pdf > 0 ? pdf * probability(light, from) : 0;
     }
 

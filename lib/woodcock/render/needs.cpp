@@ -1,9 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
+#include "woodcock/grid/motion.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
+
+namespace {
+
+/// Whether anything is not at the same place at all times of the shutter.
+bool moves(const medium::Medium& medium) {
+    const auto does = [](const std::shared_ptr<const grid::Motion>& motion) {
+        return motion && motion->moves();
+    };
+    for (const medium::MediumPart& p : medium.parts)
+        if (p.description().movement || does(p.description().motion) ||
+            does(p.description().albedoMotion))
+            return true;
+    for (const medium::EmissionPart& p : medium.emission)
+        if (p.description().movement || does(p.description().motion)) return true;
+    return false;
+}
+
+}  // namespace
 
 Needs findNeeds(const Scene& scene) {
     Needs n = scene.forcedNeeds;
@@ -15,12 +34,15 @@ Needs findNeeds(const Scene& scene) {
         }
         n.overlap |= medium.parts.size() > 1;
         n.emission |= !medium.emission.empty();
+        n.motion |= scene.shutter.length() > 0 && moves(medium);
         const Box3d box = medium.worldBounds();
         if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
     };
     look(scene.medium);
     for (const medium::Medium& medium : scene.interiorMedia) look(medium);
     n.surfaces |= scene.surfaces != nullptr;
+    n.motion |= scene.camera.motion || scene.lights.moves() ||
+                (scene.surfaces && scene.surfaces->geometry.moves());
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
@@ -54,6 +76,7 @@ std::string namesOf(const Needs& n, bool used) {
     tell(n.lightSampling, "light sampling");
     tell(n.localLights, "equiangular sampling");
     tell(n.surfaces, "surfaces");
+    tell(n.motion, "motion");
     return list;
 }
 

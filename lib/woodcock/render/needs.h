@@ -18,6 +18,7 @@ struct Needs {
     bool surfaces = false;  ///< rays look for surfaces, and media lie within them
     bool emission = false;  ///< media that emit: a point of every flight is sampled
     bool localLights = false;  ///< lights near or inside the medium: equiangular sampling
+    bool motion = false;       ///< something moves while the shutter is open: paths draw a time
 
     /// One line: what the scene needs and what was left out.
     std::string describe() const;

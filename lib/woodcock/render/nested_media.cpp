@@ -123,7 +123,8 @@ bool NestedMedia::nearest(const SurfaceQuery& ray, const RayStart& start,
     if (left && left->coincident.any &&
         nextLayer(*left, ray.direction, start.inside, ray.cameraRay, hit))
         return hit.t < ray.tMax;
-    if (!set_.geometry.intersect(ray.origin, ray.direction, ray.tMax, left, hit)) return false;
+    if (!set_.geometry.intersect(ray.origin, ray.direction, ray.tMax, left, hit, ray.time))
+        return false;
     double travelled = 0;
     while (true) {
         if (hit.coincident.any) {
@@ -138,7 +139,7 @@ bool NestedMedia::nearest(const SurfaceQuery& ray, const RayStart& start,
         travelled += hit.t;
         const surface::SurfaceHit passed = hit;
         if (!set_.geometry.intersect(passed.position, ray.direction, ray.tMax - travelled, &passed,
-                                     hit))
+                                     hit, ray.time))
             return false;
     }
     hit.t += travelled;

@@ -44,7 +44,7 @@ struct Crossing {
 /// A ray that looks for surfaces: world space, direction of unit length.
 struct SurfaceQuery {
     Vec3d origin, direction;
-    float time = 0;  ///< within the shutter; surfaces stand still
+    float time = 0;  ///< within the shutter
     double tMax = std::numeric_limits<double>::infinity();
     bool cameraRay = false;  ///< goes through what is invisible to the camera
 };
@@ -67,8 +67,9 @@ public:
         Vec3d position;
         MediumStack inside;
         std::vector<surface::CoincidentSurface> touched;
+        float time = 0;  ///< within the shutter
     };
-    CameraPosition cameraPosition(Vec3d position) const;
+    CameraPosition cameraPosition(Vec3d position, float time) const;
     /// The start of a ray from there. A ray that starts on a surface is inside of it if it goes
     /// inwards.
     RayStart rayStart(const CameraPosition& start, Vec3d direction) const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "woodcock/camera/camera.h"
+#include "woodcock/camera/shutter.h"
 #include "woodcock/light/light_set.h"
 #include "woodcock/medium/medium.h"
 #include "woodcock/render/needs.h"
@@ -21,6 +22,7 @@ struct Scene {
     std::shared_ptr<const surface::SurfaceSet> surfaces = {};  ///< null: none
     std::vector<medium::Medium> interiorMedia =
         {};  ///< inside of surfaces: SurfaceObject::medium - 1 is the index
+    camera::Shutter shutter = {};
     /// Needs that are run although the scene does not have them, to measure their cost. See
     /// forceNeed() in trade/needs_cost.h.
     Needs forcedNeeds = {};

@@ -19,7 +19,8 @@ struct TracedScene {
     const MediaTable media;
     // Where there are surfaces:
     std::optional<NestedMedia> surfaces;
-    NestedMedia::CameraPosition aroundCamera;  ///< of a perspective camera
+    /// Where all camera rays start at one point of a scene at rest.
+    std::optional<NestedMedia::CameraPosition> aroundCamera;
 
     TracedScene(const Scene& s, const Needs& n, const PathTracer::Options& o)
         : scene(s),
@@ -29,8 +30,15 @@ struct TracedScene {
           media(s, n, o.approximations, o.approximateMedia) {
         if (!n.surfaces) return;
         surfaces.emplace(s);
-        if (s.camera.kind == camera::Camera::Kind::Perspective)
-            aroundCamera = surfaces->cameraPosition(s.camera.worldFromCamera.translation);
+        if (s.camera.kind == camera::Camera::Kind::Perspective && !s.camera.motion &&
+            !s.surfaces->geometry.moves())
+            aroundCamera = surfaces->cameraPosition(s.camera.worldFromCamera.translation, 0);
+    }
+
+    /// The start of a camera ray, where there are surfaces.
+    NestedMedia::RayStart startOf(Vec3d origin, Vec3d direction, float time) const {
+        return surfaces->rayStart(
+            aroundCamera ? *aroundCamera : surfaces->cameraPosition(origin, time), direction);
     }
 
     /// The number in `media` of the medium around a ray.

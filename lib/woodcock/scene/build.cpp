@@ -5,6 +5,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/light/graded_image.h"
+#include "woodcock/scene/animation.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/sky.h"
@@ -66,16 +67,21 @@ void addLights(std::vector<light::Light>& lights, const SkyDescription& sky, Loa
 }
 
 light::LightSet buildLights(const SceneDescription& description, std::vector<LoadedLight> loaded,
-                            BuiltSurfaces& surfaces) {
+                            const Movements& movements, BuiltSurfaces& surfaces) {
     std::vector<light::Light> lights;
+    light::LightSet::Motions motions;
     loaded.resize(description.lights.size());  // lights that were chosen after loading have no file
-    for (size_t i = 0; i < loaded.size(); ++i)
+    for (size_t i = 0; i < loaded.size(); ++i) {
         std::visit([&](const auto& light) { addLights(lights, light, std::move(loaded[i])); },
                    description.lights[i].light);
+        motions.resize(lights.size());
+        if (i < movements.lights.size()) motions.back() = movements.lights[i];
+    }
     if (!surfaces.emitters.empty())
         lights.push_back(
             light::MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
-    return light::LightSet(std::move(lights));
+    motions.resize(lights.size());
+    return light::LightSet(std::move(lights), std::move(motions));
 }
 
 camera::Camera buildCamera(const CameraDescription& description) {
@@ -137,13 +143,29 @@ Affine3d worldFromLight(const EnvironmentDescription& environment) {
 
 render::Scene buildScene(const SceneDescription& description, LoadedScene loaded,
                          std::vector<std::string>* notes) {
-    const camera::Camera camera = buildCamera(description.camera);
+    if (const camera::Shutter& shutter = description.camera.shutter;
+        !description.animation.empty() && shutter.length() == 0 && shutter.open != 0) {
+        // A shutter of no length, beside the frame: the scene stands still at that moment.
+        SceneDescription moment = atFrame(description, description.frame + shutter.open);
+        moment.animation.clear();
+        return buildScene(moment, std::move(loaded), notes);
+    }
+    camera::Camera camera = buildCamera(description.camera);
     for (std::string& note : coarsenForCamera(description, camera, loaded))
         if (notes) notes->push_back(std::move(note));
-    BuiltSurfaces surfaces = buildSurfaces(description, loaded);
-    return {buildMedium(description, loaded, ""),
-            buildLights(description, std::move(loaded.lights), surfaces), camera,
-            std::move(surfaces.set), std::move(surfaces.interiorMedia)};
+    const Movements movements = findMovements(description, loaded);
+    camera.motion = movements.camera;
+    BuiltSurfaces surfaces = buildSurfaces(description, loaded, movements);
+    medium::Medium medium = buildMedium(description, loaded, movements, "");
+    if (notes)
+        for (std::string& note : motionNotes(description, loaded, medium, ""))
+            notes->push_back(std::move(note));
+    return {std::move(medium),
+            buildLights(description, std::move(loaded.lights), movements, surfaces),
+            camera,
+            std::move(surfaces.set),
+            std::move(surfaces.interiorMedia),
+            description.camera.shutter};
 }
 
 bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {

@@ -14,6 +14,7 @@
 #include "woodcock/render/session.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/scene/load.h"
+#include "woodcock/scene/movements.h"
 #include "woodcock/surface/surface_set.h"
 
 namespace woodcock::scene {
@@ -50,11 +51,15 @@ bool environmentIsHidden(const SceneDescription& scene);
 
 /// The volumes that fill the surface of this name; of an empty name, those that fill none.
 medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
-                           std::string_view inside);
+                           const Movements& movements, std::string_view inside);
 
 /// The volume that each part of that medium comes from.
 std::vector<size_t> volumesOfParts(const SceneDescription& description, const LoadedScene& loaded,
                                    std::string_view inside);
+
+/// How far each volume of that medium moves while the shutter is open, and what that costs.
+std::vector<std::string> motionNotes(const SceneDescription& description, const LoadedScene& loaded,
+                                     const medium::Medium& medium, std::string_view inside);
 
 /// Biased: halves the resolution of each grid (see coarsened()) as often as its voxels, by their
 /// longest edge, stay at most description.render.levelOfDetail pixels wide where the box of what it
@@ -78,6 +83,7 @@ struct BuiltSurfaces {
 /// The surfaces of a scene, what they hold, and the triangles that emit light: those of all
 /// emissive instances, in the order of instances and of their triangles. Throws Error{Input} on
 /// transforms that flatten a surface, and where there are more emitters than can be counted.
-BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded);
+BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded,
+                            const Movements& movements);
 
 }  // namespace woodcock::scene

@@ -11,71 +11,103 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/grid/coarsen.h"
+#include "woodcock/grid/motion.h"
+#include "woodcock/grid/moved_ranges.h"
 
 namespace woodcock::scene {
 namespace {
 
 using Part = medium::MediumPart::Description;
 
-Part fieldPart(const VolumeDescription& volume, const LoadedField& loaded) {
+/// A volume with how its grids move.
+struct Moving {
+    const VolumeDescription& volume;
+    const LoadedVolume& loaded;
+    /// When the shutter opens and closes, in the time of the velocities.
+    double open, close;
+
+    Moving(const SceneDescription& scene, const VolumeDescription& v, const LoadedVolume& l)
+        : volume(v),
+          loaded(l),
+          open(scene.camera.shutter.open * v.velocity.timeOfFrame(scene.render.fps)),
+          close(scene.camera.shutter.close * v.velocity.timeOfFrame(scene.render.fps)) {}
+
+    /// Of one of its grids; null: it stands as its file has it.
+    std::shared_ptr<const grid::Motion> of(const LoadedField& field) const {
+        if (!loaded.velocity || (open == 0 && close == 0)) return nullptr;
+        try {
+            return std::make_shared<grid::Motion>(loaded.velocity, field.objectFromIndex, open,
+                                                  close);
+        } catch (const Error& e) {
+            throw Error(e.kind(), fmt::format("{}: {}", volume.file.string(), e.what()));
+        }
+    }
+};
+
+Part fieldPart(const Moving& moving, const LoadedField& loaded) {
     Part part;
     part.field = loaded.field;
-    part.worldFromIndex = volume.worldFromObject * loaded.objectFromIndex;
+    part.worldFromIndex = moving.volume.worldFromObject * loaded.objectFromIndex;
+    part.motion = moving.of(loaded);
     return part;
 }
 
-std::vector<Part> parts(const VolumeDescription& volume, const DensityCoefficients& c,
-                        const LoadedVolume& loaded) {
+std::vector<Part> parts(const Moving& moving, const DensityCoefficients& c) {
+    const LoadedVolume& loaded = moving.loaded;
     if (!c.scale) throw usageError("a volume's scale has not been chosen yet");
-    Part part = fieldPart(volume, loaded.density);
+    Part part = fieldPart(moving, loaded.density);
     std::tie(part.absorption, part.scattering) = splitByAlbedo(*c.scale, c.albedo);
     if (loaded.albedo) {
         part.albedo = loaded.albedo.field;
-        part.albedoWorldFromIndex = volume.worldFromObject * loaded.albedo.objectFromIndex;
+        part.albedoWorldFromIndex = moving.volume.worldFromObject * loaded.albedo.objectFromIndex;
+        part.albedoMotion = moving.of(loaded.albedo);
     }
     return {part};
 }
 
-std::vector<Part> parts(const VolumeDescription& volume, const SeparateCoefficients& c,
-                        const LoadedVolume& loaded) {
+std::vector<Part> parts(const Moving& moving, const SeparateCoefficients& c) {
+    const LoadedVolume& loaded = moving.loaded;
     std::vector<Part> all;
     if (c.sigmaA) {
-        all.push_back(fieldPart(volume, loaded.sigmaA));
+        all.push_back(fieldPart(moving, loaded.sigmaA));
         all.back().absorption = c.sigmaA->scale;
         all.back().scattering = Rgb(0);
     }
     if (c.sigmaS) {
         const bool sameGrid = c.sigmaA && loaded.sigmaA.field == loaded.sigmaS.field;
-        if (!sameGrid) all.push_back(fieldPart(volume, loaded.sigmaS));
+        if (!sameGrid) all.push_back(fieldPart(moving, loaded.sigmaS));
         all.back().scattering = c.sigmaS->scale;
     }
     return all;
 }
 
-std::vector<Part> parts(const VolumeDescription& volume, const HomogeneousBox& c,
-                        const LoadedVolume&) {
+std::vector<Part> parts(const Moving& moving, const HomogeneousBox& c) {
     Part part;
     part.box = c.box;
-    part.worldFromIndex = volume.worldFromObject;
+    part.worldFromIndex = moving.volume.worldFromObject;
     part.absorption = c.sigmaA;
     part.scattering = c.sigmaS;
     return {part};
 }
 
 /// Parts that emit nothing are left out.
-std::vector<medium::EmissionPart> emission(const VolumeDescription& volume,
-                                           const LoadedVolume& loaded) {
+std::vector<medium::EmissionPart> emission(const Moving& moving,
+                                           const std::shared_ptr<const MovingTransform>& movement) {
+    const VolumeDescription& volume = moving.volume;
+    const LoadedVolume& loaded = moving.loaded;
     std::vector<medium::EmissionPart> all;
     const auto add = [&](const LoadedField& field, Rgb scale) {
         medium::EmissionPart::Description part;
         part.worldFromIndex = volume.worldFromObject;
         if (field) {
             part.field = field.field;
+            part.motion = moving.of(field);
             part.worldFromIndex = volume.worldFromObject * field.objectFromIndex;
         } else {
             part.box = std::get<HomogeneousBox>(volume.coefficients).box;
         }
         part.scale = scale;
+        part.movement = movement;
         if (scale.maximum() > 0) all.emplace_back(std::move(part));
     };
     if (volume.emission) add(loaded.emission, volume.emission->scale);
@@ -85,9 +117,9 @@ std::vector<medium::EmissionPart> emission(const VolumeDescription& volume,
 }
 
 /// The parts of a volume that do something to light.
-std::vector<Part> activeParts(const VolumeDescription& volume, const LoadedVolume& loaded) {
+std::vector<Part> activeParts(const Moving& moving) {
     std::vector<Part> all =
-        std::visit([&](const auto& c) { return parts(volume, c, loaded); }, volume.coefficients);
+        std::visit([&](const auto& c) { return parts(moving, c); }, moving.volume.coefficients);
     std::erase_if(all, [](const Part& p) { return (p.absorption + p.scattering).maximum() == 0; });
     return all;
 }
@@ -167,17 +199,19 @@ medium::PhaseFunction buildPhase(float g, const std::optional<PhaseDescription>&
 }
 
 medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
-                           std::string_view inside) {
+                           const Movements& movements, std::string_view inside) {
     medium::Medium medium;
     for (size_t i = 0; i < description.volumes.size(); ++i) {
         const VolumeDescription& volume = description.volumes[i];
         if (volume.inside != inside) continue;
-        for (Part part : activeParts(volume, loaded.volumes[i])) {
+        const Moving moving(description, volume, loaded.volumes[i]);
+        for (Part part : activeParts(moving)) {
             part.phase = buildPhase(volume.g, volume.phase, loaded.volumes[i].phase);
             part.majorantScale = description.render.majorantScale;
+            part.movement = movements.volumes[i];
             medium.parts.emplace_back(std::move(part));
         }
-        for (medium::EmissionPart& part : emission(volume, loaded.volumes[i]))
+        for (medium::EmissionPart& part : emission(moving, movements.volumes[i]))
             medium.emission.push_back(std::move(part));
     }
     return medium;
@@ -188,9 +222,27 @@ std::vector<size_t> volumesOfParts(const SceneDescription& description, const Lo
     std::vector<size_t> volumes;
     for (size_t i = 0; i < description.volumes.size(); ++i)
         if (description.volumes[i].inside == inside)
-            volumes.insert(volumes.end(),
-                           activeParts(description.volumes[i], loaded.volumes[i]).size(), i);
+            volumes.insert(
+                volumes.end(),
+                activeParts({description, description.volumes[i], loaded.volumes[i]}).size(), i);
     return volumes;
+}
+
+std::vector<std::string> motionNotes(const SceneDescription& description, const LoadedScene& loaded,
+                                     const medium::Medium& medium, std::string_view inside) {
+    std::vector<std::string> notes;
+    const std::vector<size_t> volumes = volumesOfParts(description, loaded, inside);
+    for (size_t i = 0; i < medium.parts.size(); ++i) {
+        const medium::MediumPart& part = medium.parts[i];
+        if (!part.moved()) continue;
+        const size_t volume = volumes[i];
+        notes.push_back(fmt::format(
+            "volume[{}]: '{}' moves it by up to {:.3g} voxels while the shutter is open; {:.2g} % "
+            "of its blocks have bounds that reach further than a block's width",
+            volume, loaded.volumes[volume].velocities, part.description().motion->mostVoxels(),
+            100 * part.moved()->looseShare()));
+    }
+    return notes;
 }
 
 std::vector<std::string> coarsenForCamera(const SceneDescription& description,

@@ -174,9 +174,15 @@ double largestCoordinate(const Box3d& box) {
 }
 
 /// A world box with room around all of a surface, for what it holds: the surface itself is what
-/// bounds that. Below an infinite plane it reaches 1e9 times as far as all there is in the scene.
-Box3d spaceAround(const SceneDescription& scene, const LoadedScene& loaded, size_t index) {
-    const Box3d bounds = surfaceBounds(scene.surfaces[index], loaded.surfaces[index]);
+/// bounds that, wherever it moves. Below an infinite plane it reaches 1e9 times as far as all there
+/// is in the scene.
+Box3d spaceAround(const SceneDescription& scene, const LoadedScene& loaded,
+                  const Movements& movements, size_t index) {
+    const Box3d rest = surfaceBounds(scene.surfaces[index], loaded.surfaces[index]);
+    Box3d bounds = rest;
+    if (!bounds.empty())
+        for (const auto& movement : movements.surfaces[index])
+            if (movement) bounds.add(movement->box(rest));
     // Of hits, floats may lose 1e-6.
     if (!bounds.empty())
         return grown(bounds, 0.01 * length(bounds.size()) + 1e-5 * largestCoordinate(bounds));
@@ -207,9 +213,11 @@ struct EmissiveInstance {
 
 class Builder {
 public:
-    Builder(const SceneDescription& description, const LoadedScene& loaded)
+    Builder(const SceneDescription& description, const LoadedScene& loaded,
+            const Movements& movements)
         : description_(description),
           loaded_(loaded),
+          movements_(movements),
           materials_(buildMaterials(description, loaded)) {}
 
     BuiltSurfaces build() {
@@ -224,7 +232,6 @@ public:
 private:
     void add(size_t index) {
         const SurfaceDescription& surface = description_.surfaces[index];
-        const LoadedSurface& loaded = loaded_.surfaces[index];
         const SurfaceNature nature = natureOf(description_, index);
         surface::SurfaceObject object;
         object.name = surface.name.empty() ? fmt::format("surface[{}]", index) : surface.name;
@@ -237,20 +244,23 @@ private:
         object.shadowCatcher = surface.shadowCatcher;
         object.matte = surface.matte;
         object.cameraVisible = surface.cameraVisible;
-        addInstances(surface, loaded, nature.emits, object.material);
+        addInstances(index, nature.emits, object.material);
         objects_.push_back(std::move(object));
     }
 
-    void addInstances(const SurfaceDescription& surface, const LoadedSurface& loaded, bool emits,
-                      std::uint32_t material) {
+    void addInstances(std::size_t index, bool emits, std::uint32_t material) {
+        const SurfaceDescription& surface = description_.surfaces[index];
+        const LoadedSurface& loaded = loaded_.surfaces[index];
+        const auto& moves = movements_.surfaces[index];
         const auto shape = addShape(shapeOf(surface, loaded));
         const auto object = static_cast<std::uint32_t>(objects_.size());
         const std::vector<Emission> emission =
             emits ? meanEmission(materials_, material, *loaded.mesh) : std::vector<Emission>();
-        for (const Affine3d& instance : loaded.instances) {
+        for (std::size_t k = 0; k < loaded.instances.size(); ++k) {
             const Affine3d worldFromShape =
-                surface.worldFromObject * instance * loaded.objectFromMesh;
-            instances_.push_back({shape, object, worldFromShape});
+                surface.worldFromObject * loaded.instances[k] * loaded.objectFromMesh;
+            instances_.push_back(
+                {shape, object, worldFromShape, moves.empty() ? nullptr : moves[k]});
             firstEmitter_.push_back(
                 emission.empty() ? surface::SurfaceObject::dark
                                  : addEmitters(loaded.mesh, emission, worldFromShape, material));
@@ -316,7 +326,8 @@ private:
     std::uint32_t addInterior(size_t index) {
         const SurfaceDescription& surface = description_.surfaces[index];
         medium::Medium medium;
-        if (!surface.name.empty()) medium = buildMedium(description_, loaded_, surface.name);
+        if (!surface.name.empty())
+            medium = buildMedium(description_, loaded_, movements_, surface.name);
         if (surface.interior) fill(medium, *surface.interior, index);
         if (!medium.parts.empty() || !medium.emission.empty()) {
             built_.interiorMedia.push_back(std::move(medium));
@@ -331,7 +342,7 @@ private:
 
     /// Evenly.
     void fill(medium::Medium& medium, const InteriorDescription& interior, size_t index) const {
-        const Box3d space = spaceAround(description_, loaded_, index);
+        const Box3d space = spaceAround(description_, loaded_, movements_, index);
         if ((interior.sigmaA + interior.sigmaS).maximum() > 0) {
             medium::MediumPart::Description part;
             part.box = space;
@@ -350,6 +361,7 @@ private:
 
     const SceneDescription& description_;
     const LoadedScene& loaded_;
+    const Movements& movements_;
     std::vector<surface::Material> materials_;
     std::vector<surface::Shape> shapes_;
     std::map<std::pair<std::size_t, const mesh::SurfaceMesh*>, std::uint32_t> known_;
@@ -364,9 +376,10 @@ private:
 
 }  // namespace
 
-BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded) {
+BuiltSurfaces buildSurfaces(const SceneDescription& description, const LoadedScene& loaded,
+                            const Movements& movements) {
     if (description.surfaces.empty()) return {};
-    return Builder(description, loaded).build();
+    return Builder(description, loaded, movements).build();
 }
 
 }  // namespace woodcock::scene

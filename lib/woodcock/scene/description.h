@@ -17,6 +17,7 @@
 #include "woodcock/base/affine.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/spectrum.h"
+#include "woodcock/camera/shutter.h"
 #include "woodcock/grid/field_source.h"
 #include "woodcock/mesh/faceted_mesh.h"
 #include "woodcock/render/approximations.h"
@@ -141,6 +142,19 @@ struct FileSequence {
     bool operator==(const FileSequence&) const = default;
 };
 
+/// How a volume's grids are moved while the shutter is open.
+struct VelocityDescription {
+    std::string grid;  ///< of vectors, or what three of numbers are named after; empty: by its role
+    double scale = 1;
+    enum class Unit { Second, Frame } unit = Unit::Second;  ///< distance per ...
+    /// Staggered voxels hold their components on faces; or all as if in the middle of voxels.
+    enum class Sampling { AsStored, Collocated } sampling = Sampling::AsStored;
+    bool operator==(const VelocityDescription&) const = default;
+
+    /// Of a frame, in the unit of the velocities' time, and scaled.
+    double timeOfFrame(double fps) const { return scale / (unit == Unit::Second ? fps : 1); }
+};
+
 struct VolumeDescription {
     std::filesystem::path file;  ///< empty for a HomogeneousBox
     FileSequence sequence = {};
@@ -152,7 +166,8 @@ struct VolumeDescription {
     std::optional<BlackbodyDescription> blackbody = {};
     float g = 0;                                 ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     std::optional<PhaseDescription> phase = {};  ///< in place of Henyey-Greenstein
-    Affine3d worldFromObject;                    ///< applied after the grid's own transform
+    VelocityDescription velocity = {};
+    Affine3d worldFromObject;  ///< applied after the grid's own transform
     std::string inside;  ///< name of the closed surface that it fills; empty: it is outside of all
     grid::Storage storage = grid::Storage::Auto;
     /// Absent: Clip, and Endless inside of a surface.
@@ -298,11 +313,13 @@ struct CameraDescription {
     /// at; a positive angle takes it to its right. A camera that is chosen frames the volumes then
     /// from all sides.
     std::optional<double> orbit = {};
+    camera::Shutter shutter = {};
     bool operator==(const CameraDescription&) const = default;
 };
 
 struct RenderDescription {
     int width = 960, height = 540;
+    double fps = 24;  ///< frames per second, of what moves by so much in a second
     int spp = 64;
     std::uint64_t seed = 0;
     std::optional<int> maxScatterings;  ///< absent: unlimited
@@ -352,9 +369,22 @@ decltype(auto) inPlace(const std::string& place, Action action) {
     }
 }
 
+/// What a scene keeps of an animated value; see animation.h.
+struct AnimatedValue {
+    std::string table;  ///< "volume[0]"
+    std::string key;    ///< of that table: "transform"; or of a table in there: "colour.times"
+    std::string value;  ///< TOML, with its curves; without any where it only stands beside one
+    bool operator==(const AnimatedValue&) const = default;
+};
+
 /// What is absent (lights, the camera's pose, a density's name and scale) is chosen by
 /// completeScene() of scene/defaults.h, which says what it chose.
 struct SceneDescription {
+    /// Whether velocities have a say in the picture.
+    bool needsVelocities(const VolumeDescription& volume) const {
+        return camera.shutter != camera::Shutter{} && volume.velocity.scale != 0;
+    }
+
     std::vector<VolumeDescription> volumes;
     std::vector<LightDescription> lights;
     /// Overrides of lights ("light[0].azimuth=200") where there are none: of those that are chosen.
@@ -365,7 +395,9 @@ struct SceneDescription {
     RenderDescription render;
     OutputDescription output;
     std::filesystem::path ocio;  ///< OpenColorIO config of this scene; empty: $OCIO, then built-in
-    Places places;               ///< of all its values
+    std::vector<AnimatedValue> animation;  ///< all else is as it is at `frame`
+    double frame = 0;
+    Places places;  ///< of all its values
     bool operator==(const SceneDescription&) const = default;
 };
 

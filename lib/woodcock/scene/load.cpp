@@ -9,6 +9,7 @@
 #include "woodcock/base/regular_file.h"
 #include "woodcock/grid/grid_roles.h"
 #include "woodcock/grid/vdb/load_field.h"
+#include "woodcock/grid/velocity.h"
 #include "woodcock/image/read_image.h"
 #include "woodcock/medium/blackbody.h"
 #include "woodcock/scene/keys/sections.h"
@@ -132,6 +133,24 @@ public:
         return glow.field;
     }
 
+    /// The grids of a volume's velocities; none where it names none and has none.
+    grid::VelocityGrids velocityGrids(const VolumeDescription& volume) {
+        const grid::VdbFile& vdb = file(volume);
+        if (vdb.grids.empty()) return {};
+        const std::string& name = volume.velocity.grid;
+        return name.empty() ? grid::findVelocities(vdb) : grid::findVelocities(vdb, name);
+    }
+
+    /// Null where they are 0 everywhere.
+    std::shared_ptr<const grid::Velocity> velocity(const VolumeDescription& volume,
+                                                   const grid::VelocityGrids& grids) {
+        const bool asStored = volume.velocity.sampling == VelocityDescription::Sampling::AsStored;
+        const auto name = cacheName("velocity", volume.file.string(), grids.front().uniqueName,
+                                    asStored, volume.repair);
+        using Read = std::shared_ptr<const grid::Velocity>;
+        return cache_.get<Read>(name, [&] { return readVelocity(volume, grids, asStored); });
+    }
+
     /// The largest value of a grid that is only spoken of; 0 where that is not known, or would take
     /// long.
     float largest(const VolumeDescription& volume, const std::string& name) {
@@ -195,6 +214,30 @@ private:
         glow.field = {std::make_shared<grid::Field>(std::move(grid.field)), grid.worldFromIndex,
                       found.grid.uniqueName};
         return glow;
+    }
+    std::shared_ptr<const grid::Velocity> readVelocity(const VolumeDescription& volume,
+                                                       const grid::VelocityGrids& grids,
+                                                       bool asStored) {
+        std::array<grid::Velocity::Source, 3> sources;
+        for (std::size_t i = 0; i < grids.size(); ++i) {
+            const grid::LoadOptions options{.use = grid::GridUse::Colour,
+                                            .nonNegative = false,
+                                            .repair = volume.repair,
+                                            .onFaces = true};
+            grid::LoadedGrid loaded = grid::loadGrid(file(volume), grids[i], options);
+            for (std::string& text : loaded.notes) note(std::move(text));
+            sources[i].field = std::make_shared<grid::Field>(std::move(loaded.field));
+            sources[i].objectFromIndex = loaded.worldFromIndex;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool vectors = grids.size() == 1;
+            if (vectors)
+                sources[i] = {sources[0].field, static_cast<int>(i), sources[0].objectFromIndex};
+            if (asStored && grids[vectors ? 0 : i].gridClass == grid::GridClass::Staggered)
+                sources[i].offset[static_cast<int>(i)] = -0.5;
+        }
+        auto velocity = std::make_shared<const grid::Velocity>(std::move(sources));
+        return velocity->still() ? nullptr : velocity;
     }
     grid::Storage storageOf(const VolumeDescription& volume) const {
         return volume.storage == grid::Storage::Auto ? usual_ : volume.storage;
@@ -281,6 +324,36 @@ std::optional<medium::PhaseTable> loadPhase(const SceneDescription& scene, const
     });
 }
 
+std::string text(Vec3d p) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", p.x, p.y, p.z); }
+
+/// Velocities that lie beside all that they should move are those of something else, or have a
+/// wrong transform. The picture would not show it.
+void requireOverlap(const grid::VdbFile& file, const grid::VelocityGrids& grids,
+                    const LoadedVolume& loaded) {
+    const Box3d theirs = loaded.velocity->support();
+    if (theirs.empty() || loaded.velocity->background() != Vec3d{}) return;
+    Box3d moved;
+    for (const LoadedField* field :
+         {&loaded.density, &loaded.emission, &loaded.blackbody, &loaded.sigmaA, &loaded.sigmaS})
+        if (*field && !field->field->extent().empty())
+            moved.add(field->objectFromIndex.box(field->field->extent()));
+    if (moved.empty()) return;
+    const Box3d common{max(theirs.lower, moved.lower), min(theirs.upper, moved.upper)};
+    if (!common.empty()) return;
+    throw inputError(
+        "the velocities of grid '{}' in {} lie beside what they should move: from {} to {}, and "
+        "that is from {} to {}; check the transforms of the grids",
+        grids.front().uniqueName, file.path.string(), text(theirs.lower), text(theirs.upper),
+        text(moved.lower), text(moved.upper));
+}
+
+/// "vel", or "vel.x, vel.y, vel.z".
+std::string namesOf(const grid::VelocityGrids& grids) {
+    std::vector<std::string> names;
+    for (const grid::GridListing& grid : grids) names.push_back(grid.uniqueName);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader,
                         LoadCache& cache) {
     const VolumeDescription& volume = scene.volumes[index];
@@ -348,7 +421,14 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
         loaded.hottest = largest(loaded.temperatures);
         loaded.brightest = largest(loaded.flames);
     }
-    loaded.velocities = unusedVelocities(file, loaded);
+    inPlace(placeOf(volume.velocity.grid), [&] {
+        const grid::VelocityGrids grids = loader.velocityGrids(volume);
+        if (grids.empty() || !scene.needsVelocities(volume)) return;
+        loaded.velocity = loader.velocity(volume, grids);
+        loaded.velocities = namesOf(grids);
+        if (loaded.velocity) requireOverlap(file, grids, loaded);
+    });
+    if (loaded.velocities.empty()) loaded.velocities = unusedVelocities(file, loaded);
     if (writtenByBlender(file)) loaded.up = UpAxis::Z;
     return loaded;
 }

@@ -16,6 +16,10 @@
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/surface/texture.h"
 
+namespace woodcock::grid {
+class Velocity;
+}
+
 namespace woodcock::scene {
 
 /// A grid in memory; several volumes may share its field.
@@ -39,8 +43,10 @@ struct LoadedVolume {
     /// The largest values of `temperatures` and `flames`, where they are of use: the scene comes
     /// from the VDB file alone, and the grid is small enough to be looked through; 0: unknown.
     float hottest = 0, brightest = 0;
-    std::string
-        velocities;  ///< the first grid of the file that means them and is not used; or empty
+    /// By which the volume moves; null: it stands still, or the shutter opens for no time.
+    std::shared_ptr<const grid::Velocity> velocity;
+    std::string velocities;  ///< their grids' names; of a volume that stands still, of the first
+                             ///< grid of the file that means them and is not used; or empty
     std::optional<medium::PhaseTable> phase;  ///< of a TablePhase
     UpAxis up = UpAxis::Y;  ///< Z where the file's metadata say that Blender wrote it
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "woodcock/scene/animation.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/overrides.h"
@@ -64,6 +65,37 @@ SceneDescription readScene(const TomlTable& table, const std::string& name,
     return scene;
 }
 
+void checkOrbit(const SceneDescription& scene) {
+    if (!scene.camera.orbit) return;
+    for (const AnimatedValue& value : scene.animation)
+        for (const char* key : {"eye", "look_at", "up", "matrix"})
+            if (value.table == "camera" && value.key == key)
+                throw inputError(
+                    "{}: camera.orbit cannot be used together with keys of camera.{}; turn the "
+                    "keys instead",
+                    findPlace(scene.places, "camera.orbit"), key);
+}
+
+/// The scene at frame 0. All others are read at every key, to find mistakes there.
+SceneDescription readAnimated(toml::table& table, const std::string& name,
+                              const std::filesystem::path& base) {
+    const auto read = [&] {
+        SceneDescription scene = readScene(TomlTable(table, ""), name, base);
+        checkSurfaces(scene);
+        return scene;
+    };
+    AnimatedTree tree(table);
+    if (tree.empty()) return read();
+    for (const double frame : tree.frames()) {
+        tree.setFrame(frame);
+        read();
+    }
+    tree.setFrame(0);
+    SceneDescription scene = read();
+    scene.animation = tree.valuesOf(scene);
+    return scene;
+}
+
 /// Tries overrides of lights that are still to be chosen on placeholders, to find mistakes in them.
 void checkLightChanges(const SceneDescription& scene) {
     if (scene.lightChanges.empty()) return;
@@ -102,19 +134,53 @@ void write(SceneWriter& out, const CameraDescription& camera) {
     writeKeys(out, camera);
 }
 
+void write(SceneWriter& out, const OutputDescription& output) {
+    out.heading("[output]");
+    writeKeys(out, output);
+}
+
+/// What moves within the shutter, for a digest.
+void writeAnimation(SceneWriter& out, const SceneDescription& scene) {
+    if (scene.animation.empty()) return;
+    out.heading("[animation]");
+    out.line("frame", tomlNumber(scene.frame));
+    for (const AnimatedValue& value : scene.animation)
+        out.line(value.table + "." + value.key, value.value);
+}
+
+/// A section, with what of it is animated.
+template <class Section>
+void write(SceneWriter& out, const Section& section, const SceneDescription& scene,
+           const std::string& table) {
+    if (out.isDigest() || !isAnimated(scene, table)) return write(out, section);
+    SceneWriter own = out.empty();
+    write(own, section);
+    out.append(withAnimation(own.text(), scene, table));
+}
+
+template <class Section>
+void writeList(SceneWriter& out, const std::vector<Section>& list, const SceneDescription& scene,
+               const std::string& name) {
+    for (std::size_t i = 0; i < list.size(); ++i)
+        write(out, list[i], scene, fmt::format("{}[{}]", name, i));
+}
+
 void write(SceneWriter& out, const SceneDescription& scene) {
     out.comment("A Woodcock scene. Lengths are world units, angles degrees, colours scene-linear.");
     writeKeys(out, scene);
-    for (const VolumeDescription& volume : scene.volumes) write(out, volume);
-    for (const MaterialDescription& material : scene.materials) write(out, material);
-    for (const SurfaceDescription& surface : scene.surfaces) write(out, surface);
-    for (const LightDescription& light : scene.lights) write(out, light);
-    if (scene.camera != CameraDescription()) write(out, scene.camera);
+    writeList(out, scene.volumes, scene, "volume");
+    writeList(out, scene.materials, scene, "material");
+    writeList(out, scene.surfaces, scene, "surface");
+    writeList(out, scene.lights, scene, "light");
+    if (scene.camera != CameraDescription() || isAnimated(scene, "camera"))
+        write(out, scene.camera, scene, "camera");
     out.heading("[render]");
     writeKeys(out, scene.render);
-    if (out.isDigest() || scene.output == OutputDescription()) return;
-    out.heading("[output]");
-    writeKeys(out, scene.output);
+    if (out.isDigest()) {
+        writeAnimation(out, scene);
+    } else if (scene.output != OutputDescription() || isAnimated(scene, "output")) {
+        write(out, scene.output, scene, "output");
+    }
 }
 
 /// FNV-1a, 64 bits.
@@ -159,10 +225,11 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
     }
     keepOverriddenSuns(table);
     expandQuality(table);
-    SceneDescription scene = readScene(TomlTable(table, ""), name, baseDirectory);
-    for (const auto& [key, value] : table)
-        collectPlaces(value, std::string(key.str()), scene.places);
-    checkSurfaces(scene);
+    Places places;
+    for (const auto& [key, value] : table) collectPlaces(value, std::string(key.str()), places);
+    SceneDescription scene = readAnimated(table, name, baseDirectory);
+    scene.places = std::move(places);
+    checkOrbit(scene);
     scene.lightChanges = std::move(lightChanges);
     checkLightChanges(scene);
     return scene;
@@ -177,6 +244,9 @@ SceneDescription parseScene(const std::filesystem::path& file,
 std::string writeVolume(const VolumeDescription& volume) { return writeSection(volume); }
 std::string writeCamera(const CameraDescription& camera) { return writeSection(camera); }
 std::string writeLight(const LightDescription& light) { return writeSection(light); }
+std::string writeMaterial(const MaterialDescription& material) { return writeSection(material); }
+std::string writeSurface(const SurfaceDescription& surface) { return writeSection(surface); }
+std::string writeOutput(const OutputDescription& output) { return writeSection(output); }
 
 std::string writeScene(const SceneDescription& scene, const std::filesystem::path& directory) {
     SceneWriter out(directory, SceneWriter::Mode::File);

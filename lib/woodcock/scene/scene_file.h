@@ -32,6 +32,9 @@ std::string writeScene(const SceneDescription& scene, const std::filesystem::pat
 std::string writeVolume(const VolumeDescription& volume);
 std::string writeCamera(const CameraDescription& camera);
 std::string writeLight(const LightDescription& light);
+std::string writeMaterial(const MaterialDescription& material);
+std::string writeSurface(const SurfaceDescription& surface);
+std::string writeOutput(const OutputDescription& output);
 
 /// 16 hex digits that tell scenes apart: over all that determines what the image shows, whatever
 /// way the file was written. Left out are the output, the number of samples, the seed and the

@@ -68,6 +68,7 @@ void intersect(RTCScene scene, const TreeRay& ray, Visitor& visitor) {
     r.ray.org_x = o.x, r.ray.org_y = o.y, r.ray.org_z = o.z;
     r.ray.dir_x = d.x, r.ray.dir_y = d.y, r.ray.dir_z = d.z;
     r.ray.tfar = static_cast<float>(ray.distance + 3 * margin);
+    r.ray.time = ray.time;
     r.ray.mask = ~0u;
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -98,9 +99,10 @@ void visitBox(const RTCIntersectFunctionNArguments* a) {
     ray.hit.primID = a->primID;
 }
 
+using BoxAtStep = std::function<Box3d(std::uint32_t, std::uint32_t)>;
+
 void boundBox(const RTCBoundsFunctionArguments* a) {
-    const auto& box = *static_cast<const std::function<Box3d(std::uint32_t)>*>(a->geometryUserPtr);
-    const Box3d b = box(a->primID);
+    const Box3d b = (*static_cast<const BoxAtStep*>(a->geometryUserPtr))(a->primID, a->timeStep);
     const Vec3d m{EmbreeTree::margin, EmbreeTree::margin, EmbreeTree::margin};
     const Vec3f lower = (b.lower - m).as<float>(), upper = (b.upper + m).as<float>();
     *a->bounds_o = {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, 0};
@@ -171,13 +173,19 @@ EmbreeTree::EmbreeTree(const EmbreeDevice& embree, std::size_t points,
 
 EmbreeTree::EmbreeTree(const EmbreeDevice& embree, std::uint32_t boxes,
                        const std::function<Box3d(std::uint32_t)>& box)
+    : EmbreeTree(embree, boxes, 1, [&](std::uint32_t index, std::uint32_t) { return box(index); }) {
+}
+
+EmbreeTree::EmbreeTree(const EmbreeDevice& embree, std::uint32_t boxes, std::uint32_t steps,
+                       const std::function<Box3d(std::uint32_t, std::uint32_t)>& box)
     : impl_(std::make_unique<Impl>()) {
     const RTCDevice device = embree.impl_->device.get();
     const Owned<RTCGeometry, rtcReleaseGeometry> geometry(
         rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
     rtcSetGeometryUserPrimitiveCount(geometry.get(), boxes);
+    rtcSetGeometryTimeStepCount(geometry.get(), steps);
     // Called while the tree is built, and not after.
-    rtcSetGeometryUserData(geometry.get(), const_cast<std::function<Box3d(std::uint32_t)>*>(&box));
+    rtcSetGeometryUserData(geometry.get(), const_cast<BoxAtStep*>(&box));
     rtcSetGeometryBoundsFunction(geometry.get(), boundBox, nullptr);
     rtcSetGeometryIntersectFunction(geometry.get(), visitBox);
     impl_->build(device, geometry.get());
@@ -191,11 +199,12 @@ void EmbreeTree::traverse(const TreeRay& ray, BoxVisitor& visitor) const {
     intersect(impl_->scene.get(), ray, visitor);
 }
 
-void EmbreeTree::around(Vec3d point, double radius,
+void EmbreeTree::around(Vec3d point, double radius, float time,
                         const std::function<void(std::uint32_t)>& visit) const {
     const Vec3f p = point.as<float>();
     RTCPointQuery query{};
     query.x = p.x, query.y = p.y, query.z = p.z;
+    query.time = time;
     query.radius = static_cast<float>(radius + 2 * margin);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);

@@ -50,6 +50,7 @@ protected:
 struct TreeRay {
     Vec3d origin, direction;
     double distance = 0;
+    float time = 0;  ///< of boxes that move
 };
 
 class EmbreeTree {
@@ -66,6 +67,10 @@ public:
                std::span<const std::array<std::uint32_t, 3>> triangles);
     EmbreeTree(const EmbreeDevice& device, std::uint32_t boxes,
                const std::function<Box3d(std::uint32_t)>& box);
+    /// The same of boxes that move: `box` gives them at evenly spaced steps from time 0 to 1, two
+    /// steps at least. In between they are interpolated.
+    EmbreeTree(const EmbreeDevice& device, std::uint32_t boxes, std::uint32_t steps,
+               const std::function<Box3d(std::uint32_t box, std::uint32_t step)>& box);
     ~EmbreeTree();
     EmbreeTree(EmbreeTree&&) noexcept;
     EmbreeTree& operator=(EmbreeTree&&) noexcept;
@@ -73,9 +78,10 @@ public:
     explicit operator bool() const { return impl_ != nullptr; }
     void traverse(const TreeRay& ray, TriangleVisitor& visitor) const;
     void traverse(const TreeRay& ray, BoxVisitor& visitor) const;
-    /// Calls `visit` with all triangles or boxes that may lie within a radius of a point, and with
-    /// some others.
-    void around(Vec3d point, double radius, const std::function<void(std::uint32_t)>& visit) const;
+    /// Calls `visit` with all triangles or boxes that may lie within a radius of a point, at a
+    /// time, and with some others.
+    void around(Vec3d point, double radius, float time,
+                const std::function<void(std::uint32_t)>& visit) const;
 
 private:
     struct Impl;

@@ -15,12 +15,63 @@ Geometry::Impl::Impl(std::vector<Shape> s, std::vector<ShapeInstance> i)
     localOfWorld.reserve(instances.size());
     for (std::uint32_t n = 0; n < instances.size(); ++n) placeInstance(n);
     if (finite.empty()) return;
+    buildTree();
+}
+
+void Geometry::Impl::buildTree() {
     frame = Frame(bounds);
     if (!device) device.emplace();
-    tree = EmbreeTree(*device, static_cast<std::uint32_t>(finite.size()), [&](std::uint32_t n) {
-        const Box3d box = worldBox(finite[n]);
+    const auto count = static_cast<std::uint32_t>(finite.size());
+    const auto framed = [&](const Box3d& box) {
         return Box3d{frame.point(box.lower), frame.point(box.upper)};
+    };
+    if (!moves) {
+        tree = EmbreeTree(*device, count,
+                          [&](std::uint32_t n) { return framed(worldBox(finite[n])); });
+        return;
+    }
+    std::vector<std::vector<Box3d>> boxes;
+    for (const std::uint32_t i : finite) boxes.push_back(boxesAtSteps(i));
+    tree = EmbreeTree(*device, count, timeSteps, [&](std::uint32_t n, std::uint32_t step) {
+        return framed(boxes[n][std::min<std::size_t>(step, boxes[n].size() - 1)]);
     });
+}
+
+// Embree interpolates the boxes of two steps linearly. A box that is larger by what the way
+// between them strays from that holds its instance at all times. How far it strays is found at
+// `looks` times between, and grows by no more than the speed allows in between those.
+std::vector<Box3d> Geometry::Impl::boxesAtSteps(std::uint32_t i) const {
+    const MovingTransform* const motion = instances[i].motion.get();
+    if (!motion || motion->jumps()) return {worldBox(i)};
+    const Affine3d& rest = instances[i].worldFromObject;
+    const auto boxNow = [&](double u) { return boxAt(i, motion->at(u) * rest); };
+    constexpr int looks = 8;
+    constexpr std::uint32_t spans = timeSteps - 1;
+    std::vector<Box3d> boxes;
+    for (std::uint32_t k = 0; k <= spans; ++k) boxes.push_back(boxNow(double(k) / spans));
+    if (motion->straight()) return boxes;
+    double strays = 0;
+    for (std::uint32_t k = 0; k < spans; ++k)
+        for (int look = 1; look < looks; ++look) {
+            const double s = double(look) / looks;
+            const Box3d now = boxNow((k + s) / spans);
+            const Vec3d lower = boxes[k].lower * (1 - s) + boxes[k + 1].lower * s,
+                        upper = boxes[k].upper * (1 - s) + boxes[k + 1].upper * s;
+            for (int axis = 0; axis < 3; ++axis)
+                strays = std::max(
+                    {strays, lower[axis] - now.lower[axis], now.upper[axis] - upper[axis]});
+        }
+    strays += motion->largestSpeed(boxAt(i, rest)) / (looks * spans);
+    for (Box3d& box : boxes) {
+        box.lower = box.lower - Vec3d{1, 1, 1} * strays;
+        box.upper = box.upper + Vec3d{1, 1, 1} * strays;
+    }
+    return boxes;
+}
+
+void Geometry::Impl::move(std::uint32_t i, float time, Placement& placement) const {
+    const Affine3d there = instances[i].motion->at(double{time}) * instances[i].worldFromObject;
+    placement.moved = Placement::Moved{there, localOfWorldAt(i, there)};
 }
 
 void Geometry::Impl::prepareShape(const Shape& shape) {
@@ -42,12 +93,17 @@ void Geometry::Impl::prepareShape(const Shape& shape) {
     }
 }
 
+Columns Geometry::Impl::localOfWorldAt(std::uint32_t i, const Affine3d& worldFromObject) const {
+    Columns inverse = Affine3d{worldFromObject.column, {}}.inverse().column;
+    for (Vec3d& column : inverse) column = column * shapeOf(i).frame.scale;
+    return inverse;
+}
+
 void Geometry::Impl::placeInstance(std::uint32_t i) {
     const ShapeInstance& instance = instances[i];
     const PreparedShape& shape = prepared.at(instance.shape);
     const Affine3d& m = instance.worldFromObject;
-    Columns inverse = Affine3d{m.column, {}}.inverse().column;
-    for (Vec3d& column : inverse) column = column * shape.frame.scale;
+    const Columns inverse = localOfWorldAt(i, m);
     const double sides = length(m.column[0]) * length(m.column[1]) * length(m.column[2]);
     const bool invertible = isFinite(inverse[0]) && isFinite(inverse[1]) && isFinite(inverse[2]);
     constexpr double flat = 1e-14;  // of the box of its columns' lengths
@@ -58,6 +114,7 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
         throw inputError("the transform of instance {} (object {}) flattens its shape", i,
                          instance.object);
     localOfWorld.push_back(inverse);
+    moves |= instance.motion != nullptr;
     if (shape.kind == PreparedShape::Kind::Plane) {
         planes.push_back(i);
     } else if (!shape.box.empty()) {
@@ -66,22 +123,28 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
     }
 }
 
-Box3d Geometry::Impl::worldBox(std::uint32_t i) const {
+Box3d Geometry::Impl::boxAt(std::uint32_t i, const Affine3d& worldFromObject) const {
     const PreparedShape& shape = shapeOf(i);
+    const Placement at{&worldFromObject, nullptr, {}};
     if (shape.kind == PreparedShape::Kind::Sphere) {
-        const Columns& c = instances[i].worldFromObject.column;
+        const Columns& c = worldFromObject.column;
         const Vec3d half{length(Vec3d{c[0].x, c[1].x, c[2].x}),
                          length(Vec3d{c[0].y, c[1].y, c[2].y}),
                          length(Vec3d{c[0].z, c[1].z, c[2].z})};
-        return {centre(i) - half, centre(i) + half};
+        return {centre(i, at) - half, centre(i, at) + half};
     }
     Box3d box;
-    for (int corner = 0; corner < 8; ++corner) box.add(world(i, shape.box.corner(corner)));
+    for (int corner = 0; corner < 8; ++corner) box.add(world(i, at, shape.box.corner(corner)));
     return box;
 }
 
+Box3d Geometry::Impl::worldBox(std::uint32_t i) const {
+    const Box3d rest = boxAt(i, instances[i].worldFromObject);
+    return instances[i].motion ? instances[i].motion->box(rest) : rest;
+}
+
 template <class Visitor>
-void Geometry::Impl::visitInstances(const LocalRay& ray, Visitor& visitor) const {
+void Geometry::Impl::visitInstances(const LocalRay& ray, float time, Visitor& visitor) const {
     for (const std::uint32_t plane : planes) visitor.visitInstance(plane);
     if (!tree) return;
     const RayInterval part =
@@ -91,23 +154,24 @@ void Geometry::Impl::visitInstances(const LocalRay& ray, Visitor& visitor) const
     visitor.from = part.from;
     visitor.perUnit = speed * frame.scale;
     tree.traverse({frame.point(ray.at(part.from)), ray.direction * (1 / speed),
-                   (part.to - part.from) * visitor.perUnit},
+                   (part.to - part.from) * visitor.perUnit, time},
                   visitor);
 }
 
 struct Geometry::Impl::NearestVisitor final : BoxVisitor {
     const Impl& impl;
     const LocalRay& ray;
+    float time;
     const SurfaceHit* left;
     NearestSurface nearest;
     double from = 0, perUnit = 1;  ///< of the tree's ray: where it begins, its units in one of t
 
-    NearestVisitor(const Impl& i, const LocalRay& r, double tMax, const SurfaceHit* l)
-        : impl(i), ray(r), left(l) {
+    NearestVisitor(const Impl& i, const LocalRay& r, float u, double tMax, const SurfaceHit* l)
+        : impl(i), ray(r), time(u), left(l) {
         nearest.t = tMax;
     }
     double end() const { return nearest.t + nearest.slack; }
-    void visitInstance(std::uint32_t i) { impl.meet(i, ray, left, nearest); }
+    void visitInstance(std::uint32_t i) { impl.meet(i, ray, time, left, nearest); }
     double visit(std::uint32_t box) override {
         visitInstance(impl.finite[box]);
         return (end() - from) * perUnit;
@@ -117,16 +181,18 @@ struct Geometry::Impl::NearestVisitor final : BoxVisitor {
 struct Geometry::Impl::EnclosingVisitor final : BoxVisitor {
     const Impl& impl;
     Vec3d point;
+    float time;
     const std::vector<bool>& closed;
     std::vector<std::uint32_t> found;
     double from = 0, perUnit = 1;
 
-    EnclosingVisitor(const Impl& i, Vec3d p, const std::vector<bool>& c)
-        : impl(i), point(p), closed(c) {}
+    EnclosingVisitor(const Impl& i, Vec3d p, float u, const std::vector<bool>& c)
+        : impl(i), point(p), time(u), closed(c) {}
     double end() const { return 0; }  // boxes around the point alone
     void visitInstance(std::uint32_t i) {
         const std::uint32_t object = impl.instances[i].object;
-        if (object < closed.size() && closed[object] && impl.encloses(i, point)) found.push_back(i);
+        if (object < closed.size() && closed[object] && impl.encloses(i, point, time))
+            found.push_back(i);
     }
     double visit(std::uint32_t box) override {
         visitInstance(impl.finite[box]);
@@ -134,10 +200,11 @@ struct Geometry::Impl::EnclosingVisitor final : BoxVisitor {
     }
 };
 
-void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, const SurfaceHit* left,
-                          NearestSurface& nearest) const {
+void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, float time,
+                          const SurfaceHit* left, NearestSurface& nearest) const {
     const PreparedShape& shape = shapeOf(i);
-    const LocalRay ray = local(i, worldRay);
+    const Placement at = placed(i, time);
+    const LocalRay ray = local(i, at, worldRay);
     const double tMax = nearest.t + nearest.slack;
     Vec3d outwards;  // normal of the shape that the ray starts on
     bool leaves = false;
@@ -178,7 +245,7 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, const Surfa
             }
     }
     if (!t || !(*t < tMax)) return;
-    const double slack = slackOf(i, worldRay, ray, *t, point);
+    const double slack = slackOf(i, at, worldRay, ray, *t, point);
     const bool nearer = *t < nearest.t;
     const bool coincident =
         nearest.found && std::abs(*t - nearest.t) <= std::max(slack, nearest.slack);
@@ -200,9 +267,9 @@ std::optional<MeshPoint> Geometry::Impl::meetMesh(std::uint32_t i, const LocalRa
     });
 }
 
-bool Geometry::Impl::encloses(std::uint32_t i, Vec3d point) const {
+bool Geometry::Impl::encloses(std::uint32_t i, Vec3d point, float time) const {
     const PreparedShape& shape = shapeOf(i);
-    const Vec3d p = local(i, {point, {}}).origin;
+    const Vec3d p = local(i, placed(i, time), {point, {}}).origin;
     switch (shape.kind) {
         case PreparedShape::Kind::Sphere:
             return dot(p, p) < 1;
@@ -216,10 +283,12 @@ bool Geometry::Impl::encloses(std::uint32_t i, Vec3d point) const {
     return false;
 }
 
-void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& worldRay,
+void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& worldRay, float time,
                               SurfaceHit& hit) const {
     const std::uint32_t i = nearest.instance;
+    const Placement at = placed(i, time);
     hit.t = nearest.t;
+    hit.time = time;
     hit.instance = i;
     hit.primitive = nearest.point.triangle;
     hit.object = instances[i].object;
@@ -227,32 +296,32 @@ void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& wor
         // A ray that leaves from the very edge could pass between two triangles in floats.
         const Triangle triangle = shapeOf(i).mesh->triangle(hit.primitive);
         hit.position =
-            world(i, triangle.at(awayFromEdges(triangle, nearest.point.weights, floatError)));
-        completeMesh(nearest.point, hit);
+            world(i, at, triangle.at(awayFromEdges(triangle, nearest.point.weights, floatError)));
+        completeMesh(at, nearest.point, hit);
     } else {
-        Vec3d p = local(i, worldRay).at(hit.t);
+        Vec3d p = local(i, at, worldRay).at(hit.t);
         if (shapeOf(i).kind == PreparedShape::Kind::Sphere)
             p = normalize(p);
         else
             p.y = 0;
-        hit.position = world(i, p);
-        completeShape(p, hit);
+        hit.position = world(i, at, p);
+        completeShape(at, p, hit);
     }
     hit.coincident = {};
     if (!nearest.coincident) return;
     hit.coincident.any = true;
-    hit.coincident.reach = reach(i, hit.primitive, hit.normal, hit.position);
+    hit.coincident.reach = reach(i, at, hit.primitive, hit.normal, hit.position);
 }
 
 /// Completes a hit on a shape that is not a mesh, at a point of its own frame.
-void Geometry::Impl::completeShape(Vec3d p, SurfaceHit& hit) const {
+void Geometry::Impl::completeShape(const Placement& at, Vec3d p, SurfaceHit& hit) const {
     if (shapeOf(hit.instance).kind == PreparedShape::Kind::Sphere) {
-        hit.normal = worldNormal(hit.instance, p);
+        hit.normal = worldNormal(at, p);
         const double longitude = std::atan2(-p.z, p.x) / (2 * pi);
         hit.u = longitude < 0 ? longitude + 1 : longitude;
         hit.v = 0.5 + std::asin(std::clamp(p.y, -1.0, 1.0)) / pi;
     } else {
-        hit.normal = worldNormal(hit.instance, {0, 1, 0});
+        hit.normal = worldNormal(at, {0, 1, 0});
         // The texture covers the square around a disk.
         const bool disk = shapeOf(hit.instance).kind == PreparedShape::Kind::Disk;
         hit.u = disk ? (1 + p.x) / 2 : p.x;
@@ -261,14 +330,15 @@ void Geometry::Impl::completeShape(Vec3d p, SurfaceHit& hit) const {
     hit.shadingNormal = hit.normal;
 }
 
-void Geometry::Impl::completeMesh(const MeshPoint& point, SurfaceHit& hit) const {
+void Geometry::Impl::completeMesh(const Placement& at, const MeshPoint& point,
+                                  SurfaceHit& hit) const {
     const std::uint32_t i = hit.instance;
     const FramedMesh& framed = *shapeOf(i).mesh;
     const mesh::SurfaceMesh& mesh = framed.mesh();
     const std::uint32_t primitive = point.triangle;
     const std::array<double, 3>& w = point.weights;
     const Triangle triangle = framed.triangle(primitive);
-    hit.normal = worldNormal(i, triangle.normal);
+    hit.normal = worldNormal(at, triangle.normal);
     hit.shadingNormal = hit.normal;
     hit.u = hit.v = 0;
     if (!mesh.uvs.empty()) {
@@ -286,7 +356,7 @@ void Geometry::Impl::completeMesh(const MeshPoint& point, SurfaceHit& hit) const
     }
     // In some files normals point against the triangles.
     if (dot(sum, triangle.normal) < 0) interpolated = -interpolated;
-    Vec3d n = worldNormal(i, interpolated);
+    Vec3d n = worldNormal(at, interpolated);
     constexpr double least = 1e-3;  // cosine: bent to just above the surface
     const double cosine = dot(n, hit.normal);
     if (cosine < least) n = normalize(n + hit.normal * (least - cosine));
@@ -302,21 +372,23 @@ Geometry& Geometry::operator=(Geometry&&) noexcept = default;
 const std::vector<Shape>& Geometry::shapes() const { return impl_->shapes; }
 const std::vector<ShapeInstance>& Geometry::instances() const { return impl_->instances; }
 Box3d Geometry::bounds() const { return impl_->bounds; }
+bool Geometry::moves() const { return impl_->moves; }
 
 bool Geometry::intersect(Vec3d origin, Vec3d direction, double tMax, const SurfaceHit* left,
-                         SurfaceHit& hit) const {
+                         SurfaceHit& hit, float time) const {
     if (!isFinite(origin) || !isFinite(direction)) return false;
     const LocalRay ray{origin, direction};
-    Impl::NearestVisitor visitor(*impl_, ray, tMax, left);
-    impl_->visitInstances(ray, visitor);
-    if (visitor.nearest.found) impl_->complete(visitor.nearest, ray, hit);
+    Impl::NearestVisitor visitor(*impl_, ray, time, tMax, left);
+    impl_->visitInstances(ray, time, visitor);
+    if (visitor.nearest.found) impl_->complete(visitor.nearest, ray, time, hit);
     return visitor.nearest.found;
 }
 
-std::vector<std::uint32_t> Geometry::enclosing(Vec3d point, const std::vector<bool>& closed) const {
+std::vector<std::uint32_t> Geometry::enclosing(Vec3d point, const std::vector<bool>& closed,
+                                               float time) const {
     if (!isFinite(point)) return {};
-    Impl::EnclosingVisitor visitor(*impl_, point, closed);
-    impl_->visitInstances({point, {0, 0, 1}}, visitor);
+    Impl::EnclosingVisitor visitor(*impl_, point, time, closed);
+    impl_->visitInstances({point, {0, 0, 1}}, time, visitor);
     std::sort(visitor.found.begin(), visitor.found.end());
     return std::move(visitor.found);
 }

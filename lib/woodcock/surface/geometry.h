@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "woodcock/base/affine.h"
+#include "woodcock/base/moving_transform.h"
 #include "woodcock/mesh/surface_mesh.h"
 
 namespace woodcock::surface {
@@ -24,11 +25,15 @@ struct ShapeInstance {
     std::uint32_t shape = 0;
     std::uint32_t object = 0;  ///< of the caller's choice; returned with hits
     Affine3d worldFromObject;
+    /// It moves within the shutter: where it takes a point of the world, in which worldFromObject
+    /// places the shape at rest. Null: it stands still.
+    std::shared_ptr<const MovingTransform> motion = {};
 };
 
 /// Where a ray meets a surface. All vectors are of unit length and in world space.
 struct SurfaceHit {
-    double t = 0;  ///< along the ray
+    double t = 0;    ///< along the ray
+    float time = 0;  ///< of the ray, within the shutter
     /// The point on the surface. On triangles it is kept a little within the edges (by 5e-7 of the
     /// mesh's size), so that paths surely go on from that triangle.
     Vec3d position;
@@ -59,7 +64,9 @@ struct CoincidentSurface {
 };
 
 /// All surfaces of a scene. Embree finds candidates in floats, in each shape's own frame; hits are
-/// then decided on and computed in doubles. Immutable; shared by threads.
+/// then decided on and computed in doubles. Immutable; shared by threads. Where an instance moves,
+/// rays see it as it is at their time, exactly: only the boxes around moving instances are
+/// Embree's interpolation, and a little larger for it.
 class Geometry {
 public:
     /// Throws Error{Input} on transforms that are not finite or flatten their shape, naming the
@@ -72,12 +79,13 @@ public:
     const std::vector<Shape>& shapes() const;
     const std::vector<ShapeInstance>& instances() const;
 
-    /// The nearest hit with 0 < t < tMax; false: none. `left`: the hit at whose position the ray
+    /// The nearest hit with 0 < t < tMax, of surfaces as they are at `time` within the shutter;
+    /// false: none. `left`: the hit at whose position the ray
     /// starts, null in free space. A ray does not meet again the surface that it leaves, nor
     /// surfaces that coincide with it. Closed meshes have no cracks, but a ray that is aimed
     /// exactly at a corner, to the last bit of a float, may pass there.
     bool intersect(Vec3d origin, Vec3d direction, double tMax, const SurfaceHit* left,
-                   SurfaceHit& hit) const;
+                   SurfaceHit& hit, float time = 0) const;
 
     /// All surfaces that coincide with a hit, where hit.coincident.any is true, in the order of
     /// instances and primitives. They pass through its position and have its normal or the opposite
@@ -87,11 +95,14 @@ public:
     /// The hit on one of these surfaces, at the position of `hit`.
     SurfaceHit inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& other) const;
 
-    /// The instances that enclose a point (world), in order; only those for which `closed` (by
-    /// object) is true. It counts the surfaces that a ray from the point leaves and enters.
-    std::vector<std::uint32_t> enclosing(Vec3d point, const std::vector<bool>& closed) const;
+    /// The instances that enclose a point (world) at a time, in order; only those for which
+    /// `closed` (by object) is true. It counts the surfaces that a ray from the point leaves and
+    /// enters.
+    std::vector<std::uint32_t> enclosing(Vec3d point, const std::vector<bool>& closed,
+                                         float time = 0) const;
+    bool moves() const;  ///< whether any instance does
 
-    /// World box of all finite shapes; empty where there are none.
+    /// World box of all finite shapes, of the whole shutter; empty where there are none.
     Box3d bounds() const;
     std::size_t memoryBytes() const;  ///< of Embree's structures and our own
 

@@ -24,21 +24,21 @@ double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::ab
 
 }  // namespace
 
-double Geometry::Impl::reach(std::uint32_t i, std::uint32_t primitive, Vec3d normal,
-                             Vec3d point) const {
+double Geometry::Impl::reach(std::uint32_t i, const Placement& at, std::uint32_t primitive,
+                             Vec3d normal, Vec3d point) const {
     const double doubles =
-        doubleRounding * dot(absolute(normal), absolute(point) + absolute(centre(i)));
+        doubleRounding * dot(absolute(normal), absolute(point) + absolute(centre(i, at)));
     if (shapeOf(i).kind != PreparedShape::Kind::Mesh) return doubles;
     const FramedMesh& mesh = *shapeOf(i).mesh;
     const Vec3d n = normalize(mesh.triangle(primitive).normal);
-    return doubles + mesh.rounding(primitive, n) / length(timesTransposed(localOfWorld[i], n));
+    return doubles + mesh.rounding(primitive, n) / length(timesTransposed(at.localOfWorld(), n));
 }
 
-double Geometry::Impl::slackOf(std::uint32_t i, const LocalRay& worldRay, const LocalRay& ray,
-                               double t, const MeshPoint& point) const {
-    const Columns& m = localOfWorld[i];
+double Geometry::Impl::slackOf(std::uint32_t i, const Placement& at, const LocalRay& worldRay,
+                               const LocalRay& ray, double t, const MeshPoint& point) const {
+    const Columns& m = at.localOfWorld();
     const double stretch = largest(m[0]) + largest(m[1]) + largest(m[2]);
-    const double numbers = largest(worldRay.origin) + t + largest(centre(i));
+    const double numbers = largest(worldRay.origin) + t + largest(centre(i, at));
     double cosine = 1;  // of the local direction, times its length
     switch (shapeOf(i).kind) {
         case PreparedShape::Kind::Mesh:
@@ -59,7 +59,8 @@ std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit&
                                                                std::uint32_t i,
                                                                std::uint32_t primitive) const {
     const PreparedShape& shape = shapeOf(i);
-    const Vec3d p = local(i, {hit.position, {}}).origin;
+    const Placement at = placed(i, hit.time);
+    const Vec3d p = local(i, at, {hit.position, {}}).origin;
     // In the shape's frame: the normal, and the point's height above the surface.
     Vec3d n{0, 1, 0};
     double height = p.y;
@@ -70,12 +71,12 @@ std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit&
         triangle.emplace(shape.mesh->triangle(primitive));
         n = normalize(triangle->normal), height = dot(p - triangle->corner[0], n);
     }
-    const Vec3d gradient = timesTransposed(localOfWorld[i], n);
+    const Vec3d gradient = timesTransposed(at.localOfWorld(), n);
     const double perUnit = length(gradient);
     const Vec3d normal = gradient * (1 / perUnit);
     if (!isFinite(normal)) return std::nullopt;  // a triangle without area
     if (!(std::abs(height) / perUnit <=
-          hit.coincident.reach + reach(i, primitive, normal, hit.position)))
+          hit.coincident.reach + reach(i, at, primitive, normal, hit.position)))
         return std::nullopt;
     const double facing = dot(normal, hit.normal);
     if (dot(hit.normal, hit.normal) > 0 && !(facing * facing >= 1 - parallel * parallel))
@@ -84,9 +85,9 @@ std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit&
         return std::nullopt;
     if (triangle) {
         constexpr double edges = 0x1p-40;  // no cracks between neighbours
-        const Columns& m = localOfWorld[i];
+        const Columns& m = at.localOfWorld();
         const double lost = doubleRounding * (largest(m[0]) + largest(m[1]) + largest(m[2])) *
-                            (largest(hit.position) + largest(centre(i)));
+                            (largest(hit.position) + largest(centre(i, at)));
         if (!(edgeDistance(*triangle, p) >= -(edges + lost))) return std::nullopt;
     }
     return CoincidentSurface{i, instances[i].object, primitive, facing, normal};
@@ -102,11 +103,12 @@ void Geometry::coincidentSurfaces(const SurfaceHit& hit,
     for (const std::uint32_t plane : impl.planes) add(plane, 0);
     if (impl.tree)
         impl.tree.around(impl.frame.point(hit.position), hit.coincident.reach * impl.frame.scale,
-                         [&](std::uint32_t box) {
+                         hit.time, [&](std::uint32_t box) {
                              const std::uint32_t i = impl.finite[box];
                              if (!impl.shapeOf(i).mesh) return add(i, 0);
-                             const Vec3d p = impl.local(i, {hit.position, {}}).origin;
-                             const Columns& m = impl.localOfWorld[i];
+                             const Placement at = impl.placed(i, hit.time);
+                             const Vec3d p = impl.local(i, at, {hit.position, {}}).origin;
+                             const Columns& m = at.localOfWorld();
                              const double stretch = length(m[0]) + length(m[1]) + length(m[2]);
                              const FramedMesh& mesh = *impl.shapeOf(i).mesh;
                              mesh.around(p, stretch * hit.coincident.reach,
@@ -121,22 +123,23 @@ SurfaceHit Geometry::inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& o
     SurfaceHit own = hit;
     own.instance = other.instance, own.object = other.object, own.primitive = other.primitive;
     const Impl& impl = *impl_;
-    const Vec3d p = impl.local(other.instance, {hit.position, {}}).origin;
+    const Placement at = impl.placed(other.instance, hit.time);
+    const Vec3d p = impl.local(other.instance, at, {hit.position, {}}).origin;
     switch (impl.shapeOf(other.instance).kind) {
         case PreparedShape::Kind::Mesh: {
             MeshPoint point;
             point.triangle = other.primitive;
             const Triangle triangle = impl.shapeOf(other.instance).mesh->triangle(other.primitive);
             point.weights = awayFromEdges(triangle, weightsAt(triangle, p), 0);
-            impl.completeMesh(point, own);
+            impl.completeMesh(at, point, own);
             break;
         }
         case PreparedShape::Kind::Sphere:
-            impl.completeShape(normalize(p), own);
+            impl.completeShape(at, normalize(p), own);
             break;
         case PreparedShape::Kind::Disk:
         case PreparedShape::Kind::Plane:
-            impl.completeShape({p.x, 0, p.z}, own);
+            impl.completeShape(at, {p.x, 0, p.z}, own);
     }
     // Both lie in one plane, so they share a normal: rounding must not put a direction on different
     // sides of the two.

@@ -30,6 +30,9 @@ inline Vec3d timesTransposed(const Columns& m, Vec3d v) {
     return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
 }
 
+/// Of the tree, where instances move.
+inline constexpr std::uint32_t timeSteps = 17;
+
 struct NearestSurface {
     bool found = false;
     double t = 0;             ///< of the nearest so far
@@ -39,6 +42,23 @@ struct NearestSurface {
     MeshPoint point;  ///< of meshes
 };
 
+/// Where an instance is at a time.
+struct Placement {
+    struct Moved {
+        Affine3d worldFromObject;
+        Columns localOfWorld;
+    };
+    const Affine3d* stillWorldFromObject;
+    const Columns* stillLocalOfWorld;
+    std::optional<Moved> moved;
+
+    const Affine3d& worldFromObject() const {
+        return moved ? moved->worldFromObject : *stillWorldFromObject;
+    }
+    /// Directions to its shape's frame.
+    const Columns& localOfWorld() const { return moved ? moved->localOfWorld : *stillLocalOfWorld; }
+};
+
 struct Geometry::Impl {
     std::vector<Shape> shapes;
     std::vector<ShapeInstance> instances;
@@ -46,6 +66,7 @@ struct Geometry::Impl {
     std::vector<PreparedShape> prepared;  ///< of each shape
     std::vector<Columns> localOfWorld;    ///< of each instance: directions to its shape's frame
     std::vector<std::uint32_t> finite, planes;
+    bool moves = false;
     Box3d bounds;
     Frame frame;  ///< of the tree
     EmbreeTree tree;
@@ -53,45 +74,57 @@ struct Geometry::Impl {
     Impl(std::vector<Shape> s, std::vector<ShapeInstance> i);
     void prepareShape(const Shape& shape);
     void placeInstance(std::uint32_t i);
-    Box3d worldBox(std::uint32_t i) const;
+    Columns localOfWorldAt(std::uint32_t i, const Affine3d& worldFromObject) const;
+    void buildTree();
+    Box3d worldBox(std::uint32_t i) const;  ///< of the whole shutter
+    Box3d boxAt(std::uint32_t i, const Affine3d& worldFromObject) const;
+    std::vector<Box3d> boxesAtSteps(std::uint32_t i) const;
 
     const PreparedShape& shapeOf(std::uint32_t i) const { return prepared[instances[i].shape]; }
-    Vec3d centre(std::uint32_t i) const {
-        return instances[i].worldFromObject.point(shapeOf(i).frame.centre);
+    Placement placed(std::uint32_t i, float time) const {
+        Placement placement{&instances[i].worldFromObject, &localOfWorld[i], {}};
+        if (instances[i].motion) move(i, time, placement);
+        return placement;
     }
-    LocalRay local(std::uint32_t i, const LocalRay& ray) const {
-        return {times(localOfWorld[i], ray.origin - centre(i)),
-                times(localOfWorld[i], ray.direction)};
+    void move(std::uint32_t i, float time, Placement& placement) const;
+    Vec3d centre(std::uint32_t i, const Placement& at) const {
+        return at.worldFromObject().point(shapeOf(i).frame.centre);
     }
-    Vec3d world(std::uint32_t i, Vec3d p) const {
-        return instances[i].worldFromObject.vector(p * (1 / shapeOf(i).frame.scale)) + centre(i);
+    LocalRay local(std::uint32_t i, const Placement& at, const LocalRay& ray) const {
+        return {times(at.localOfWorld(), ray.origin - centre(i, at)),
+                times(at.localOfWorld(), ray.direction)};
+    }
+    Vec3d world(std::uint32_t i, const Placement& at, Vec3d p) const {
+        return at.worldFromObject().vector(p * (1 / shapeOf(i).frame.scale)) + centre(i, at);
     }
     /// Normals are covectors, so the outside does not depend on the sign of the determinant.
-    Vec3d worldNormal(std::uint32_t i, Vec3d n) const {
-        return normalize(timesTransposed(localOfWorld[i], n));
+    Vec3d worldNormal(const Placement& at, Vec3d n) const {
+        return normalize(timesTransposed(at.localOfWorld(), n));
     }
 
     struct NearestVisitor;
     struct EnclosingVisitor;
     template <class Visitor>
-    void visitInstances(const LocalRay& ray, Visitor& visitor) const;
-    void meet(std::uint32_t i, const LocalRay& worldRay, const SurfaceHit* left,
+    void visitInstances(const LocalRay& ray, float time, Visitor& visitor) const;
+    void meet(std::uint32_t i, const LocalRay& worldRay, float time, const SurfaceHit* left,
               NearestSurface& nearest) const;
     std::optional<MeshPoint> meetMesh(std::uint32_t i, const LocalRay& ray, double tMax,
                                       const SurfaceHit* left) const;
-    bool encloses(std::uint32_t i, Vec3d point) const;
-    void complete(const NearestSurface& nearest, const LocalRay& worldRay, SurfaceHit& hit) const;
-    void completeMesh(const MeshPoint& point, SurfaceHit& hit) const;
-    void completeShape(Vec3d p, SurfaceHit& hit) const;
+    bool encloses(std::uint32_t i, Vec3d point, float time) const;
+    void complete(const NearestSurface& nearest, const LocalRay& worldRay, float time,
+                  SurfaceHit& hit) const;
+    void completeMesh(const Placement& at, const MeshPoint& point, SurfaceHit& hit) const;
+    void completeShape(const Placement& at, Vec3d p, SurfaceHit& hit) const;
 
     // ---- surfaces that coincide: geometry_coincident.cpp
 
     /// How far rounding may move a point off the plane of an instance's surface: the rounding of
     /// the numbers from which the point and the plane are computed.
-    double reach(std::uint32_t i, std::uint32_t primitive, Vec3d normal, Vec3d point) const;
+    double reach(std::uint32_t i, const Placement& at, std::uint32_t primitive, Vec3d normal,
+                 Vec3d point) const;
     /// The error of t that follows from it, at a hit at `t` along a ray.
-    double slackOf(std::uint32_t i, const LocalRay& worldRay, const LocalRay& ray, double t,
-                   const MeshPoint& point) const;
+    double slackOf(std::uint32_t i, const Placement& at, const LocalRay& worldRay,
+                   const LocalRay& ray, double t, const MeshPoint& point) const;
     /// The surface, if it passes through the position of a hit.
     std::optional<CoincidentSurface> passesThrough(const SurfaceHit& hit, std::uint32_t i,
                                                    std::uint32_t primitive) const;

@@ -135,7 +135,7 @@ double FramedMesh::rounding(std::uint32_t index, Vec3d normal) const {
 
 void FramedMesh::around(Vec3d point, double radius,
                         const std::function<void(std::uint32_t)>& visit) const {
-    tree_.around(point, radius, visit);
+    tree_.around(point, radius, 0, visit);
 }
 
 std::optional<MeshPoint> FramedMesh::nearest(

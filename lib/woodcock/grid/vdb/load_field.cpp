@@ -111,7 +111,7 @@ LoadedGrid loadGrid(const VdbFile& file, const GridListing& grid, const LoadOpti
     if (std::string note = requireSoundValues(file, grid, source.statistics, options);
         !note.empty())
         loaded.notes.push_back(std::move(note));
-    if (grid.gridClass == GridClass::Staggered)
+    if (grid.gridClass == GridClass::Staggered && !options.onFaces)
         loaded.notes.push_back(
             fmt::format("{} is staggered: its values belong to the faces of "
                         "voxels, but are drawn at their index positions",

@@ -28,8 +28,9 @@ struct LoadOptions {
     GridReach reach = GridReach::Everywhere;
     Storage storage = Storage::Auto;
     bool nonNegative =
-        true;             ///< for a coefficient: negative values are faults, like NaN and infinity
-    bool repair = false;  ///< faults are set to zero, with a note, instead of an error
+        true;              ///< for a coefficient: negative values are faults, like NaN and infinity
+    bool repair = false;   ///< faults are set to zero, with a note, instead of an error
+    bool onFaces = false;  ///< the caller knows where a staggered grid's values belong
     /// Converts the voxels, once they were found sound; null: they stay.
     std::function<FieldSource(FieldSource)> convert = {};
 };

@@ -24,5 +24,7 @@ std::vector<Check> lampsInFog();
 std::vector<Check> skies();
 std::vector<Check> extremes();
 std::vector<Check> emission();
+std::vector<Check> motion();
+std::vector<Check> motionOfTransforms();
 
 }  // namespace woodcock::proof

@@ -16,6 +16,13 @@ struct EventNumbers {
 /// The first scattering orders take their numbers from the quasi-random sequence.
 inline constexpr std::int64_t quasiRandomOrders = 4;
 
+/// The time of a path, uniform within the shutter and stratified over a pixel's samples. It has a
+/// set of dimensions of its own, so nothing else is drawn otherwise in a scene that moves.
+inline float drawTime(const SampleSequence& sequence) {
+    constexpr std::uint32_t set = 2 * quasiRandomOrders + 1;  // the first that no event has
+    return static_cast<float>(sequence.draw(set)[0]);
+}
+
 /// The numbers of a path's next event.
 template <int N, bool Surfaces>
 [[gnu::always_inline]] inline EventNumbers drawNumbers(PathState<N, Surfaces>& p) {

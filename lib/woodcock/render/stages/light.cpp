@@ -32,12 +32,13 @@ void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
     const light::LightSet& lights = traced.scene.lights;
     const auto chosen = batch.choice.choose(p.from, u.pick);
     if (!chosen) return;
-    light::LightSample s = lights.sample(chosen->light, p.from.position, u.light[0], u.light[1]);
+    light::LightSample s =
+        lights.sample(chosen->light, p.from.position, u.light[0], u.light[1], p.time);
     if (!(s.weight.maximum() > 0)) return;
     const double phase = phaseDensity(p, dot(p.from.forward, s.direction), s.weight);
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
-    weight *= share(lights[chosen->light], lights.traits(chosen->light).position);
+    weight *= share(lights, chosen->light);
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
                      s.weight * static_cast<float>(weight), true))
         batch.shadows.back().emitter = s.emitter;
@@ -51,13 +52,13 @@ void addLightHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
         const light::LightTraits& traits = lights.traits(light);
         if (!share && !traits.visible) continue;
         const PathState<N, Surfaces>& p = batch.paths[i];
-        const light::LightHit hit = lights[light].meet(p.origin, p.direction);
+        const light::LightHit hit = lights.meet(light, p.origin, p.direction, p.time);
         if (!std::isfinite(hit.distance)) continue;
         if (!share) p.result->film.glow = 1;
         double weight = 1;
         if (share)
             weight = hitWeight(p, [&] { return batch.choice.pdf(light, p.from, p.direction); }) *
-                     (*share)(lights[light], traits.position);
+                     (*share)(lights, light);
         bool lightSampled = false;
         if constexpr (Surfaces)
             lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;

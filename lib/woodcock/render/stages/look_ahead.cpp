@@ -66,12 +66,13 @@ void addEquiangular(const TracedScene& traced, Batch<N, Surfaces>& batch, std::s
     const double scaled = pick * static_cast<double>(localLights.size());
     const int light =
         localLights[std::min(static_cast<std::size_t>(scaled), localLights.size() - 1)];
-    const Equiangular e = flight.equiangular(lights[light], *lights.traits(light).position);
+    const Equiangular e = flight.equiangular(lights, light, *lights.position(light, p.time));
     const double t = e.sample(u), pdf = e.pdf(t);
     if (!(pdf > 0)) return;
     const light::ScatterPoint at{p.origin + p.direction * t, p.direction};
     const double lightU = scaled - std::floor(scaled);
-    const light::LightSample s = lights.sample(light, at.position, lightU, p.random.uniform());
+    const light::LightSample s =
+        lights.sample(light, at.position, lightU, p.random.uniform(), p.time);
     if (!(s.weight.maximum() > 0)) return;
     const MediaTable::Onward onward = traced.media.onward(p.scatterings, p.random);
     const double cosine = dot(at.forward, s.direction);

@@ -79,7 +79,7 @@ void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i
         enterMediumSet(traced, p);
         if (traced.media.phasesOfSetOnward()) phase = phaseOf(traced.mediumAround(p, p.mediumSet));
     }
-    p.from = {position, p.direction, phase};
+    p.from = {position, p.direction, phase, p.time};
     if constexpr (Surfaces) {
         SurfaceState& s = p.surfaces;
         s.way.leaveSurface();

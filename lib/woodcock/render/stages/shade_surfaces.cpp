@@ -60,7 +60,7 @@ void lightSurface(const TracedScene& traced, Batch<N, true>& batch, std::size_t 
     const auto chosen = batch.choice.choose(p.from, u.pick);
     if (!chosen) return;
     const light::LightSample l =
-        traced.scene.lights.sample(chosen->light, hit.position, u.light[0], u.light[1]);
+        traced.scene.lights.sample(chosen->light, hit.position, u.light[0], u.light[1], p.time);
     if (!(l.weight.maximum() > 0) || traced.surfaces->startsOn(hit, l.emitter)) return;
     const Rgb f = crossing.bsdf.evaluate(out, l.direction);
     if (!(f.maximum() > 0)) return;
@@ -113,7 +113,7 @@ void bounce(const TracedScene& traced, Batch<N, true>& batch, std::size_t i,
     s.way.goOnFromHit(crossing.near);
     p.mediumSet = traced.media.setAfter(p.scatterings);
     if (crossing.bsdf.smooth()) {
-        p.from = {p.origin, p.direction};
+        p.from = {.position = p.origin, .forward = p.direction, .time = p.time};
         if (traced.needs.lightSampling) lightSurface(traced, batch, i, u, crossing, out, caught);
     }
 

@@ -2,6 +2,7 @@
 #include "woodcock/render/stages/spawn.h"
 
 #include "woodcock/render/stages/camera_layers.h"
+#include "woodcock/render/stages/event_numbers.h"
 #include "woodcock/render/stages/light.h"
 
 namespace woodcock::render {
@@ -12,7 +13,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     const PathTracer::Options& options = traced.options;
     const SampleSequence sequence(options.seed, job.x, job.y, job.sample);
     const auto u = sequence.draw(0);
-    const float time = 0;  // nothing moves, so none is drawn
+    const float time = traced.needs.motion ? drawTime(sequence) : 0;
     const camera::CameraRay ray =
         traced.scene.camera.ray(job.x + u[0], job.y + u[1], options.width, options.height, time);
     result = {};
@@ -29,11 +30,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     PathState<N, Surfaces>& p = batch.paths[i];
     ++batch.counters.paths;
     if constexpr (Surfaces)
-        p.surfaces.way = BoundaryWalk(
-            traced.surfaces->rayStart(traced.scene.camera.kind == camera::Camera::Kind::Perspective
-                                          ? traced.aroundCamera
-                                          : traced.surfaces->cameraPosition(p.origin),
-                                      p.direction));
+        p.surfaces.way = BoundaryWalk(traced.startOf(p.origin, p.direction, p.time));
     if (options.depthLayers || options.featureLayers) sampleCameraLayers(traced, p);
     addLightHits(traced, batch, i, nullptr);
     if (traced.needs.emission) p.equiangular = u[3];

@@ -52,6 +52,7 @@ Key<C> matrixKey() {
                 .type = matrix().type,
                 .fallback = "none",
                 .comment = "world from camera, which looks along -z",
+                .moves = true,
                 .examples = matrix().examples};
     key.read = [](const TomlValue& v, C& c, Base base) { c.pose = readPose(v, base); };
     key.write = [](const C& c, const SceneWriter&) -> std::optional<Written> {
@@ -60,6 +61,38 @@ Key<C> matrixKey() {
         return Written{tomlMatrix(*pose), "world from camera, which looks along -z"};
     };
     return key;
+}
+
+camera::Shutter readShutter(const TomlValue& value, Base) {
+    constexpr double longest = 1000;  // frames
+    if (!value.isArray()) {
+        const double length = value.number({0, longest});
+        return {-length / 2, length / 2};
+    }
+    const auto times = value.elements("[open, close], in frames", 2);
+    const camera::Shutter shutter{times[0].number({-longest, longest}),
+                                  times[1].number({-longest, longest})};
+    if (shutter.length() < 0)
+        throw value.error("closes at {}, before it opens at {}; give [open, close]", shutter.close,
+                          shutter.open);
+    return shutter;
+}
+
+Key<C> shutterKey() {
+    return key({.name = "shutter",
+                .doc = "for how many frames light is collected, around the frame of the picture: "
+                       "0.5 is a shutter of 180 degrees. Or when it opens and closes, in frames "
+                       "after that frame. 0: a sharp picture of one moment. See \"Motion blur\"",
+                .comment = "frames after the frame of the picture: opens, closes"},
+               &C::shutter,
+               Value<camera::Shutter>{"number >= 0, or `[open, close]`",
+                                      {"[-0.5, 0.25]", "0.5"},
+                                      readShutter,
+                                      [](const camera::Shutter& s, const SceneWriter&) {
+                                          if (s == camera::Shutter{}) return std::string("0");
+                                          return fmt::format("[{}, {}]", tomlNumber(s.open),
+                                                             tomlNumber(s.close));
+                                      }});
 }
 
 /// The keys of cameras of one kind alone.
@@ -113,14 +146,15 @@ std::vector<Key<C>> placeKeys() {
                 };
                 return shift;
             }()),
-        key({.name = "orbit",
+        atRest(key(
+            {.name = "orbit",
              .doc = "turns the camera to its right by so many degrees, about the up axis, around "
                     "what it looks at (with a `matrix`: around the middle of the scene). Lights "
                     "stay. A camera that is *chosen* then keeps one distance for all angles, from "
                     "which every side fits. `render --orbit DEGREES` does the same. A scene that "
                     "is saved has the turned camera",
              .comment = "degrees to its right, around what it sees"},
-            &C::orbit, number({-1e6, 1e6})),
+            &C::orbit, number({-1e6, 1e6}))),
         poseKey({.name = "eye",
                  .doc = "position; without it, it is *chosen*",
                  .fallback = "*chosen* to frame the volumes and surfaces"},
@@ -135,6 +169,7 @@ std::vector<Key<C>> placeKeys() {
                              "wrote, `[0, 0, 1]`"},
                 &LookAt::up, &PartialPose::up),
         matrixKey(),
+        shutterKey(),
     };
 }
 

@@ -46,6 +46,13 @@ public:
         if (!digest_) text_ += fmt::format("# {}\n", text);
     }
     const std::string& text() const { return text_; }
+    /// A writer of its kind, with nothing written yet.
+    SceneWriter empty() const { return {directory_, digest_ ? Mode::Digest : Mode::File}; }
+    /// Adds lines that such a writer wrote.
+    void append(std::string_view lines) {
+        if (!text_.empty()) text_ += '\n';
+        text_ += lines;
+    }
 
     /// A path inside a value.
     std::string quoted(const std::filesystem::path& p) const {
@@ -79,6 +86,7 @@ struct KeyInfo {
     bool inDigest = true;     ///< it has a say in what the image shows
     bool permission = false;  ///< it allows another key its value, and says nothing itself
     bool choice = false;      ///< it trades accuracy for time: a quality may set it
+    bool moves = false;       ///< it may be animated
     bool method = false;      ///< no choice, but how a picture is found rather than what it shows
     std::vector<std::string> examples = {};  ///< of its kind of value
 };
@@ -95,6 +103,7 @@ struct Value {
     std::function<std::string(const T&, const SceneWriter&)> write;
     /// Adds the files that a value names; absent: it names none.
     std::function<void(T&, Files&)> files = {};
+    bool moves = false;  ///< numbers between which others lie: it may be animated
 };
 
 /// The text of a value, and what is said of it behind.
@@ -185,6 +194,23 @@ void allowKeys(const TomlTable& table, const D& d, std::string_view where,
     table.allowOnly(others, where);
 }
 
+/// Throws Error{Input} where `value`, or an element of it, is an animated value (see animation.h),
+/// and the key's cannot be. `table` is that of the key.
+void refuseMotion(const TomlValue& value, const KeyInfo& info,
+                  const std::function<std::vector<std::string>()>& movingNames,
+                  const TomlTable& table);
+
+/// The keys of `d` that may be animated.
+template <class D>
+std::vector<std::string> movingNames(const D& d) {
+    std::vector<std::string> names;
+    for (const Key<D>& key : keysOf<D>().keys)
+        if (key.info.moves && belongs(key, d) &&
+            std::find(names.begin(), names.end(), key.info.name) == names.end())
+            names.push_back(key.info.name);
+    return names;
+}
+
 /// Reads what `table` says into `d`, all of whose keys are known. Throws Error{Input}.
 template <class D>
 void readAllowed(const TomlTable& table, D& d, const std::filesystem::path& base) {
@@ -193,7 +219,11 @@ void readAllowed(const TomlTable& table, D& d, const std::filesystem::path& base
     for (const Key<D>& key : keys.keys) {
         const std::string& name = key.info.name;
         if (key.info.required) table.need(name, name + " = " + key.info.example);
-        if (const auto value = table.find(name); value && key.read) key.read(*value, d, base);
+        const auto value = table.find(name);
+        if (!value) continue;
+        refuseMotion(
+            *value, key.info, [&] { return movingNames(d); }, table);
+        if (key.read) key.read(*value, d, base);
     }
     if (keys.check) keys.check(table, d);
 }
@@ -263,6 +293,7 @@ Key<D> keyAt(KeyInfo info, Access access, Value<T> value) {
     constexpr bool optional = isOptional<Member>;
     if (info.type.empty()) info.type = value.type;
     info.examples = value.examples;
+    info.moves |= value.moves;
     if (info.fallback.empty() && !info.required) {
         const D defaults{};
         const auto* member = access(std::as_const(defaults));
@@ -330,7 +361,16 @@ Key<D> keyOfKind(KeyInfo info, V D::*variant, M Kind::*member, Value<T> value) {
 /// Another way to say what other keys say; whoever reads the table makes those of it.
 template <class D>
 Key<D> otherWay(KeyInfo info) {
+    for (const char* kind : {"number", "colour", "`[x, y, z]`", "four rows"})
+        info.moves |= info.type.starts_with(kind);
     return {std::move(info), {}, {}};
+}
+
+/// Marks a key that cannot be animated, although its value is a number.
+template <class D>
+Key<D> atRest(Key<D> key) {
+    key.info.moves = false;
+    return key;
 }
 
 /// Lists of keys, one after the other.

@@ -31,7 +31,8 @@ Value<Texture> texture(NumberRange range) {
             [](const Texture& t, const SceneWriter& out) {
                 return t.image.empty() ? tomlColour(t.colour) : inlineTable(t, out);
             },
-            nested<Texture>().files};
+            nested<Texture>().files,
+            true};
 }
 
 template <class M>

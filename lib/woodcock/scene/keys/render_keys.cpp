@@ -92,6 +92,11 @@ Key<R> storageKey() {
 std::vector<Key<R>> amountKeys() {
     return {
         resolution(),
+        key({.name = "fps",
+             .doc = "frames per second, by which velocities per second become motion within the "
+                    "shutter",
+             .comment = "frames per second"},
+            &R::fps, number(positive)),
         key({.name = "spp",
              .doc = "samples per pixel. An adaptive render does the same work, but with another "
                     "number in each pixel",

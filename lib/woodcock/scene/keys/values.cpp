@@ -38,9 +38,12 @@ float readG(const TomlValue& value) {
 }  // namespace
 
 Value<double> number(NumberRange range) {
-    return {"number" + rangeText(range), numbersWithin(range),
+    return {"number" + rangeText(range),
+            numbersWithin(range),
             [=](const TomlValue& v, Base) { return v.number(range); },
-            [](const double& v, const SceneWriter&) { return tomlNumber(v); }};
+            [](const double& v, const SceneWriter&) { return tomlNumber(v); },
+            {},
+            true};
 }
 
 Value<int> integer(int lower, int upper) {
@@ -79,28 +82,36 @@ Value<Vec3d> vector() {
     return {"`[x, y, z]`",
             {"[1, 2, 0.1]", "[3, 4, 5]"},
             [](const TomlValue& v, Base) { return v.vector(); },
-            [](const Vec3d& v, const SceneWriter&) { return tomlVector(v); }};
+            [](const Vec3d& v, const SceneWriter&) { return tomlVector(v); },
+            {},
+            true};
 }
 
 Value<Rgb> colour(NumberRange range) {
     return {"colour" + rangeText(range),
             {"[0.1, 0.2, 0.3]", "0.6"},
             [=](const TomlValue& v, Base) { return v.colour(range); },
-            [](const Rgb& v, const SceneWriter&) { return tomlColour(v); }};
+            [](const Rgb& v, const SceneWriter&) { return tomlColour(v); },
+            {},
+            true};
 }
 
 Value<Vec3d> exactColour(NumberRange range) {
     return {"colour" + rangeText(range),
             {"[0.1, 0.2, 0.3]", "0.6"},
             [=](const TomlValue& v, Base) { return v.exactColour(range); },
-            [](const Vec3d& v, const SceneWriter&) { return tomlColour(v); }};
+            [](const Vec3d& v, const SceneWriter&) { return tomlColour(v); },
+            {},
+            true};
 }
 
 Value<Affine3d> matrix() {
     return {"four rows of four numbers",
             {"[[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 0.1], [0, 0, 0, 1]]"},
             [](const TomlValue& v, Base) { return v.affine(); },
-            [](const Affine3d& v, const SceneWriter&) { return tomlMatrix(v); }};
+            [](const Affine3d& v, const SceneWriter&) { return tomlMatrix(v); },
+            {},
+            true};
 }
 
 Value<std::array<double, 2>> numberPair(std::string what, NumberRange range) {
@@ -112,14 +123,18 @@ Value<std::array<double, 2>> numberPair(std::string what, NumberRange range) {
             },
             [](const std::array<double, 2>& v, const SceneWriter&) {
                 return fmt::format("[{}, {}]", tomlNumber(v[0]), tomlNumber(v[1]));
-            }};
+            },
+            {},
+            true};
 }
 
 Value<float> meanCosine() {
     return {fmt::format("number, {}..{}", -largestG, largestG),
             {"0.1", "0.5"},
             [](const TomlValue& v, Base) { return readG(v); },
-            [](const float& v, const SceneWriter&) { return fmt::format("{}", v); }};
+            [](const float& v, const SceneWriter&) { return fmt::format("{}", v); },
+            {},
+            true};
 }
 
 Value<grid::Storage> storage() { return choiceOf<grid::Storage>("storage", grid::storageNames); }
@@ -135,13 +150,14 @@ const KeyTable<Transform>& keysOf() {
                  key({.name = "rotate", .doc = "degrees about x, y and z"}, &Transform::rotate,
                      vector()),
                  key({.name = "scale", .doc = "a factor, or one for each axis"}, &Transform::scale,
-                     Value<Vec3d>{
-                         "number, or `[x, y, z]`",
-                         {"2"},
-                         [](const TomlValue& v, Base) {
-                             return v.isArray() ? v.vector() : Vec3d{1, 1, 1} * v.number();
-                         },
-                         [](const Vec3d& v, const SceneWriter&) { return tomlVector(v); }})},
+                     Value<Vec3d>{"number, or `[x, y, z]`",
+                                  {"2"},
+                                  [](const TomlValue& v, Base) {
+                                      return v.isArray() ? v.vector() : Vec3d{1, 1, 1} * v.number();
+                                  },
+                                  [](const Vec3d& v, const SceneWriter&) { return tomlVector(v); },
+                                  {},
+                                  true})},
         .outer = "[[surface]]\nsphere = {}\n[surface.transform]\n",
         .path = "surface[0].transform"};
     return table;

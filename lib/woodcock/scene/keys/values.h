@@ -80,7 +80,8 @@ std::vector<Key<D>> placementKeys(Affine3d D::*member, std::string what, const s
                                     .doc = doc,
                                     .type = "table",
                                     .fallback = "none",
-                                    .example = "{ translate = [1, 2, 3] }"});
+                                    .example = "{ translate = [1, 2, 3] }",
+                                    .moves = true});
     transform.read = [=](const TomlValue& v, D& d, const std::filesystem::path&) {
         d.*member = readTransform(v, what);
     };

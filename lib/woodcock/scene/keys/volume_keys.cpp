@@ -25,7 +25,9 @@ Value<GridCoefficient> gridCoefficient() {
             },
             [](const GridCoefficient& c, const SceneWriter& out) {
                 return c.grid.empty() ? tomlColour(c.scale) : inlineTable(c, out);
-            }};
+            },
+            {},
+            true};
 }
 
 /// The grid says itself what it is times.
@@ -181,6 +183,35 @@ std::vector<Key<V>> coefficientKeys() {
                         &V::blackbody, nested<BlackbodyDescription>())});
 }
 
+std::vector<Key<V>> velocityKeys() {
+    using Velocity = VelocityDescription;
+    return {
+        key({.name = "velocity",
+             .doc = "name of the vector grid by which all grids of the volume move while the "
+                    "shutter is open, or what three scalar ones are named after (`vel` of `vel.x`, "
+                    "`vel.y`, `vel.z`). See \"Motion blur\"",
+             .fallback = "`vel`, `v` or `velocity` in any case, one grid or three; without any, "
+                         "the volume stands still"},
+            &V::velocity, &Velocity::grid, text()),
+        key({.name = "velocity_scale",
+             .doc = "multiplies the velocities. 0: the volume stands still"},
+            &V::velocity, &Velocity::scale, number({-1e6, 1e6})),
+        key({.name = "velocity_unit",
+             .doc = "the time in which a velocity of 1 moves by one world unit. Seconds become "
+                    "frames by `[render] fps`"},
+            &V::velocity, &Velocity::unit,
+            choice<Velocity::Unit>("velocity unit", {{Velocity::Unit::Second, "second"},
+                                                     {Velocity::Unit::Frame, "frame"}})),
+        key({.name = "velocity_sampling",
+             .doc = "`\"collocated\"` reads staggered grids as if their components lay in the "
+                    "middle of voxels, half a voxel aside, as Cycles and MoonRay do"},
+            &V::velocity, &Velocity::sampling,
+            choice<Velocity::Sampling>("velocity sampling",
+                                       {{Velocity::Sampling::AsStored, "stored"},
+                                        {Velocity::Sampling::Collocated, "collocated"}})),
+    };
+}
+
 std::vector<Key<V>> fieldKeys() {
     return {
         key({.name = "inside",
@@ -224,12 +255,14 @@ std::vector<Key<V>> volumeKeys() {
         placementKeys(&V::worldFromObject, "volume",
                       "`{ translate, rotate, scale }`, after the grid's own transform. sigma stays "
                       "per *world* unit, so a volume made larger is denser to look through"),
-        fieldKeys());
+        velocityKeys(), fieldKeys());
 }
 
 void checkBox(const TomlTable& table, V& volume, Homogeneous& box) {
-    for (const char* key : {"density", "albedo_grid", "blackbody", "storage", "background",
-                            "repair", "frame_start", "offset", "outside", "missing"})
+    for (const char* key :
+         {"density", "albedo_grid", "blackbody", "velocity", "velocity_scale", "velocity_unit",
+          "velocity_sampling", "storage", "background", "repair", "frame_start", "offset",
+          "outside", "missing"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
     if (const auto v = table.find("emission"); v && !volume.emission->grid.empty())
