@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "woodcock/scene/animation.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/frame_files.h"
 #include "woodcock/scene/load.h"
@@ -37,13 +38,15 @@ public:
     /// found in each frame's files.
     void setComplete() { complete_ = true; }
 
-    /// The scene as it is in a frame. Throws Error{Input} where it has no file.
+    /// The scene as it is in a frame: its files, and its animated values. Throws Error{Input} where
+    /// it has no file.
     scene::SceneDescription at(int frame) {
-        // Values that change with the frame would be found here, before its files are.
-        return files_.at(describe_ ? describe_(frame) : sequence_, frame);
+        return files_.at(scene::atFrame(describe_ ? describe_(frame) : sequence_, frame), frame);
     }
     /// See FrameFiles.
-    scene::SceneDescription atLargest(int frame) { return files_.atLargest(sequence_, frame); }
+    scene::SceneDescription atLargest(int frame) {
+        return files_.atLargest(scene::atFrame(sequence_, frame), frame);
+    }
 
     /// Loads what a frame, or the largest, describes.
     scene::LoadedScene load(const scene::SceneDescription& scene) {

@@ -438,9 +438,8 @@ private:
         return fmt::format("frame{} {}", frames.size() == 1 ? "" : "s", frameRangeText(frames));
     }
 
-    /// Its files, so far: see FrameReader::at().
     static bool changesWithFrame(const scene::SceneDescription& scene) {
-        return scene::readsFrames(scene);
+        return scene::readsFrames(scene) || !scene.animation.empty();
     }
 
     /// Chooses what is open, alike for all frames: from the largest file of each sequence.
