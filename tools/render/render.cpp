@@ -141,10 +141,9 @@ void checkMemory(const render::RenderSettings& settings, const scene::SceneDescr
     const auto crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     const double kept =
-        double(sizeof(image::Film::Pixel)) +
-        (scene.surfaces.empty() ? 0 : double(sizeof(image::Film::SurfacePixel))) +
-        (settings.featureLayers ? double(sizeof(image::Film::FeaturePixel)) : 0) +
-        (scene::environmentIsHidden(scene) ? 0 : double(sizeof(image::Film::ForegroundPixel))) +
+        double(image::Film::bytesPerPixel({.surfaces = !scene.surfaces.empty(),
+                                           .features = settings.featureLayers,
+                                           .background = !scene::environmentIsHidden(scene)})) +
         (settings.adaptive ? 5 * double(sizeof(double)) : 0);
     const double needed = double(crop.width()) * crop.height() * (kept + writing);
     if (needed <= possible) return;
