@@ -186,6 +186,21 @@ std::vector<Film::ConstPlane> Film::planes() const {
     return planesOf<std::vector<ConstPlane>>(*this);
 }
 
+bool Film::isLike(const Film& other) const {
+    const std::vector<ConstPlane> own = planes(), others = other.planes();
+    return width_ == other.width_ && height_ == other.height_ && crop_ == other.crop_ &&
+           std::equal(own.begin(), own.end(), others.begin(), others.end(),
+                      [](const auto& a, const auto& b) { return a.name == b.name; });
+}
+
+Film::Kept Film::keptIn(const std::vector<std::string>& planes) {
+    const auto has = [&](const char* name) {
+        return std::find(planes.begin(), planes.end(), name) != planes.end();
+    };
+    return {
+        .surfaces = has("catcherLit"), .features = has("albedo"), .background = has("foreground")};
+}
+
 std::size_t Film::bytesPerPixel(Kept kept) {
     return sizeof(Pixel) + (kept.surfaces ? sizeof(SurfacePixel) : 0) +
            (kept.features ? sizeof(FeaturePixel) : 0) +
@@ -197,11 +212,9 @@ void Film::merge(const Film& other) {
         throw usageError(
             "films of {} x {} and {} x {} pixels cannot be added, nor films with different crops",
             width_, height_, other.width_, other.height_);
+    if (!isLike(other)) throw usageError("films that keep different sums cannot be added");
     const std::vector<Plane> own = planes();
     const std::vector<ConstPlane> others = other.planes();
-    const auto alike = [](const Plane& a, const ConstPlane& b) { return a.name == b.name; };
-    if (!std::equal(own.begin(), own.end(), others.begin(), others.end(), alike))
-        throw usageError("films that keep different sums cannot be added");
     for (std::size_t i = 0; i < own.size(); ++i) {
         const Plane& to = own[i];
         const ConstPlane& from = others[i];

@@ -116,6 +116,10 @@ public:
     /// in files or measures their memory goes through it, so it need not know what the sums mean.
     std::vector<Plane> planes();
     std::vector<ConstPlane> planes() const;
+    /// Whether another film has planes of the same names, of the same size and crop.
+    bool isLike(const Film& other) const;
+    /// What a film keeps that has planes of these names.
+    static Kept keptIn(const std::vector<std::string>& planes);
     std::size_t pixelCount() const { return pixels_.size(); }
     /// Memory of a pixel.
     static std::size_t bytesPerPixel(Kept kept);
