@@ -86,15 +86,17 @@ ProgressStyle progressStyle(const std::string& name) {
 }
 
 render::RenderResult renderWithProgress(const render::Scene& scene,
-                                        const render::RenderSettings& settings,
-                                        ProgressStyle style) {
+                                        const render::RenderSettings& settings, ProgressStyle style,
+                                        render::Checkpoints checkpoints) {
     RenderProgressReport report(style);
     report.start(settings);
-    render::RenderResult result =
-        render::render(scene, settings, [&](const render::RenderProgress& now) {
+    render::RenderResult result = render::render(
+        scene, settings,
+        [&](const render::RenderProgress& now) {
             report.update(now);
             return !interrupted();
-        });
+        },
+        std::move(checkpoints));
     report.finish(result);
     return result;
 }

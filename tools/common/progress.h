@@ -16,8 +16,8 @@ ProgressStyle progressStyle(const std::string& name);
 
 /// Renders, shows on stderr how far it is, and stops early where interrupted().
 render::RenderResult renderWithProgress(const render::Scene& scene,
-                                        const render::RenderSettings& settings,
-                                        ProgressStyle style);
+                                        const render::RenderSettings& settings, ProgressStyle style,
+                                        render::Checkpoints checkpoints = {});
 
 /// Shows how other work goes on, on stderr, no more often than can be read.
 class ProgressBar {
