@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
     cmake ninja-build g++ ccache pkgconf
     libopenvdb-dev libopenvdb-ax-dev libboost-iostreams-dev libeigen3-dev zlib1g-dev
-    libopenimageio-dev libopencolorio-dev
+    libopenimageio-dev libopencolorio-dev libopenexr-dev libimath-dev
     libembree-dev libassimp-dev libnanovdb-dev libblosc-dev
     libtbb-dev libfmt-dev libspdlog-dev
     libtomlplusplus-dev libmuparser-dev nlohmann-json3-dev libcli11-dev

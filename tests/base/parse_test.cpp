@@ -35,6 +35,17 @@ TEST(Parse, SampleRange) {
               std::string::npos);
 }
 
+TEST(Parse, TileNumber) {
+    EXPECT_EQ(parseTileNumber("0/4").index, 0);
+    EXPECT_EQ(parseTileNumber("3/4").count, 4);
+    for (const char* wrong : {"", "/", "1", "4/4", "-1/4", "0/0", "1/2/3", "1/ 4", "1/4x"})
+        EXPECT_NE(usageErrorOf(parseTileNumber, wrong)
+                      .find("expected INDEX/COUNT, where INDEX "
+                            "goes from 0 to COUNT - 1"),
+                  std::string::npos)
+            << wrong;
+}
+
 TEST(Parse, ImageSize) {
     EXPECT_EQ(parseImageSize("960x540").width, 960);
     EXPECT_EQ(parseImageSize("960x540").height, 540);

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
+#include <string>
 
 #include "woodcock/base/error.h"
 
@@ -240,6 +243,44 @@ TEST(Film, NoiseFallsWithTheRootOfTheSamples) {
     EXPECT_NEAR(noiseOf(1600) * 40, 1, 0.02);
 }
 
+/// What samples add to is in a plane, all of it, and once.
+TEST(Film, PlanesListEverySum) {
+    for (const Film::Kept kept : {Film::Kept{false, false, false}, Film::Kept{true, false, true},
+                                  Film::Kept{true, true, true}}) {
+        const Film film(5, 4, {1, 1, 4, 3}, kept);
+        std::set<std::string> names;
+        std::set<const void*> places;
+        for (const Film::ConstPlane& plane : film.planes()) {
+            EXPECT_TRUE(names.insert(plane.name).second) << plane.name;
+            EXPECT_NE(plane.sums == nullptr, plane.counts == nullptr) << plane.name;
+            for (std::size_t p = 0; p < film.pixelCount(); ++p)
+                for (std::size_t c = 0; c < static_cast<std::size_t>(plane.components); ++c) {
+                    const std::size_t i = p * plane.stride + c;
+                    places.insert(plane.sums ? static_cast<const void*>(plane.sums + i)
+                                             : plane.counts + i);
+                }
+        }
+        EXPECT_EQ(film.pixelCount(), 6u);
+        EXPECT_EQ(places.size() * sizeof(double), film.pixelCount() * Film::bytesPerPixel(kept));
+    }
+}
+
+TEST(Film, PlanesAreTheFilmsOwnNumbers) {
+    Film film(3, 2, {1, 0, 3, 2});
+    film.add(2, 1, FilmSample{Rgb(1, 2, 3), 0.5f});
+    const std::vector<Film::Plane> planes = film.planes();
+    const auto named = [&](const char* name) {
+        return *std::find_if(planes.begin(), planes.end(),
+                             [&](const Film::Plane& plane) { return plane.name == name; });
+    };
+    const Film::Plane radiance = named("radiance"), samples = named("samples");
+    ASSERT_EQ(radiance.components, 3);
+    EXPECT_EQ(radiance.sums[3 * radiance.stride + 2], 3.0);
+    EXPECT_EQ(samples.counts[3 * samples.stride], 1u);
+    samples.counts[3 * samples.stride] = 2;
+    EXPECT_EQ(film.radiance(2, 1), Rgb(0.5f, 1, 1.5f));
+}
+
 TEST(Film, RefusesEmptyImagesAndCropsOutside) {
     EXPECT_THROW(Film(0, 3, {0, 0, 0, 3}), Error);
     EXPECT_THROW(Film(4, 3, {1, 1, 1, 2}), Error);
@@ -247,6 +288,8 @@ TEST(Film, RefusesEmptyImagesAndCropsOutside) {
     EXPECT_THROW(Film(4, 3, {-1, 0, 4, 3}), Error);
     Film film = smallFilm();
     EXPECT_THROW(film.merge(Film(4, 3, {0, 0, 4, 2})), Error);
+    EXPECT_THROW(film.merge(Film(4, 3, {0, 0, 4, 3}, {.surfaces = false, .features = true})),
+                 Error);
 }
 
 }  // namespace

@@ -198,6 +198,19 @@ defect "a pixel's first sample is not summed" 'Film.*' "" \
     lib/woodcock/image/film.cpp \
     'p.radiance[i] += v;' 'p.radiance[i] += p.samples > 0 ? v : 0;'
 
+defect "what is drawn already is drawn again" 'Resume.*' "" \
+    lib/woodcock/render/session.cpp \
+    'state_.drawn[pixelOf(job.x, job.y)] = job.sample + 1;' \
+    'state_.drawn[pixelOf(job.x, job.y)] = job.sample;'
+
+defect "kept sums are floats" 'FilmStates.*:Resume.*' "" \
+    lib/woodcock/image/film_state.cpp \
+    'act(name + "lo", first + static_cast<std::size_t>(c) * 8);' ';'
+
+defect "a single missing sample is passed over" 'PartCoverage.*' "" \
+    lib/woodcock/render/part_coverage.cpp \
+    'if (part->first > reached)' 'if (part->first > reached + 4)'
+
 # ---- surface
 
 defect "refraction leaves radiance as it is" 'Bsdf*' "" \

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <set>
 
+#include "tests/support/expect_error.h"
+
 namespace woodcock::test {
 
 using namespace image;
@@ -63,6 +65,38 @@ TEST(TileOrder, WhatTheFirstTilesCostIsWhatAllCost) {
                     << name << " " << width << " from " << first;
             }
         }
+}
+
+TEST(PictureTiles, ShareOutEveryPixelOnce) {
+    constexpr Film::Window picture{3, 5, 61, 40};
+    for (const int count : {1, 2, 3, 4, 7, 12, 35}) {
+        std::vector<int> covered(61 * 40);
+        int least = 61 * 40, most = 0;
+        for (int i = 0; i < count; ++i) {
+            const Film::Window tile = render::pictureTile(picture, i, count);
+            least = std::min(least, tile.width() * tile.height());
+            most = std::max(most, tile.width() * tile.height());
+            for (int y = tile.y0; y < tile.y1; ++y)
+                for (int x = tile.x0; x < tile.x1; ++x)
+                    ++covered[static_cast<std::size_t>(y * 61 + x)];
+        }
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 61; ++x)
+                EXPECT_EQ(covered[static_cast<std::size_t>(y * 61 + x)], x >= 3 && y >= 5);
+        EXPECT_LE(most - least, 61 + 40) << count;
+    }
+}
+
+TEST(PictureTiles, AreAsSquareAsTheyCan) {
+    using Window = Film::Window;
+    constexpr Window wide{0, 0, 1920, 1080};
+    EXPECT_EQ(render::pictureTile(wide, 0, 4), (Window{0, 0, 960, 540}));
+    EXPECT_EQ(render::pictureTile(wide, 1, 4), (Window{960, 0, 1920, 540}));
+    EXPECT_EQ(render::pictureTile(wide, 5, 6), (Window{1280, 540, 1920, 1080}));
+    EXPECT_EQ(render::pictureTile({0, 0, 100, 400}, 1, 4), (Window{0, 100, 100, 200}));
+    expectError(ErrorKind::Usage, "7 tiles are too many for 4 x 4 pixels", [] {
+        render::pictureTile({0, 0, 4, 4}, 0, 7);
+    });
 }
 
 }  // namespace

@@ -12,14 +12,26 @@ namespace woodcock::tool {
 
 namespace {
 
-std::atomic<bool> requested = false;
+std::atomic<bool> requested = false, checkpointRequested = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch nothing else");
 
 extern "C" void onInterrupt(int) {
     if (requested.exchange(true)) _exit(exitInterrupted);
 }
 
+extern "C" void onCheckpointRequest(int) { checkpointRequested = true; }
+
 }  // namespace
+
+void catchCheckpointRequests() {
+    struct sigaction action {};
+    action.sa_handler = onCheckpointRequest;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGUSR1, &action, nullptr);
+}
+
+bool takeCheckpointRequest() { return checkpointRequested.exchange(false); }
 
 void catchInterrupts() {
     struct sigaction action {};

@@ -9,6 +9,11 @@ void catchInterrupts();
 
 bool interrupted();
 
+/// From now on SIGUSR1 asks for a checkpoint.
+void catchCheckpointRequests();
+/// Whether one was asked for since this was asked last.
+bool takeCheckpointRequest();
+
 /// Ends the command with exitInterrupted where interrupted().
 void endIfInterrupted();
 

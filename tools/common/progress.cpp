@@ -148,14 +148,17 @@ void FarmLines::update(double fraction, std::string_view doing) {
 
 render::RenderResult renderWithProgress(const render::Scene& scene,
                                         const render::RenderSettings& settings, ProgressStyle style,
-                                        const std::optional<FramePlace>& place) {
+                                        const std::optional<FramePlace>& place,
+                                        render::Checkpoints checkpoints) {
     RenderProgressReport report(style, place);
     report.start(settings);
-    render::RenderResult result =
-        render::render(scene, settings, [&](const render::RenderProgress& now) {
+    render::RenderResult result = render::render(
+        scene, settings,
+        [&](const render::RenderProgress& now) {
             report.update(now);
             return !interrupted();
-        });
+        },
+        std::move(checkpoints));
     report.finish(result);
     return result;
 }

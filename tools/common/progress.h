@@ -34,7 +34,8 @@ struct FramePlace {
 /// absent: it is no sequence.
 render::RenderResult renderWithProgress(const render::Scene& scene,
                                         const render::RenderSettings& settings, ProgressStyle style,
-                                        const std::optional<FramePlace>& place = {});
+                                        const std::optional<FramePlace>& place = {},
+                                        render::Checkpoints checkpoints = {});
 
 /// Prints lines for farms, on stdout, each where the percents have grown.
 class FarmLines {

@@ -74,9 +74,23 @@ void addRendering(CLI::App& command, RenderOptions& o) {
                  "Samples per pixel. Adaptive renders do the same work, but with another number in "
                  "each pixel"),
         addParsed(command, "--samples", o.samples, parseSampleRange,
-                  "Draw only the samples FIRST to END - 1 of each pixel. No command merges such "
-                  "parts yet")
+                  "Draw only the samples FIRST to END - 1 of each pixel. woodcock merge puts such "
+                  "parts together")
             ->type_name("FIRST:END"),
+        addParsed(command, "--tile", o.tile, parseTileNumber,
+                  "Render only one of COUNT tiles of the picture. INDEX goes from 0 to COUNT - 1. "
+                  "woodcock merge puts tiles together")
+            ->type_name("INDEX/COUNT"),
+        command.add_flag("--mergeable", o.mergeable,
+                         "Keep the sums in EXR files, so that woodcock merge can add pictures of "
+                         "several seeds. --samples and --tile do so anyway"),
+        addParsed(command, "--checkpoint", o.checkpoint, parseDuration,
+                  "Every so often, such as 60s or 0.1h, write NAME.checkpoint.exr beside the first "
+                  "output, from which --resume goes on. SIGUSR1 writes one at once. It disappears "
+                  "when the picture is done")
+            ->type_name("TIME"),
+        command.add_flag("--resume", o.resume,
+                         "Go on from NAME.checkpoint.exr, where there is one, to the same picture"),
         addCount(command, "--seed", o.seed, 0, INT64_MAX,
                  "Seed of the random numbers. Another seed gives other noise (0)"),
         addParsed(command, "--time-limit", o.timeLimit, parseDuration,
@@ -230,6 +244,7 @@ void RenderOptions::check() const {
     exclude(estimate, choosesQuality(), "--estimate and --quality auto");
     exclude(estimate, !writeScene.empty(), "--estimate and --write-scene");
     exclude(estimate, !stats.empty(), "--estimate and --stats");
+    exclude(choosesQuality(), resume, "--quality auto and --resume");
     exclude(reports.json, stats == "-", "--json and --stats -");
     exclude(reports.json, writeScene == "-", "--json and --write-scene -");
     if (reports.progress == "alfred" || reports.progress == "openjd")
@@ -249,6 +264,10 @@ void RenderOptions::check() const {
     for (auto layer = layers.begin(); layer != layers.end(); ++layer)
         if (std::find(layers.begin(), layer, *layer) != layer)
             throw usageError("--layers names '{}' twice", *layer);
+    if ((checkpoint || resume) && !rendersImages())
+        throw usageError(
+            "{} is for a render, but --write-scene only saves the scene where no -o names an image",
+            resume ? "--resume" : "--checkpoint");
     if ((!stats.empty() || reports.json) && !rendersImages())
         throw usageError(
             "{} tells of a render, but --write-scene only saves the scene where no -o names an "
@@ -262,6 +281,7 @@ void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) co
     constexpr const char* pictures = "PNG, JPEG, TIFF and WebP";
     demandFile(!layers.empty(), "--layers", "EXR", exr);
     demandFile(half, "--half", "EXR", exr);
+    demandFile(mergeable, "--mergeable", "EXR", exr);
     demandFile(display.has_value(), "--display", pictures, picture);
     demandFile(view.has_value(), "--view", pictures, picture);
     demandFile(look.has_value(), "--look", pictures, picture);

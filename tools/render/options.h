@@ -26,6 +26,10 @@ struct RenderOptions {
     std::optional<PixelRectangle> crop;
     std::optional<int> spp;
     std::optional<SampleRange> samples;
+    std::optional<TileNumber> tile;
+    bool mergeable = false;
+    std::optional<double> checkpoint;  ///< seconds between two
+    bool resume = false;
     std::optional<std::uint64_t> seed;
     std::optional<double> timeLimit, noise;
     std::optional<bool> adaptive;
@@ -58,6 +62,9 @@ struct RenderOptions {
     void check() const;
     /// Throws Error{Usage} where an option is for another kind of file than those to be written.
     void checkFor(const std::vector<std::filesystem::path>& files) const;
+    bool keepsCheckpoint() const { return checkpoint || resume; }
+    /// Whether EXR files keep their sums, for merging.
+    bool keepsSums() const { return mergeable || samples || tile; }
     /// Or only saves the scene.
     bool rendersImages() const { return writeScene.empty() || !outputs.empty(); }
 };

@@ -15,10 +15,12 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/json_text.h"
 #include "tools/common/output_folders.h"
+#include "tools/common/picture_facts.h"
 #include "tools/common/print.h"
 #include "tools/common/progress.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/stats.h"
+#include "tools/render/checkpoint.h"
 #include "tools/render/choices_text.h"
 #include "tools/render/choose_exposure.h"
 #include "tools/render/estimate.h"
@@ -36,7 +38,9 @@
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/precision.h"
+#include "woodcock/render/saved_state.h"
 #include "woodcock/render/session.h"
+#include "woodcock/render/tile_order.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/scene_file.h"
@@ -98,6 +102,7 @@ void checkFiles(const scene::SceneDescription& scene, const RenderOptions& optio
     if (options.rendersImages()) written = scene.output.files;
     for (const std::filesystem::path& file : {options.stats, options.writeScene})
         if (!isStdout(file)) written.push_back(file);
+    if (options.keepsCheckpoint()) written.push_back(checkpointFile(scene.output.files));
     refuseOverwriting(written, filesRead(options.sceneInput(), scene));
 }
 
@@ -117,10 +122,22 @@ std::string placeOfDisplayError(const scene::SceneDescription& scene, std::strin
     return "";
 }
 
+void prepareCheckpoint(const std::vector<std::filesystem::path>& files,
+                       const RenderOptions& options) {
+    const std::string option = options.resume ? "--resume" : "--checkpoint";
+    const std::filesystem::path file = checkpointFile(files);
+    if (file.empty())
+        throw usageError("{} needs an output that is a file: the checkpoint lies beside it",
+                         option);
+    prepareFolder(file, options.mkdir, option);
+    scene::inPlace(option, [&] { checkWritable(file); });
+}
+
 image::Outputs prepareOutputs(const scene::SceneDescription& scene, const RenderOptions& options) {
     if (options.frames.empty() || !namesFrame(options.stats.string()))
         prepareOutput(options.stats, options.mkdir, "--stats");
     prepareOutput(options.writeScene, options.mkdir, "--write-scene");
+    if (options.keepsCheckpoint()) prepareCheckpoint(scene.output.files, options);
     image::ColorConfig colour =
         scene::inPlace(scene::findPlace(scene.places, scene::keyName(scene, scene.ocio)),
                        [&] { return image::ColorConfig(scene.ocio); });
@@ -149,21 +166,21 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
 /// Memory that the film holds for each pixel.
 double filmBytesPerPixel(const render::RenderSettings& settings,
                          const scene::SceneDescription& scene) {
-    return double(sizeof(image::Film::Pixel)) +
-           (scene.surfaces.empty() ? 0 : double(sizeof(image::Film::SurfacePixel))) +
-           (settings.featureLayers ? double(sizeof(image::Film::FeaturePixel)) : 0) +
-           (scene::environmentIsHidden(scene) ? 0 : double(sizeof(image::Film::ForegroundPixel))) +
-           (settings.adaptive ? 5 * double(sizeof(double)) : 0);
+    return double(image::Film::bytesPerPixel({.surfaces = !scene.surfaces.empty(),
+                                              .features = settings.featureLayers,
+                                              .background = !scene::environmentIsHidden(scene)})) +
+           double(sizeof(std::uint32_t)) + (settings.adaptive ? 5 * double(sizeof(double)) : 0);
 }
 
 /// Throws where the image's sums cannot be held, or not written in the end: `writing` are the bytes
-/// of a pixel that encoding takes.
+/// of a pixel that encoding takes; `copies`: checkpoints are written of copies.
 void checkMemory(const render::RenderSettings& settings, const scene::SceneDescription& scene,
-                 double writing, double possible) {
+                 double writing, double possible, bool copies = false) {
     const auto crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     const double kept = filmBytesPerPixel(settings, scene);
-    const double needed = double(crop.width()) * crop.height() * (kept + writing);
+    const double needed =
+        double(crop.width()) * crop.height() * ((copies ? 2 : 1) * kept + writing);
     if (needed <= possible) return;
     const double share = std::sqrt(possible / needed);
     const std::string place = scene::findPlace(scene.places, "render.resolution");
@@ -178,27 +195,37 @@ void checkMemory(const render::RenderSettings& settings, const scene::SceneDescr
 
 /// The same with what is left once the scene stands.
 void checkMemoryLeft(const render::RenderSettings& settings, const scene::SceneDescription& scene,
-                     const image::Outputs& outputs) {
+                     const image::Outputs& outputs, bool copies) {
     // Stacks and buffers of the threads, and what libraries take to write.
     constexpr double ofThread = 16 << 20, ofAll = 64 << 20;
     const int threads = settings.threads > 0
                             ? settings.threads
                             : static_cast<int>(std::thread::hardware_concurrency());
     const double left = static_cast<double>(memoryLeft()) - ofThread * threads - ofAll;
-    checkMemory(settings, scene, outputs.bytesPerPixel(), std::max(left, 0.0));
+    checkMemory(settings, scene, outputs.bytesPerPixel(), std::max(left, 0.0), copies);
+}
+
+/// The pixels that the picture has, of which a tile is a part.
+image::Film::Window pictureOf(const scene::RenderDescription& render,
+                              const RenderOptions& options) {
+    if (!options.crop) return {0, 0, render.width, render.height};
+    const PixelRectangle& p = *options.crop;
+    if (p.x1 > render.width || p.y1 > render.height)
+        throw usageError("--crop {},{},{},{} reaches beyond the image of {}x{} pixels", p.x0, p.y0,
+                         p.x1, p.y1, render.width, render.height);
+    return {p.x0, p.y0, p.x1, p.y1};
 }
 
 render::RenderSettings renderSettings(const scene::SceneDescription& scene,
                                       const RenderOptions& options) {
     const scene::RenderDescription& render = scene.render;
     render::RenderSettings settings = woodcock::scene::renderSettings(render);
-    if (options.crop) {
-        const PixelRectangle& p = *options.crop;
-        if (p.x1 > render.width || p.y1 > render.height)
-            throw usageError("--crop {},{},{},{} reaches beyond the image of {}x{} pixels", p.x0,
-                             p.y0, p.x1, p.y1, render.width, render.height);
-        settings.crop = image::Film::Window{p.x0, p.y0, p.x1, p.y1};
-    }
+    const image::Film::Window picture = pictureOf(render, options);
+    if (options.crop) settings.crop = picture;
+    if (options.tile)
+        settings.crop = scene::inPlace("--tile", [&] {
+            return render::pictureTile(picture, options.tile->index, options.tile->count);
+        });
     if (settings.adaptive && options.samples)
         throw usageError(
             "{} and --samples contradict each other: how many samples a pixel gets follows from "
@@ -280,6 +307,7 @@ public:
         options_.check();
         description_ = describeScene(
             options_, hasSceneFiles() ? std::optional(frameWithScene()) : std::nullopt);
+        catchCheckpointRequests();
         catchInterrupts();  // not while a scene that comes through a pipe is waited for
         checkWhatIsAsked();
         settings_ = renderSettings(description_, options_);
@@ -608,14 +636,21 @@ private:
         warnUnlessEmpty(warnings.ofCamera(scene));
         for (const std::string& warning : warnings.ofMotion(scene)) spdlog::warn("{}", warning);
 
-        checkMemoryLeft(settings_, description_, outputs);
+        checkMemoryLeft(settings_, description_, outputs, options_.keepsCheckpoint());
         if (!place_ || place_->index == 0) reportNeeds(scene);
-        const render::RenderResult result = renderWithProgress(scene, settings_, style_, place_);
+        const image::StateFacts facts = factsOf(description_);
+        const std::string& digest = facts.at("scene");
+        Checkpoint checkpoint(
+            options_, settings_, pictureOf(description_.render, options_), outputs, files(), facts,
+            [&](const render::RenderState& state) { return metadataOf(state, digest); });
+        const render::RenderResult result =
+            renderWithProgress(scene, settings_, style_, place_, checkpoint.hooks());
         const bool stopped = result.reason == render::StopReason::Interrupted;
+        if (stopped) checkpoint.keep(result);
         if (stopped && place_) return true;
         reportResult(result, settings_);
-        const std::string digest = scene::sceneDigest(description_);
-        write(result, outputs, digest);
+        write(result, outputs, facts);
+        if (!stopped) checkpoint.remove();
         if (result.film.mostSamples() > 0) warnUnlessEmpty(warnings.ofPicture(scene, result));
         keepStats(result, digest, loading.count());
         if (result.film.mostSamples() == 0 && !stopped)
@@ -631,12 +666,22 @@ private:
         if (!place_ || told_.insert(note).second) spdlog::info("{}", note);
     }
 
+    image::RenderMetadata metadataOf(const render::RenderState& state,
+                                     const std::string& digest) const {
+        return {settings_.firstSample, state.endSample,   settings_.seed, state.seconds, digest,
+                commandLine_,          settings_.adaptive};
+    }
+
     void write(const render::RenderResult& result, const image::Outputs& outputs,
-               const std::string& digest) const {
+               const image::StateFacts& facts) const {
         if (result.film.mostSamples() > 0) {
-            const std::string note = outputs.write(
-                result.film, {settings_.firstSample, result.endSample, settings_.seed,
-                              result.seconds, digest, commandLine_, settings_.adaptive});
+            std::optional<render::SavedState> sums;
+            if (options_.keepsSums())
+                sums.emplace(result, settings_, pictureOf(description_.render, options_),
+                             render::endingOf(result.reason), facts);
+            const std::string note =
+                outputs.write(result.film, metadataOf(result, facts.at("scene")),
+                              sums ? &sums->filmState() : nullptr);
             for (const std::filesystem::path& file : files())
                 spdlog::info("wrote {}", file.string());
             if (!note.empty()) spdlog::info("{}", note);

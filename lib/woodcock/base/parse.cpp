@@ -63,6 +63,16 @@ ImageSize parseImageSize(std::string_view text) {
         text, largestImageSide);
 }
 
+TileNumber parseTileNumber(std::string_view text) {
+    const auto tile = integers<2>(text, '/');
+    if (!tile || (*tile)[0] < 0 || (*tile)[0] >= (*tile)[1])
+        throw usageError(
+            "'{}' is not a tile; expected INDEX/COUNT, where INDEX goes from 0 to COUNT - 1, such "
+            "as 0/4",
+            text);
+    return {(*tile)[0], (*tile)[1]};
+}
+
 PixelRectangle parsePixelRectangle(std::string_view text) {
     const auto p = integers<4>(text, ',');
     if (!p || (*p)[0] < 0 || (*p)[1] < 0 || (*p)[2] <= (*p)[0] || (*p)[3] <= (*p)[1])

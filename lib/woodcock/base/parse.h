@@ -19,6 +19,12 @@ struct SampleRange {
 };
 SampleRange parseSampleRange(std::string_view text);
 
+/// "2/8": the tile of number 2 of 8, counted from 0.
+struct TileNumber {
+    int index = 0, count = 1;
+};
+TileNumber parseTileNumber(std::string_view text);
+
 /// "960x540", or a width alone; then the height follows from the scene's own aspect ratio.
 struct ImageSize {
     int width = 0;

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/huge_pages.h"
@@ -138,51 +139,92 @@ void Film::add(int x, int y, const CatcherSample& sample) {
     s.catcherWeight += sample.weight;
 }
 
+template <typename Planes, typename Self>
+Planes Film::planesOf(Self& film) {
+    Planes planes;
+    const auto list = [&](const char* name, auto& pixels, auto member) {
+        if (pixels.empty()) return;
+        auto& inFirst = pixels.front().*member;
+        using Number = std::remove_all_extents_t<std::remove_reference_t<decltype(inFirst)>>;
+        using Pixel = std::remove_reference_t<decltype(pixels.front())>;
+        static_assert(sizeof(Pixel) % sizeof(Number) == 0);
+        auto& plane = planes.emplace_back();
+        plane.name = name;
+        plane.components = static_cast<int>(sizeof(inFirst) / sizeof(Number));
+        plane.stride = sizeof(Pixel) / sizeof(Number);
+        auto* const first = reinterpret_cast<Number*>(&inFirst);
+        if constexpr (std::is_same_v<std::remove_const_t<Number>, double>)
+            plane.sums = first;
+        else
+            plane.counts = first;
+    };
+    list("radiance", film.pixels_, &Pixel::radiance);
+    list("radianceSquared", film.pixels_, &Pixel::radianceSquared);
+    list("alpha", film.pixels_, &Pixel::alpha);
+    list("alphaSquared", film.pixels_, &Pixel::alphaSquared);
+    list("events", film.pixels_, &Pixel::events);
+    list("coverage", film.pixels_, &Pixel::coverage);
+    list("transmittance", film.pixels_, &Pixel::transmittance);
+    list("weightedDepth", film.pixels_, &Pixel::weightedDepth);
+    list("depthWeight", film.pixels_, &Pixel::depthWeight);
+    list("samples", film.pixels_, &Pixel::samples);
+    list("depthSamples", film.pixels_, &Pixel::depthSamples);
+    list("nonFinite", film.pixels_, &Pixel::nonFinite);
+    list("catcherLit", film.surfacePixels_, &SurfacePixel::catcherLit);
+    list("catcherUnlit", film.surfacePixels_, &SurfacePixel::catcherUnlit);
+    list("catcherWeight", film.surfacePixels_, &SurfacePixel::catcherWeight);
+    list("albedo", film.featurePixels_, &FeaturePixel::albedo);
+    list("normal", film.featurePixels_, &FeaturePixel::normal);
+    list("foreground", film.foregroundPixels_, &ForegroundPixel::radiance);
+    list("foregroundSquared", film.foregroundPixels_, &ForegroundPixel::radianceSquared);
+    return planes;
+}
+
+std::vector<Film::Plane> Film::planes() { return planesOf<std::vector<Plane>>(*this); }
+
+std::vector<Film::ConstPlane> Film::planes() const {
+    return planesOf<std::vector<ConstPlane>>(*this);
+}
+
+bool Film::isLike(const Film& other) const {
+    const std::vector<ConstPlane> own = planes(), others = other.planes();
+    return width_ == other.width_ && height_ == other.height_ && crop_ == other.crop_ &&
+           std::equal(own.begin(), own.end(), others.begin(), others.end(),
+                      [](const auto& a, const auto& b) { return a.name == b.name; });
+}
+
+Film::Kept Film::keptIn(const std::vector<std::string>& planes) {
+    const auto has = [&](const char* name) {
+        return std::find(planes.begin(), planes.end(), name) != planes.end();
+    };
+    return {
+        .surfaces = has("catcherLit"), .features = has("albedo"), .background = has("foreground")};
+}
+
+std::size_t Film::bytesPerPixel(Kept kept) {
+    return sizeof(Pixel) + (kept.surfaces ? sizeof(SurfacePixel) : 0) +
+           (kept.features ? sizeof(FeaturePixel) : 0) +
+           (kept.background ? sizeof(ForegroundPixel) : 0);
+}
+
 void Film::merge(const Film& other) {
     if (width_ != other.width_ || height_ != other.height_ || crop_ != other.crop_)
         throw usageError(
             "films of {} x {} and {} x {} pixels cannot be added, nor films with different crops",
             width_, height_, other.width_, other.height_);
-    if (foregroundPixels_.size() != other.foregroundPixels_.size())
-        throw usageError("a film with a visible background and one without it cannot be added");
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        Pixel& p = pixels_[i];
-        const Pixel& q = other.pixels_[i];
-        for (int c = 0; c < 3; ++c) {
-            p.radiance[c] += q.radiance[c];
-            p.radianceSquared[c] += q.radianceSquared[c];
-            p.transmittance[c] += q.transmittance[c];
-        }
-        p.alpha += q.alpha;
-        p.alphaSquared += q.alphaSquared;
-        p.coverage += q.coverage;
-        p.events += q.events;
-        p.weightedDepth += q.weightedDepth;
-        p.depthWeight += q.depthWeight;
-        p.samples += q.samples;
-        p.depthSamples += q.depthSamples;
-        p.nonFinite += q.nonFinite;
+    if (!isLike(other)) throw usageError("films that keep different sums cannot be added");
+    const std::vector<Plane> own = planes();
+    const std::vector<ConstPlane> others = other.planes();
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const Plane& to = own[i];
+        const ConstPlane& from = others[i];
+        const auto add = [&](auto* sums, const auto* more) {
+            for (std::size_t p = 0; p < pixelCount() * to.stride; p += to.stride)
+                for (std::size_t c = p; c < p + static_cast<std::size_t>(to.components); ++c)
+                    sums[c] += more[c];
+        };
+        to.sums ? add(to.sums, from.sums) : add(to.counts, from.counts);
     }
-    if (surfacePixels_.empty()) surfacePixels_.resize(other.surfacePixels_.size());
-    for (std::size_t i = 0; i < other.surfacePixels_.size(); ++i) {
-        SurfacePixel& p = surfacePixels_[i];
-        const SurfacePixel& q = other.surfacePixels_[i];
-        p.catcherLit += q.catcherLit;
-        p.catcherUnlit += q.catcherUnlit;
-        p.catcherWeight += q.catcherWeight;
-    }
-    if (featurePixels_.empty()) featurePixels_.resize(other.featurePixels_.size());
-    for (std::size_t i = 0; i < other.featurePixels_.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            featurePixels_[i].albedo[c] += other.featurePixels_[i].albedo[c];
-            featurePixels_[i].normal[c] += other.featurePixels_[i].normal[c];
-        }
-    for (std::size_t i = 0; i < foregroundPixels_.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            foregroundPixels_[i].radiance[c] += other.foregroundPixels_[i].radiance[c];
-            foregroundPixels_[i].radianceSquared[c] +=
-                other.foregroundPixels_[i].radianceSquared[c];
-        }
 }
 
 Rgb Film::radiance(int x, int y) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "woodcock/base/spectrum.h"
@@ -94,8 +95,34 @@ public:
     void add(int x, int y, const FilmSample& sample);
     void add(int x, int y, const DepthSample& sample);
     void add(int x, int y, const CatcherSample& sample);  ///< only where surfaces are kept
-    /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other.
+    /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other, and on
+    /// one that keeps other sums.
     void merge(const Film& other);
+
+    /// One of the sums that a film keeps, or one of its counts: `components` numbers for each pixel
+    /// of the crop, row by row. Number c of a pixel stands at [pixel * stride + c], in `sums` or
+    /// in `counts`; the other one is null.
+    template <typename Sum, typename Count>
+    struct PlaneOf {
+        std::string name;  ///< as of the member: files that keep sums use it
+        int components;
+        std::size_t stride;
+        Sum* sums = nullptr;
+        Count* counts = nullptr;
+    };
+    using Plane = PlaneOf<double, std::uint64_t>;
+    using ConstPlane = PlaneOf<const double, const std::uint64_t>;
+    /// Everything that samples have added to, always in the same order. What adds films, keeps them
+    /// in files or measures their memory goes through it, so it need not know what the sums mean.
+    std::vector<Plane> planes();
+    std::vector<ConstPlane> planes() const;
+    /// Whether another film has planes of the same names, of the same size and crop.
+    bool isLike(const Film& other) const;
+    /// What a film keeps that has planes of these names.
+    static Kept keptIn(const std::vector<std::string>& planes);
+    std::size_t pixelCount() const { return pixels_.size(); }
+    /// Memory of a pixel.
+    static std::size_t bytesPerPixel(Kept kept);
 
     /// Means over samples; zero where there are none.
     Rgb radiance(int x, int y) const;
@@ -148,6 +175,8 @@ public:
     double noise() const;
 
 private:
+    template <typename Planes, typename Self>
+    static Planes planesOf(Self& film);
     std::size_t index(int x, int y) const;
 
     int width_, height_;

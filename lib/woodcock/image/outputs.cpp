@@ -33,13 +33,17 @@ double Outputs::bytesPerPixel() const {
     return most;
 }
 
-std::string Outputs::write(const Film& film, const RenderMetadata& metadata) const {
+ExrSettings Outputs::exrSettings() const {
+    return {settings_.half, settings_.layers, settings_.colour.chromaticities()};
+}
+
+std::string Outputs::write(const Film& film, const RenderMetadata& metadata,
+                           const FilmState* state) const {
     std::string failures, note;
     for (const std::filesystem::path& file : settings_.files) {
         try {
             if (imageFormat(file) == ImageFormat::Exr) {
-                writeExr(file, film, metadata,
-                         {settings_.half, settings_.layers, settings_.colour.chromaticities()});
+                writeExr(file, film, metadata, exrSettings(), state);
                 continue;
             }
             const double raised =

@@ -36,10 +36,19 @@ public:
     double bytesPerPixel() const;
 
     /// Writes every file. If some fail, it writes the others and then throws Error{Failure} that
-    /// names those. Returns a note for the user; may be empty.
-    std::string write(const Film& film, const RenderMetadata& metadata) const;
+    /// names those. Returns a note for the user; may be empty. With `state`, EXR files keep that.
+    std::string write(const Film& film, const RenderMetadata& metadata,
+                      const FilmState* state = nullptr) const;
+
+    /// Writes an EXR of the same kind. Throws Error{Failure}.
+    void writeCheckpoint(const std::filesystem::path& file, const Film& film,
+                         const RenderMetadata& metadata, const FilmState& state) const {
+        writeExr(file, film, metadata, exrSettings(), &state);
+    }
 
 private:
+    ExrSettings exrSettings() const;
+
     OutputSettings settings_;
     std::optional<DisplayTransform> transform_;  ///< where a file needs it
 };

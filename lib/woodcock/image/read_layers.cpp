@@ -8,6 +8,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/printable.h"
+#include "woodcock/image/film_state.h"
 #include "woodcock/image/openimageio_input.h"
 
 namespace woodcock::image {
@@ -111,6 +112,7 @@ LayeredImage readLayers(const std::filesystem::path& file) {
     // Only the parts of an EXR belong together; other formats have thumbnails and pages as parts.
     for (int part = 0; part == 0 || (input.isExr() && input.goTo(part)); ++part) {
         const OIIO::ImageSpec& spec = input.spec();
+        if (spec.get_string_attribute("oiio:subimagename") == stateName) continue;
         if (spec.full_width != image.width || spec.full_height != image.height ||
             windowOf(spec) != image.window)
             throw input.unreadable(fmt::format(

@@ -43,6 +43,7 @@ struct LayeredImage {
 
 /// Reads every channel of every part, in any format that OpenImage reads. Integers are scaled to
 /// 0..1; NaN and infinite values stay. Channels of a part beyond the first have its name in front.
+/// A part that only keeps sums (film_state.h) is left out.
 /// Throws Error{Input} where the file cannot be read, holds deep or volumetric pixels or parts of
 /// different windows, or does not fit into memory.
 LayeredImage readLayers(const std::filesystem::path& file);

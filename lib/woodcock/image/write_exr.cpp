@@ -152,7 +152,7 @@ double exrBytesPerPixel(const ExrSettings& settings) {
 }
 
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings) {
+              const ExrSettings& settings, const FilmState* state) {
     const std::vector<ChannelGroup> groups = channelGroups(film, settings);
     const ImageHeader h = header(film, metadata, settings, groups);
     const Film::Window crop = film.crop();
@@ -165,7 +165,8 @@ void writeExr(const std::filesystem::path& file, const Film& film, const RenderM
                 group.fill(x, y, to);
                 to += group.names.size();
             }
-    writeWholeFile(file, encodeImage(h, pixels));
+    const std::vector<unsigned char> bytes = encodeImage(h, pixels);
+    state ? writeWithState(file, bytes, *state) : writeWholeFile(file, bytes);
 }
 
 void annotateExr(const std::filesystem::path& from, const std::filesystem::path& to,

@@ -11,6 +11,7 @@
 #include "woodcock/image/chromaticities.h"
 #include "woodcock/image/encode_image.h"
 #include "woodcock/image/film.h"
+#include "woodcock/image/film_state.h"
 
 namespace woodcock::image {
 
@@ -49,10 +50,10 @@ struct ExrSettings {
 /// Bytes of a pixel that writeExr() takes while it works: as floats, and as the file holds it.
 double exrBytesPerPixel(const ExrSettings& settings);
 
-/// Writes the film's means, premultiplied by alpha, with the crop as data window. Whole or not at
-/// all; throws Error{Failure}.
+/// Writes the film's means, premultiplied by alpha, with the crop as data window; with `state`,
+/// also that. Whole or not at all; throws Error{Failure}.
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings);
+              const ExrSettings& settings, const FilmState* state = nullptr);
 
 /// Writes the image `from`, of flat pixels in any format that is read, as an EXR of floats. It has
 /// the same channels, and these attributes in place of its own. Whole or not at all. Throws

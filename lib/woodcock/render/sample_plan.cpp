@@ -140,7 +140,7 @@ SamplePlan::SamplePlan(const image::Film& pilot, int samples)
             const double cost = around.cost();
             places[indexOf(x, y)] = {indexOf(x, y),
                                      std::sqrt(around.relativeVariance(epsilon) / cost),
-                                     static_cast<std::uint32_t>(std::lround(costUnits * cost))};
+                                     static_cast<std::uint64_t>(std::lround(costUnits * cost))};
         }
     });
     for (int y = 0; y < height; ++y)
@@ -154,6 +154,20 @@ SamplePlan::SamplePlan(const image::Film& pilot, int samples)
             p.share = std::clamp(relative, leastShare, mostShare);
         }
     }
+}
+
+SamplePlan::SamplePlan(int width, int samples, const std::vector<Weight>& weights)
+    : pixels_(weights.size()), pilot_(static_cast<std::uint32_t>(samples)) {
+    const auto w = static_cast<std::size_t>(width);
+    for (std::size_t i = 0; i < pixels_; ++i)
+        colours_[(i % w + i / w) & 1].push_back({i, weights[i].share, weights[i].cost});
+}
+
+std::vector<SamplePlan::Weight> SamplePlan::weights() const {
+    std::vector<Weight> weights(pixels_);
+    for (const std::vector<PixelPlan>& places : colours_)
+        for (const PixelPlan& p : places) weights[p.pixel] = {p.share, p.cost};
+    return weights;
 }
 
 int SamplePlan::pilotOf(int samples) { return std::clamp(samples / 4, 4, 32); }
@@ -176,7 +190,7 @@ void SamplePlan::apportion(const std::vector<PixelPlan>& places, int even,
     };
     const auto work = [&](double factor) {
         std::uint64_t s = 0;
-        for (const PixelPlan& p : places) s += std::uint64_t{count(p, factor)} * p.cost;
+        for (const PixelPlan& p : places) s += count(p, factor) * p.cost;
         return s;
     };
     std::uint64_t all = 0;

@@ -32,6 +32,16 @@ public:
     /// `pilot` holds the first `samples` samples of every pixel of its crop.
     SamplePlan(const image::Film& pilot, int samples);
 
+    /// What the plan gives a pixel.
+    struct Weight {
+        double share = 0;        ///< of the samples, in means
+        std::uint64_t cost = 0;  ///< of a sample, in small whole parts, so that sums are exact
+    };
+    /// The same plan, from its weights, row by row over a crop of this width.
+    SamplePlan(int width, int samples, const std::vector<Weight>& weights);
+    std::vector<Weight> weights() const;
+    int pilot() const { return static_cast<int>(pilot_); }
+
     /// Each pixel's number of samples, row by row over the crop, for the work of `even` samples in
     /// every pixel as the pilot predicts it. Each colour stays below its half of the work by less
     /// than one sample. No number falls as `even` grows.
@@ -44,7 +54,7 @@ private:
     struct PixelPlan {
         std::size_t pixel;
         double share;
-        std::uint32_t cost;  ///< of a sample, in small whole parts, so that sums are exact
+        std::uint64_t cost;
     };
     void apportion(const std::vector<PixelPlan>& places, int even,
                    std::vector<std::uint32_t>& counts) const;

@@ -6,15 +6,18 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <mutex>
-#include <thread>
+#include <new>
+#include <shared_mutex>
+#include <utility>
 
 #include "woodcock/base/error.h"
 #include "woodcock/render/path_tracer.h"
+#include "woodcock/render/repeated_call.h"
 #include "woodcock/render/sample_plan.h"
 #include "woodcock/render/stages/inner_loops.h"
 #include "woodcock/render/tile_order.h"
@@ -27,7 +30,7 @@ namespace {
 constexpr int tileSize = 16;
 constexpr int longestPass =
     32;  // samples per pixel: bounds a tile's buffer and the wait for a stop
-constexpr std::chrono::milliseconds progressInterval{100};
+constexpr std::chrono::milliseconds pollInterval{100};
 /// The first sample of all pixels may take so many time limits, so that the picture is whole.
 constexpr double firstPassPatience = 2;
 
@@ -62,81 +65,95 @@ void prepare(const Scene& scene, const Approximations& approximations) {
             medium::prepareMarch(medium, marchSettings(approximations));
 }
 
-/// Samples [first, end) of each pixel, or as much work.
+/// Samples [first, end) of each pixel, or as much work, as far as they are not drawn yet.
 struct Pass {
     int first, end;
-    /// The same by pixel, row by row; empty: alike in all.
-    std::vector<std::uint32_t> firstOf = {}, endOf = {};
+    std::vector<std::uint32_t> endOf = {};  ///< by pixel, row by row; empty: alike in all
 };
 
 /// Renders passes over all tiles into a film. Each tile owns its pixels, and a pixel's samples are
 /// added in their order. So the sums depend neither on threads nor on the length of passes.
 class Session {
 public:
-    Session(const Scene& scene, const RenderSettings& settings, image::Film::Window crop)
+    Session(const Scene& scene, const RenderSettings& settings, image::Film::Window crop,
+            Checkpoints checkpoints)
         : scene_(scene),
           settings_(settings),
           crop_(crop),
           needs_(findNeeds(scene)),
           approximateMedia_(scene, settings.approximations),
           tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
-          film_(settings.width, settings.height, crop,
-                {needs_.surfaces, settings.featureLayers, scene.lights.showsBackground()}),
+          state_{image::Film(
+                     settings.width, settings.height, crop,
+                     {needs_.surfaces, settings.featureLayers, scene.lights.showsBackground()}),
+                 std::vector<std::uint32_t>(), settings.firstSample},
           tiles_(scatteredTiles(crop, tileSize)),
-          work_(tiles_.size(), settings.endSample - settings.firstSample) {}
+          work_(tiles_.size(), settings.endSample - settings.firstSample),
+          checkpoints_(std::move(checkpoints)) {
+        state_.drawn.assign(state_.film.pixelCount(),
+                            static_cast<std::uint32_t>(settings.firstSample));
+        if (checkpoints_.from) goOnFrom(*std::exchange(checkpoints_.from, {}));
+    }
 
     RenderResult run(const std::function<bool(const RenderProgress&)>& onProgress) {
+        const auto tell = [&] {
+            if (!onProgress(progress())) stop_ = true;
+        };
         {
-            const Monitor monitor(*this, onProgress);
+            const RepeatedCall telling(pollInterval, onProgress ? tell : std::function<void()>());
+            const RepeatedCall saving(pollInterval, checkpoints_.wanted
+                                                        ? [this] { saveWhereWanted(); }
+                                                        : std::function<void()>());
             runPasses();
         }
-        RenderResult result{std::move(film_),     needs_,   reason_, completeSamples_,
-                            secondsSince(start_), counters_};
-        return result;
+        // Only now: whoever goes on from a checkpoint of the last moment must see the end again.
+        state_.endSample = std::max(state_.endSample, endedAt_);
+        state_.seconds = seconds();
+        if (onProgress) onProgress(progress());
+        return {std::move(state_), needs_, reason_};
     }
 
 private:
-    /// Calls back from a thread of its own until it is destroyed.
-    class Monitor {
-    public:
-        Monitor(Session& session, const std::function<bool(const RenderProgress&)>& callback)
-            : session_(session), callback_(callback) {
-            if (callback_) thread_ = std::thread([this] { watch(); });
-        }
-        ~Monitor() {
-            if (!callback_) return;
-            {
-                const std::lock_guard lock(mutex_);
-                done_ = true;
-            }
-            wake_.notify_one();
-            thread_.join();
-        }
-        Monitor(const Monitor&) = delete;
-        Monitor& operator=(const Monitor&) = delete;
+    void goOnFrom(RenderState from) {
+        if (!state_.film.isLike(from.film) || from.drawn.size() != state_.drawn.size())
+            throw usageError("the checkpoint is of a picture of another size or with other layers");
+        const std::uint32_t most = *std::max_element(from.drawn.begin(), from.drawn.end());
+        if (from.endSample < settings_.firstSample || from.endSample > settings_.endSample ||
+            (!settings_.adaptive && most > static_cast<std::uint32_t>(settings_.endSample)))
+            throw usageError(
+                "the checkpoint holds samples up to {} of a pixel, and only {}:{} are asked for",
+                most, settings_.firstSample, settings_.endSample);
+        secondsBefore_ = from.seconds;
+        work_.resumeAfter(from.endSample - settings_.firstSample);
+        state_ = std::move(from);
+    }
 
-    private:
-        void watch() {
-            std::unique_lock lock(mutex_);
-            while (!wake_.wait_for(lock, progressInterval, [this] { return done_; }))
-                if (!callback_(session_.progress())) session_.stop_ = true;
-            callback_(session_.progress());
+    double seconds() const { return secondsBefore_ + secondsSince(start_); }
+
+    void saveWhereWanted() {
+        if (!checkpoints_.wanted()) return;
+        try {
+            checkpoints_.write(snapshot());
+        } catch (const std::bad_alloc&) {
+            // The next one may find the memory.
         }
-        Session& session_;
-        const std::function<bool(const RenderProgress&)>& callback_;
-        std::mutex mutex_;
-        std::condition_variable wake_;
-        bool done_ = false;
-        std::thread thread_;
-    };
+    }
+
+    RenderState snapshot() {
+        const std::unique_lock lock(stateMutex_);
+        RenderState copy = state_;
+        copy.seconds = seconds();
+        return copy;
+    }
 
     RenderProgress progress() {
         RenderProgress p;
-        p.seconds = secondsSince(start_);
+        p.seconds = seconds();
+        const std::shared_lock stateLock(stateMutex_);
         const std::lock_guard lock(countersMutex_);
         const double done = work_.samplesDone();
         p.fraction = work_.fraction();
-        p.samples = completeSamples_.load() - settings_.firstSample;
+        p.samples = state_.endSample - settings_.firstSample;
         p.noise = noise_.load();
         if (settings_.timeLimit > 0)
             p.fraction = std::max(p.fraction, std::min(1.0, p.seconds / settings_.timeLimit));
@@ -160,35 +177,34 @@ private:
             allow.emplace(tbb::global_control::max_allowed_parallelism,
                           static_cast<std::size_t>(settings_.threads));
         tbb::task_arena arena(threads);
-        completeSamples_ = settings_.firstSample;
-        int length = 1;
-        while (completeSamples_ < settings_.endSample) {
-            const Pass pass = nextPass(length);
+        while (state_.endSample < settings_.endSample) {
+            const Pass pass = nextPass();
             const int end = pass.end;
             const auto passStart = Clock::now();
             if (!arena.execute([&] { return runPass(pass); })) {
                 reason_ = stop_ ? StopReason::Interrupted : StopReason::TimeLimit;
                 return;
             }
-            completeSamples_ = end;
-            counts_ = pass.endOf;
             lookAtNoise(secondsSince(passStart), end == settings_.endSample);
-            if (settings_.noise > 0 && noise_ < settings_.noise &&
-                end - settings_.firstSample >= fewestSamplesForNoise) {
-                if (end < settings_.endSample) reason_ = StopReason::NoiseReached;
-                return;
-            }
-            length = std::min(2 * length, longestPass);
+            const bool quiet = settings_.noise > 0 && noise_ < settings_.noise &&
+                               end - settings_.firstSample >= fewestSamplesForNoise;
+            int length = std::min(2 * state_.passLength, longestPass);
+            bool inTime = true;
             if (settings_.timeLimit > 0) {
                 // From the last pass, as adaptive passes cost more than the pilot.
                 const double perSample = secondsSince(passStart) / (end - pass.first);
-                const double left = settings_.timeLimit - secondsSince(start_);
-                length = std::min(length, static_cast<int>(left / perSample));
-                if (length < 1) {
-                    if (end < settings_.endSample) reason_ = StopReason::TimeLimit;
-                    return;
-                }
+                length = std::min(length,
+                                  static_cast<int>((settings_.timeLimit - seconds()) / perSample));
+                inTime = length >= 1;
             }
+            if (end == settings_.endSample || quiet || !inTime) {
+                if (end < settings_.endSample)
+                    reason_ = quiet ? StopReason::NoiseReached : StopReason::TimeLimit;
+                endedAt_ = end;
+                return;
+            }
+            const std::unique_lock lock(stateMutex_);
+            state_.endSample = end, state_.passLength = length;
         }
     }
 
@@ -198,21 +214,26 @@ private:
         sinceLook_ += passSeconds;
         if (settings_.noise == 0 && !last && sinceLook_ < 50 * lookSeconds_) return;
         const auto start = Clock::now();
-        noise_ = film_.noise();
+        noise_ = state_.film.noise();
         lookSeconds_ = secondsSince(start), sinceLook_ = 0;
     }
 
-    /// The pass of at most `length` samples for each pixel that comes next.
-    Pass nextPass(int length) {
-        Pass pass{completeSamples_, std::min(completeSamples_ + length, settings_.endSample)};
+    /// The pass that comes next.
+    Pass nextPass() {
+        Pass pass{state_.endSample,
+                  std::min(state_.endSample + state_.passLength, settings_.endSample)};
         if (!settings_.adaptive) return pass;
         const int pilot = SamplePlan::pilotOf(settings_.endSample);
         if (pass.first < pilot) {
             pass.end = std::min(pass.end, pilot);
             return pass;
         }
-        if (!plan_) plan_.emplace(film_, pass.first), counts_ = plan_->counts(pass.first);
-        pass.firstOf = counts_, pass.endOf = plan_->counts(pass.end);
+        if (!state_.plan) {
+            SamplePlan plan(state_.film, pass.first);
+            const std::unique_lock lock(stateMutex_);
+            state_.plan = std::move(plan);
+        }
+        pass.endOf = state_.plan->counts(pass.end);
         return pass;
     }
 
@@ -220,7 +241,7 @@ private:
     bool runPass(const Pass& pass) {
         const double limit =
             settings_.timeLimit * (pass.first > settings_.firstSample ? 1 : firstPassPatience);
-        const auto stopping = [&] { return stop_ || (limit > 0 && secondsSince(start_) > limit); };
+        const auto stopping = [&] { return stop_ || (limit > 0 && seconds() > limit); };
         {
             const std::vector<std::size_t> paths = pathsOf(pass);
             const std::lock_guard lock(countersMutex_);
@@ -245,21 +266,26 @@ private:
         std::vector<std::size_t> paths;
         paths.reserve(tiles_.size());
         for (const image::Film::Window& tile : tiles_) {
-            const auto width = static_cast<std::size_t>(tile.width());
-            if (pass.endOf.empty()) {
-                paths.push_back(width * static_cast<std::size_t>(tile.height()) *
-                                static_cast<std::size_t>(pass.end - pass.first));
-                continue;
-            }
             std::size_t count = 0;
-            for (int y = tile.y0; y < tile.y1; ++y) {
-                const std::size_t pixel = pixelOf(tile.x0, y);
-                for (std::size_t i = pixel; i < pixel + width; ++i)
-                    count += pass.endOf[i] - pass.firstOf[i];
-            }
+            eachPixel(tile, pass, [&](int, int, std::uint32_t first, std::uint32_t end) {
+                count += end - first;
+            });
             paths.push_back(count);
         }
         return paths;
+    }
+
+    /// Calls act(x, y, first, end) for the samples [first, end) that the pass draws in each pixel.
+    template <class Act>
+    void eachPixel(const image::Film::Window& tile, const Pass& pass, Act act) const {
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                const std::size_t pixel = pixelOf(x, y);
+                const std::uint32_t first = state_.drawn[pixel];
+                const std::uint32_t end =
+                    pass.endOf.empty() ? static_cast<std::uint32_t>(pass.end) : pass.endOf[pixel];
+                act(x, y, first, std::max(first, end));
+            }
     }
 
     std::size_t pixelOf(int x, int y) const {
@@ -267,37 +293,29 @@ private:
                static_cast<std::size_t>(x - crop_.x0);
     }
 
-    std::vector<PathJob> jobsOf(const image::Film::Window& tile, const Pass& pass) const {
-        std::vector<PathJob> jobs;
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x) {
-                auto first = static_cast<std::uint32_t>(pass.first);
-                auto end = static_cast<std::uint32_t>(pass.end);
-                if (!pass.endOf.empty()) {
-                    const std::size_t pixel = pixelOf(x, y);
-                    first = pass.firstOf[pixel], end = pass.endOf[pixel];
-                }
-                for (std::uint32_t s = first; s < end; ++s) jobs.push_back({x, y, s});
-            }
-        return jobs;
-    }
-
     bool renderTile(std::size_t tile, const Pass& pass, const std::function<bool()>& stopping) {
         const auto tileStart = Clock::now();
-        const std::vector<PathJob> jobs = jobsOf(tiles_[tile], pass);
+        std::vector<PathJob> jobs;
+        eachPixel(tiles_[tile], pass, [&](int x, int y, std::uint32_t first, std::uint32_t end) {
+            for (std::uint32_t s = first; s < end; ++s) jobs.push_back({x, y, s});
+        });
         std::vector<PathResult> results(jobs.size());
         RenderCounters counters;
         if (!tracers_.local()->trace(jobs, results, stopping, counters)) return false;
-        for (std::size_t i = 0; i < jobs.size(); ++i) {
-            film_.add(jobs[i].x, jobs[i].y, results[i].film);
-            if (settings_.depthLayers || settings_.featureLayers)
-                film_.add(jobs[i].x, jobs[i].y, results[i].depth);
-            if (results[i].catcher.weight > 0) film_.add(jobs[i].x, jobs[i].y, results[i].catcher);
-        }
+        const std::shared_lock stateLock(stateMutex_);
+        for (std::size_t i = 0; i < jobs.size(); ++i) add(jobs[i], results[i]);
         const std::lock_guard lock(countersMutex_);
-        counters_ += counters;
+        state_.counters += counters;
         work_.finish(tile, secondsSince(tileStart));
         return true;
+    }
+
+    void add(const PathJob& job, const PathResult& result) {
+        image::Film& film = state_.film;
+        film.add(job.x, job.y, result.film);
+        if (settings_.depthLayers || settings_.featureLayers) film.add(job.x, job.y, result.depth);
+        if (result.catcher.weight > 0) film.add(job.x, job.y, result.catcher);
+        state_.drawn[pixelOf(job.x, job.y)] = job.sample + 1;
     }
 
     PathTracer::Options tracerOptions() const {
@@ -322,31 +340,34 @@ private:
     const ApproximateMedia approximateMedia_;
     /// One for each thread that renders, made when it first does.
     tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;
-    image::Film film_;
-    std::optional<SamplePlan> plan_;     // adaptive, once there is the pilot
-    std::vector<std::uint32_t> counts_;  // and the pixels' numbers of samples by it
+    /// Whoever adds finished tiles shares it, as tiles have their own pixels; whoever copies it or
+    /// changes the rest has it alone.
+    std::shared_mutex stateMutex_;
+    RenderState state_;
     const std::vector<image::Film::Window> tiles_;
     const Clock::time_point start_ = Clock::now();
+    double secondsBefore_ = 0;  // an interruption
     double lookSeconds_ = 0, sinceLook_ = 0;
     StopReason reason_ = StopReason::Complete;
+    int endedAt_ = 0;  // 0: inside of a pass
     std::atomic<bool> stop_{false};
-    std::atomic<int> completeSamples_{0};
     std::atomic<double> noise_{std::numeric_limits<double>::infinity()};
-    std::mutex countersMutex_;  // of what follows
-    RenderCounters counters_;
+    std::mutex countersMutex_;  // of state_.counters and what follows
     WorkEstimate work_;
     double fractionTold_ = 0;
+    Checkpoints checkpoints_;
 };
 
 }  // namespace
 
 RenderResult render(const Scene& scene, const RenderSettings& settings,
-                    const std::function<bool(const RenderProgress&)>& onProgress) {
+                    const std::function<bool(const RenderProgress&)>& onProgress,
+                    Checkpoints checkpoints) {
     const image::Film::Window crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     validate(settings, crop);
     prepare(scene, settings.approximations);
-    return Session(scene, settings, crop).run(onProgress);
+    return Session(scene, settings, crop, std::move(checkpoints)).run(onProgress);
 }
 
 }  // namespace woodcock::render

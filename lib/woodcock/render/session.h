@@ -6,10 +6,12 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "woodcock/image/film.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
+#include "woodcock/render/sample_plan.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
@@ -44,15 +46,34 @@ struct RenderProgress {
 
 enum class StopReason { Complete, TimeLimit, NoiseReached, Interrupted };
 
-struct RenderResult {
+/// Where a render stands: all that it needs to go on to the same bits.
+struct RenderState {
     image::Film film;
-    Needs needs;
-    StopReason reason = StopReason::Complete;
+    /// Of each pixel of the crop, row by row: the film holds its samples [firstSample, drawn).
+    std::vector<std::uint32_t> drawn = {};
     /// Samples [firstSample, endSample) are complete in every pixel; of an adaptive render, as much
     /// work is.
     int endSample = 0;
-    double seconds = 0;
-    RenderCounters counters;
+    int passLength = 1;  ///< samples of the pass that begins at endSample, if none ends it earlier
+    std::optional<SamplePlan> plan = {};  ///< of an adaptive render, once there is the pilot
+    double seconds = 0;                   ///< so far, those before an interruption included
+    RenderCounters counters = {};
+};
+
+struct RenderResult : RenderState {
+    Needs needs;
+    StopReason reason = StopReason::Complete;
+};
+
+/// How a render is kept from being lost.
+struct Checkpoints {
+    /// Goes on from here; absent: begins. It must be of the same scene and settings, where threads,
+    /// limits and, without `adaptive`, endSample may differ. That is the caller's to know.
+    std::optional<RenderState> from = {};
+    /// Asked some times a second whether a checkpoint is to be written.
+    std::function<bool()> wanted = {};
+    /// Gets a copy of the state, between tiles. The render goes on meanwhile. Must not throw.
+    std::function<void(const RenderState&)> write = {};
 };
 
 /// Renders `scene`. The same scene, seed and sample range give the same film, bit for bit, whatever
@@ -63,9 +84,13 @@ struct RenderResult {
 /// some pixels may hold more samples than endSample - firstSample (see Film::Pixel::samples), or
 /// none where the first pass is stopped. Unfinished tiles do not count: their short paths would be
 /// kept more often than their long ones.
-/// Throws Error{Usage} on an empty crop, image or sample range, and on an adaptive render of a
-/// range that does not begin at 0.
+/// A render that goes on from a checkpoint gives the film of one that was never interrupted, bit
+/// for bit; only what a time limit ends depends on the machine. The limit includes the time before.
+/// Throws Error{Usage} on an empty crop, image or sample range, on an adaptive render of a range
+/// that does not begin at 0, and on a checkpoint of another size, with other sums or with more
+/// samples than are asked for.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
-                    const std::function<bool(const RenderProgress&)>& onProgress = {});
+                    const std::function<bool(const RenderProgress&)>& onProgress = {},
+                    Checkpoints checkpoints = {});
 
 }  // namespace woodcock::render

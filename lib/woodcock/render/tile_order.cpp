@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+
+#include "woodcock/base/error.h"
 
 namespace woodcock::render {
 
@@ -36,6 +39,29 @@ std::vector<image::Film::Window> scatteredTiles(image::Film::Window crop, int si
     tiles.reserve(keyed.size());
     for (const Keyed& k : keyed) tiles.push_back(k.tile);
     return tiles;
+}
+
+image::Film::Window pictureTile(image::Film::Window picture, int index, int count) {
+    const double width = picture.width(), height = picture.height();
+    int columns = 0;
+    double best = 0;
+    for (int c = 1; c <= count; ++c) {
+        if (count % c != 0) continue;
+        const double shape = std::abs(std::log(width / c / (height / (count / c))));
+        if (columns == 0 || shape < best) columns = c, best = shape;
+    }
+    const int rows = count / columns;
+    if (columns > picture.width() || rows > picture.height())
+        throw usageError("{} tiles are too many for {} x {} pixels", count, picture.width(),
+                         picture.height());
+    const auto cut = [](int from, int size, int i, int n) {
+        return from + static_cast<int>(std::int64_t{size} * i / n);
+    };
+    const int column = index % columns, row = index / columns;
+    return {cut(picture.x0, picture.width(), column, columns),
+            cut(picture.y0, picture.height(), row, rows),
+            cut(picture.x0, picture.width(), column + 1, columns),
+            cut(picture.y0, picture.height(), row + 1, rows)};
 }
 
 }  // namespace woodcock::render

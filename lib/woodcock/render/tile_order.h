@@ -12,4 +12,9 @@ namespace woodcock::render {
 /// all.
 std::vector<image::Film::Window> scatteredTiles(image::Film::Window crop, int size);
 
+/// Tile `index` of `count`, from 0, of those that a picture is shared out by: rows from the top,
+/// each from the left. They are as square as their number allows, and of equal size up to a pixel.
+/// Throws Error{Usage} where the picture has fewer pixels in a row or column than there are tiles.
+image::Film::Window pictureTile(image::Film::Window picture, int index, int count);
+
 }  // namespace woodcock::render

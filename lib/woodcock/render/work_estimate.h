@@ -14,6 +14,8 @@ public:
     /// For a render of `samples` in each pixel. Does not throw.
     WorkEstimate(std::size_t tiles, double samples) : tiles_(tiles), samples_(samples) {}
 
+    /// So many samples of each pixel were drawn before; call it first of all.
+    void resumeAfter(double samples) { complete_ = samples; }
     /// A pass begins, of `samples` in each pixel; each tile traces so many `paths`.
     void begin(double samples, const std::vector<std::size_t>& paths);
     /// A tile of the pass is finished, after so many seconds of one thread.

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "woodcock/base/regular_file.h"
 #include "woodcock/scene/animation.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/keys/sections.h"
@@ -264,6 +267,22 @@ std::string sceneDigest(const SceneDescription& scene) {
     SceneWriter out(".", SceneWriter::Mode::Digest);
     write(out, content);
     return fmt::format("{:016x}", hashOf(out.text()));
+}
+
+std::string filesDigest(const SceneDescription& scene) {
+    constexpr std::size_t most = 1 << 16;
+    SceneDescription content = scene;
+    std::string text;
+    std::error_code ignored;
+    for (const std::filesystem::path* path : sceneFiles(content)) {
+        // What is read once, such as a pipe, cannot be looked at.
+        if (path->empty() || !std::filesystem::is_regular_file(*path, ignored)) continue;
+        const RegularFile file(*path, "file");
+        text += fmt::format("{} ", file.size());
+        text += file.read(0, most);
+        text += file.read(file.size() - std::min<std::uint64_t>(file.size(), most), most);
+    }
+    return fmt::format("{:016x}", hashOf(text));
 }
 
 std::vector<std::filesystem::path*> sceneFiles(SceneDescription& scene) {

@@ -41,6 +41,11 @@ std::string writeOutput(const OutputDescription& output);
 /// limits of time and noise. Identifies; secures nothing.
 std::string sceneDigest(const SceneDescription& scene);
 
+/// 16 hex digits that tell apart what the files of a scene hold, wherever they lie: over the size
+/// of each, and its first and last 64 KiB. A volume that is baked anew has another, as its file
+/// names itself or differs in size. Throws Error{Input} where a file cannot be read.
+std::string filesDigest(const SceneDescription& scene);
+
 /// The files that a scene reads, but for the OpenColorIO config: of volumes, lights, materials and
 /// surfaces.
 std::vector<std::filesystem::path*> sceneFiles(SceneDescription& scene);

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders that are interrupted, killed and resumed, and parts that are merged, as users do it.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/paths.h"
+#include "tests/support/run_program.h"
+#include "tests/tools/fog_scene.h"
+#include "woodcock/image/film_state.h"
+#include "woodcock/image/read_layers.h"
+#include "woodcock/proof/support/read_back.h"
+
+namespace woodcock::test {
+
+using namespace image;
+using namespace proof;
+
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+class Checkpoints : public testing::Test {
+protected:
+    void SetUp() override { writeText(dir / "fog.toml", fogScene); }
+
+    std::string file(const std::string& name) const { return (dir / name).string(); }
+    Words words(const Words& more, const std::string& out = "a.exr",
+                const std::string& layers = "depth,error,samples") const {
+        Words all{"render", file("fog.toml"), "-o", file(out)};
+        if (!layers.empty()) all.insert(all.end(), {"--layers", layers});
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    ProgramResult render(const Words& more, const std::string& out = "a.exr",
+                         const std::string& layers = "depth,error,samples") const {
+        return runProgram(words(more, out, layers));
+    }
+    /// Pictures with the same numbers in every channel.
+    void expectSame(const std::string& a, const std::string& b) const {
+        const LayeredImage one = readLayers(dir / a), other = readLayers(dir / b);
+        ASSERT_EQ(one.planes.size(), other.planes.size());
+        for (std::size_t i = 0; i < one.planes.size(); ++i)
+            EXPECT_EQ(one.planes[i].values, other.planes[i].values) << one.planes[i].name();
+    }
+    static void expectSaid(const ProgramResult& result, int exitCode, const Words& said) {
+        EXPECT_EQ(result.exitCode, exitCode) << result.err;
+        for (const std::string& text : said)
+            EXPECT_NE(result.err.find(text), std::string::npos)
+                << "says:     " << result.err << "expected: " << text;
+    }
+    /// Waits until the render at work draws samples.
+    static void awaitSamples(RunningProgram& program) {
+        EXPECT_FALSE(program.awaitLine("\"samples\":1").empty());
+    }
+
+    const TempDir dir;
+};
+
+/// SIGUSR1 writes one and goes on; after kill -9 the picture becomes what it would have been.
+TEST_F(Checkpoints, SurviveKill) {
+    const Words range{"--spp", "1500"};
+    EXPECT_EQ(render(range, "whole.exr").exitCode, 0);
+    RunningProgram program(words({"--spp", "1500", "--progress", "json", "--threads", "1"}));
+    awaitSamples(program);
+    program.signal(SIGUSR1);
+    EXPECT_FALSE(program.awaitLine("a.checkpoint.exr").empty());
+    program.signal(SIGKILL);
+    EXPECT_EQ(program.wait().exitCode, 128 + SIGKILL);
+    EXPECT_FALSE(fs::exists(dir / "a.exr"));
+
+    // A picture that viewers open, of some samples.
+    const ReadBack shown = readBack(dir / "a.checkpoint.exr");
+    EXPECT_EQ(shown.width, 24);
+    EXPECT_GT(shown.at(12, 12, "samples"), 0);
+    EXPECT_LT(shown.at(12, 12, "samples"), 1500);
+
+    expectSaid(render({"--spp", "1500", "--resume"}), 0, {"goes on from"});
+    expectSame("whole.exr", "a.exr");
+    EXPECT_FALSE(fs::exists(dir / "a.checkpoint.exr"));
+    expectSaid(render({"--spp", "2", "--resume"}), 0, {"begins anew"});
+}
+
+class CheckpointSignals : public Checkpoints, public testing::WithParamInterface<int> {};
+
+TEST_P(CheckpointSignals, WriteAndEnd) {
+    const Words range{"--spp", "1500", "--adaptive"};
+    EXPECT_EQ(render(range, "whole.exr").exitCode, 0);
+    RunningProgram program(words({"--spp", "1500", "--adaptive", "--progress", "json", "--threads",
+                                  "1", "--checkpoint", "1h"}));
+    awaitSamples(program);
+    program.signal(GetParam());
+    expectSaid(program.wait(), 130, {"a.checkpoint.exr", "--resume goes on from it"});
+    EXPECT_TRUE(fs::exists(dir / "a.exr"));  // what was rendered so far
+    EXPECT_EQ(render({"--spp", "1500", "--adaptive", "--resume"}).exitCode, 0);
+    expectSame("whole.exr", "a.exr");
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, CheckpointSignals, testing::Values(SIGINT, SIGTERM));
+
+TEST_F(Checkpoints, AreWrittenEverySoOften) {
+    RunningProgram program(words({"--spp", "1000000", "--checkpoint", "0.1s"}, "a.png", ""));
+    for (int i = 0; i < 2; ++i) EXPECT_FALSE(program.awaitLine("a.checkpoint.exr").empty());
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait().exitCode, 130);
+    EXPECT_GT(StateFile(dir / "a.checkpoint.exr", "checkpoint").count("end", 0, 1000000), 0);
+}
+
+TEST_F(Checkpoints, OfOtherScenesAreRefusedByBothDigests) {
+    RunningProgram program(words({"--spp", "1000000", "--progress", "json", "--checkpoint", "1h"}));
+    awaitSamples(program);
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait().exitCode, 130);
+    const std::string digest = StateFile(dir / "a.checkpoint.exr", "checkpoint").fact("scene");
+    const auto refuse = [&](const Words& more, const Words& said,
+                            const char* layers = "depth,error,samples") {
+        Words all{"--resume", "--spp", "1000000"};
+        all.insert(all.end(), more.begin(), more.end());
+        expectSaid(render(all, "a.exr", layers), 3, said);
+    };
+    refuse({"--set", "volume[0].scale=2"},
+           {"cannot go on from '" + file("a.checkpoint.exr") + "': it is of another scene",
+            "its digest is " + digest, "and that of this render"});
+    refuse({"--seed", "5"}, {"the seed is '0' there and '5' here"});
+    refuse({}, {"sampled for layers is 'depth' there"}, "depth,normal");
+    refuse({"--tile", "0/2"}, {"it has the pixels 0,0,24,24 of 24 x 24, and asked for are"});
+    expectSaid(render({"--resume", "--spp", "1"}), 2, {"and only 0:1 are asked for"});
+
+    const std::string bytes = readText(dir / "a.checkpoint.exr");
+    writeText(dir / "a.checkpoint.exr", bytes.substr(0, bytes.size() / 2));
+    refuse({}, {"cannot read checkpoint '" + file("a.checkpoint.exr") + "': it is damaged"});
+    writeText(dir / "a.checkpoint.exr", "");
+    refuse({}, {"cannot read checkpoint", "it is empty"});
+    EXPECT_TRUE(fs::exists(dir / "a.checkpoint.exr"));  // whoever wants it gone removes it
+}
+
+TEST_F(Checkpoints, NeedAFileBesideWhichTheyLie) {
+    expectSaid(
+        runProgram({"render", file("fog.toml"), "--write-scene", file("b.toml"), "--resume"}), 2,
+        {"--resume is for a render"});
+    expectSaid(render({"--checkpoint", "soon"}), 2, {"--checkpoint: 'soon' is not a duration"});
+    expectSaid(render({"-o", file("a.checkpoint.exr"), "--checkpoint", "1h"}), 2,
+               {"a.checkpoint.exr' is named twice as an output"});
+    expectSaid(render({"--resume", "--quality", "auto", "--noise", "1%"}), 2,
+               {"--quality auto and --resume contradict each other"});
+}
+
+class Merge : public Checkpoints {
+protected:
+    ProgramResult merge(const Words& parts, const Words& more = {}) const {
+        Words all{"merge"};
+        for (const std::string& part : parts) all.push_back(file(part));
+        all.insert(all.end(), {"-o", file("merged.exr")});
+        all.insert(all.end(), more.begin(), more.end());
+        return runProgram(all);
+    }
+    /// Tiles and ranges of samples: part0.exr to part3.exr.
+    void makeParts() const {
+        for (const auto& [i, tile, range] : {std::tuple(0, "0/2", "0:5"),
+                                             {1, "0/2", "5:16"},
+                                             {2, "1/2", "0:5"},
+                                             {3, "1/2", "5:16"}})
+            EXPECT_EQ(
+                render({"--tile", tile, "--samples", range}, "part" + std::to_string(i) + ".exr")
+                    .exitCode,
+                0);
+    }
+};
+
+TEST_F(Merge, PartsAreOnePicture) {
+    makeParts();
+    const ReadBack tile = readBack(dir / "part2.exr");
+    EXPECT_EQ(tile.fullWidth, 24);
+    EXPECT_EQ(tile.width * tile.height, 24 * 12);
+    EXPECT_EQ(render({"--spp", "16", "-o", file("whole.png")}, "whole.exr").exitCode, 0);
+    const ProgramResult result = merge({"part3.exr", "part0.exr", "part2.exr", "part1.exr"},
+                                       {"-o", file("merged.png"), "--spp", "16", "--json"});
+    expectSaid(result, 0, {"4 parts, 16 to 16 samples per pixel"});
+    const nlohmann::json told = nlohmann::json::parse(result.out);
+    EXPECT_EQ(told["end_sample"], 16);
+    EXPECT_EQ(told["missing"].size(), 0u);
+
+    const LayeredImage whole = readLayers(dir / "whole.exr"),
+                       merged = readLayers(dir / "merged.exr");
+    ASSERT_EQ(whole.planes.size(), merged.planes.size());
+    for (std::size_t i = 0; i < whole.planes.size(); ++i) {
+        EXPECT_EQ(whole.planes[i].name(), merged.planes[i].name());
+        for (std::size_t p = 0; p < whole.planes[i].values.size(); ++p) {
+            // To a float's last place, or to the rounding of sums where samples are all alike.
+            const float a = whole.planes[i].values[p], b = merged.planes[i].values[p];
+            EXPECT_TRUE(std::abs(a - b) <= std::nextafter(std::abs(a), 1e30f) - std::abs(a) ||
+                        (std::abs(a) < 1e-6f && std::abs(b) < 1e-6f))
+                << whole.planes[i].name() << ": " << a << ", " << b;
+        }
+    }
+    for (const char* fact : {"woodcock/samples", "woodcock/sampleRange", "woodcock/sceneDigest"})
+        EXPECT_EQ(whole.facts.at(fact), merged.facts.at(fact)) << fact;
+    const LayeredImage wholePng = readLayers(dir / "whole.png"),
+                       mergedPng = readLayers(dir / "merged.png");
+    for (std::size_t i = 0; i < wholePng.planes.size(); ++i)
+        EXPECT_EQ(wholePng.planes[i].values, mergedPng.planes[i].values);
+}
+
+TEST_F(Merge, SaysWhatDoesNotFit) {
+    makeParts();
+    const auto refuse = [&](const Words& parts, const std::string& said, const Words& more = {}) {
+        expectSaid(merge(parts, more), 3, {said});
+        EXPECT_FALSE(fs::exists(dir / "merged.exr"));
+    };
+    refuse({"part0.exr", "part1.exr", "part2.exr"},
+           "samples 5:16 of 288 pixels in 0,12,24,24 are missing (seed 0)");
+    refuse({"part0.exr", "part1.exr"},
+           "samples 0:16 of 288 pixels in 0,12,24,24 are missing (seed 0)");
+    refuse({"part0.exr", "part1.exr", "part2.exr", "part3.exr"},
+           "samples 16:32 of all pixels are missing", {"--spp", "32"});
+    EXPECT_EQ(render({"--samples", "3:9"}, "doubled.exr").exitCode, 0);
+    refuse({"part0.exr", "doubled.exr"},
+           "part0.exr' and '" + file("doubled.exr") +
+               "' both hold samples 3:5 of 288 pixels in 0,0,24,12 (seed 0)");
+    EXPECT_EQ(render({"--samples", "0:4", "--set", "volume[0].g=0"}, "other.exr").exitCode, 0);
+    refuse({"part0.exr", "other.exr"}, "are of different scenes: their digests are ");
+    EXPECT_EQ(render({"--spp", "4"}, "plain.exr").exitCode, 0);
+    refuse({"plain.exr"}, "it keeps no sums, only a picture");
+    EXPECT_EQ(render({"--samples", "5:16", "--tile", "0/2"}, "layers.exr", "depth").exitCode, 0);
+    refuse({"part0.exr", "layers.exr"},
+           "have different layers ('depth,error,samples' and 'depth')");
+    expectSaid(merge({"part0.exr"}, {"--layers", "normal", "--partial"}), 2,
+               {"the parts hold nothing of the layer 'normal'"});
+    expectSaid(runProgram({"merge", file("part0.exr"), "-o", file("part0.exr")}), 2,
+               {"is an input and an output"});
+    expectSaid(merge({"part0.exr", "part1.exr"}, {"--partial"}), 0, {"are missing (seed 0)"});
+    EXPECT_TRUE(fs::exists(dir / "merged.exr"));
+}
+
+TEST_F(Merge, AdaptiveRendersOfSeveralSeeds) {
+    for (const char* seed : {"1", "2"})
+        EXPECT_EQ(render({"--spp", "16", "--adaptive", "--mergeable", "--seed", seed},
+                         std::string(seed) + ".exr")
+                      .exitCode,
+                  0);
+    EXPECT_EQ(merge({"1.exr", "2.exr"}).exitCode, 0);
+    const LayeredImage one = readLayers(dir / "1.exr"), two = readLayers(dir / "2.exr"),
+                       both = readLayers(dir / "merged.exr");
+    for (std::size_t p = 0; p < 24 * 24; ++p) {
+        const float n = one.find("samples")->values[p], m = two.find("samples")->values[p];
+        EXPECT_EQ(both.find("samples")->values[p], n + m);
+        EXPECT_FLOAT_EQ(both.find("G")->values[p],
+                        (n * one.find("G")->values[p] + m * two.find("G")->values[p]) / (n + m));
+    }
+}
+
+}  // namespace
+}  // namespace woodcock::test

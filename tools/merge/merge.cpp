@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
+#include <climits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/command.h"
+#include "tools/common/json_text.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/output_folders.h"
+#include "tools/common/picture_facts.h"
+#include "tools/common/progress.h"
+#include "tools/common/report_options.h"
+#include "woodcock/base/error.h"
+#include "woodcock/base/whole_file.h"
+#include "woodcock/image/image_format.h"
+#include "woodcock/image/outputs.h"
+#include "woodcock/render/merge_parts.h"
+
+namespace woodcock::tool {
+
+namespace {
+
+struct MergeOptions {
+    std::vector<std::filesystem::path> parts, outputs;
+    std::vector<std::string> layers;
+    std::optional<double> exposure;
+    bool mkdir = false, partial = false;
+    std::optional<int> spp;
+    ReportOptions reports;
+};
+
+/// The pictures are those that the first part tells of, where the options say nothing else.
+image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& facts) {
+    const scene::OutputDescription& output = facts.output;
+    image::OutputSettings settings{.colour = image::ColorConfig(facts.ocio)};
+    settings.files = options.outputs;
+    for (const std::filesystem::path& file : settings.files) {
+        image::imageFormat(file);
+        prepareOutput(file, options.mkdir, "");
+    }
+    refuseOverwriting(settings.files, settings.colour.files());
+    settings.half = output.half;
+    settings.layers =
+        image::layersFromNames(options.layers.empty() ? output.layers : options.layers);
+    settings.display = {output.display, output.view, output.look,
+                        options.exposure.value_or(output.exposure)};
+    settings.withAlpha = facts.withAlpha;
+    settings.glows = facts.glows;
+    return image::Outputs(std::move(settings));
+}
+
+/// Throws where the parts hold nothing of a layer.
+void checkLayers(const MergeOptions& options, const image::StateFile& first) {
+    const image::ExrLayers layers = image::layersFromNames(options.layers);
+    const std::string& sampled = first.fact("sampled");
+    const auto demand = [&](bool layer, const char* name, bool there) {
+        if (layer && !there)
+            throw usageError(
+                "the parts hold nothing of the layer '{}': they were rendered without it", name);
+    };
+    const bool depth = sampled != "light", features = sampled == "depth and features";
+    demand(layers.depth, "depth", depth);
+    demand(layers.transmittance, "transmittance", depth);
+    demand(layers.albedo, "albedo", features);
+    demand(layers.normal, "normal", features);
+}
+
+void checkSameLayers(const MergeOptions& options) {
+    if (!options.layers.empty()) return;
+    const image::StateFile first(options.parts.front(), "part");
+    for (const std::filesystem::path& path : options.parts) {
+        const image::StateFile part(path, "part");
+        if (part.fact("layers") != first.fact("layers"))
+            throw inputError(
+                "'{}' and '{}' have different layers ('{}' and '{}'); name those to write with "
+                "--layers",
+                first.file().string(), path.string(), first.fact("layers"), part.fact("layers"));
+    }
+}
+
+void report(const MergeOptions& options, const render::MergedParts& merged) {
+    const image::Film& film = merged.film;
+    const double noise = film.noise();
+    spdlog::info("{} parts, {} to {} samples per pixel, {}", options.parts.size(),
+                 film.fewestSamples(), film.mostSamples(), noiseText(noise));
+    for (const std::string& what : merged.missing) spdlog::warn("{}", what);
+    if (!options.reports.json) return;
+    std::vector<std::string> files;
+    for (const std::filesystem::path& file : options.outputs) files.push_back(file.string());
+    printJson(nlohmann::ordered_json{{"files", files},
+                                     {"parts", options.parts.size()},
+                                     {"seeds", merged.seeds},
+                                     {"first_sample", merged.firstSample},
+                                     {"end_sample", merged.endSample},
+                                     {"adaptive", merged.adaptive},
+                                     {"samples_mean", film.meanSamples()},
+                                     {"samples_fewest", film.fewestSamples()},
+                                     {"samples_most", film.mostSamples()},
+                                     {"render_seconds", merged.seconds},
+                                     {"noise", noise},
+                                     {"non_finite", film.nonFiniteCount()},
+                                     {"missing", merged.missing}},
+              4);
+}
+
+void runMerge(const MergeOptions& options, const std::string& commandLine) {
+    options.reports.start();
+    refuseOverwriting(options.outputs, options.parts);
+    const image::StateFile first(options.parts.front(), "part");
+    checkLayers(options, first);
+    checkSameLayers(options);
+    const image::Outputs outputs = prepareOutputs(options, pictureFactsOf(first));
+    const render::MergedParts merged =
+        render::mergeParts(options.parts, {options.partial, options.spp});
+    const std::string note = outputs.write(
+        merged.film, {merged.firstSample, merged.endSample, merged.seeds.front(), merged.seconds,
+                      first.fact("scene"), commandLine, merged.adaptive});
+    for (const std::filesystem::path& file : options.outputs)
+        spdlog::info("wrote {}", file.string());
+    if (!note.empty()) spdlog::info("{}", note);
+    report(options, merged);
+}
+
+CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
+    const auto options = std::make_shared<MergeOptions>();
+    MergeOptions& o = *options;
+    CLI::App& command = *app.add_subcommand(
+        "merge", "Put parts of a picture together: ranges of samples, tiles, other seeds");
+    command
+        .add_option("PART", o.parts,
+                    "EXR files of woodcock render with --samples, --tile or --mergeable, or its "
+                    "checkpoints")
+        ->required()
+        ->type_name("FILE");
+    addList(command, "-o,--output", o.outputs,
+            "Image to write: .exr, or a picture such as .png. Pictures look as those of the parts "
+            "would")
+        ->required()
+        ->type_name("FILE");
+    addList(command, "--layers", o.layers,
+            "More layers for EXR files, in place of those that the parts have")
+        ->delimiter(',')
+        ->type_name("LAYER,...");
+    addParsed(
+        command, "--exposure", o.exposure,
+        [](const std::string& text) { return parseNumber(text, -100, 100); },
+        "Make pictures brighter by this many stops, in place of the parts' exposure")
+        ->type_name("NUMBER");
+    addMkdir(command, o.mkdir);
+    addCount(command, "--spp", o.spp, 1, INT_MAX,
+             "Refuse parts that do not reach so many samples in every pixel. Without it, nothing "
+             "tells that the last range is missing");
+    command.add_flag("--partial", o.partial,
+                     "Merge what is there where parts are missing, instead of stopping");
+    o.reports.addTo(command, "Print counts and what is missing as a JSON object on stdout");
+    command.footer(examplesText({"woodcock merge part0.exr part1.exr -o smoke.exr -o smoke.png",
+                                 "woodcock merge tile.exr -o smoke.exr --partial"}));
+    command.callback([options, commandLine] { runMerge(*options, commandLine); });
+    return command;
+}
+
+}  // namespace
+
+extern const Command mergeCommand{&addTo};
+
+}  // namespace woodcock::tool
