@@ -18,9 +18,11 @@
 #include "tools/common/stats.h"
 #include "tools/render/choices_text.h"
 #include "tools/render/choose_exposure.h"
+#include "tools/render/choose_samples.h"
 #include "tools/render/options.h"
 #include "tools/render/picture_warnings.h"
 #include "tools/render/quality_auto.h"
+#include "tools/render/trial.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/toml_text.h"
@@ -291,11 +293,16 @@ private:
         checkFiles(description_, options_);  // with what --set says of lights that were chosen
         const bool exposes = open.exposure && open.lights && !description_.lights.empty() &&
                              !options_.plain && writesPictureOrScene();
-        if (exposes) {
-            description_.output.exposure = exposureFor(frame);
-            spdlog::info(
-                "chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
-                tomlNumber(description_.output.exposure));
+        const bool counts = options_.leavesSamplesOpen(description_);
+        if (exposes || counts) {
+            const render::RenderResult trial = renderTrial(frame);
+            if (exposes) {
+                description_.output.exposure = chooseExposure(trial.film, displayTransform());
+                spdlog::info(
+                    "chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
+                    tomlNumber(description_.output.exposure));
+            }
+            if (counts) countSamples(trial);
         }
         saveScene(open);
         return exposes;
@@ -308,14 +315,25 @@ private:
                });
     }
 
-    double exposureFor(const std::filesystem::path& frame) const {
+    /// Of the frame from which all is chosen.
+    render::RenderResult renderTrial(const std::filesystem::path& frame) const {
         const bool other = !frame.empty() && frame != description_.volumes[0].file;
         scene::SceneDescription scene = description_;
         if (other) scene.volumes[0].file = frame;
-        return chooseExposure(
-            scene::buildScene(scene, other ? scene::loadScene(scene) : loaded_), settings_,
-            image::ColorConfig(scene.ocio)
-                .displayTransform({scene.output.display, scene.output.view, scene.output.look, 0}));
+        return tool::renderTrial(
+            scene::buildScene(scene, other ? scene::loadScene(scene) : loaded_), settings_);
+    }
+
+    image::DisplayTransform displayTransform() const {
+        const scene::OutputDescription& output = description_.output;
+        return image::ColorConfig(description_.ocio)
+            .displayTransform({output.display, output.view, output.look, 0});
+    }
+
+    void countSamples(const render::RenderResult& trial) {
+        const ChosenSamples chosen = chooseSamples(trial);
+        description_.render.spp = settings_.endSample = chosen.perPixel;
+        spdlog::info("{}:\n[render]\nspp = {}", describe(chosen), chosen.perPixel);
     }
 
     void saveScene(const Openings& open) const {
