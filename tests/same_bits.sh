@@ -38,7 +38,8 @@ inFire=(--set "volume[0].file=$fire")
 scenes=data/scenes
 
 draw file "$cloud"
-draw grey $scenes/demo.toml "${inCloud[@]}"
+draw grey $scenes/sky.toml "${inCloud[@]}"
+draw droplets $scenes/demo.toml "${inCloud[@]}"
 draw chromatic $scenes/chromatic.toml "${inCloud[@]}"
 draw colour_grids $scenes/coloured_smoke.toml \
     --set "volume[0].file=$scratch/before/coloured_smoke.vdb"
@@ -49,19 +50,19 @@ for scene in box_of_fog gems glass tea window; do draw $scene $scenes/$scene.tom
 draw local_lights_in_fog $scenes/ladder/local_lights.toml
 draw layers $scenes/tea.toml --layers depth,albedo,normal,transmittance,samples,error,variance
 for quality in draft preview final reference; do
-    draw "quality_$quality" $scenes/demo.toml "${inCloud[@]}" --quality $quality
+    draw "quality_$quality" $scenes/sky.toml "${inCloud[@]}" --quality $quality
 done
-draw marched $scenes/demo.toml "${inCloud[@]}" --set render.march_step=1
+draw marched $scenes/sky.toml "${inCloud[@]}" --set render.march_step=1
 draw marched_fire $scenes/fire.toml "${inFire[@]}" --set render.march_step=1
-draw exponential_steps $scenes/demo.toml "${inCloud[@]}" --set render.march_step=1 \
+draw exponential_steps $scenes/sky.toml "${inCloud[@]}" --set render.march_step=1 \
     --set render.march_estimate=exponential
-spp=64 draw adaptive $scenes/demo.toml "${inCloud[@]}" --adaptive
-draw similarity $scenes/demo.toml "${inCloud[@]}" --set render.similarity_after=2
-draw octaves $scenes/demo.toml "${inCloud[@]}" --set render.octaves=4
+spp=64 draw adaptive $scenes/sky.toml "${inCloud[@]}" --adaptive
+draw similarity $scenes/sky.toml "${inCloud[@]}" --set render.similarity_after=2
+draw octaves $scenes/sky.toml "${inCloud[@]}" --set render.octaves=4
 draw clamped $scenes/fire.toml "${inFire[@]}" --set render.clamp=2
-draw nearest $scenes/demo.toml "${inCloud[@]}" --set render.lookup=nearest
-draw level_of_detail $scenes/demo.toml "${inCloud[@]}" --set render.level_of_detail=40
-draw fixed8 $scenes/demo.toml "${inCloud[@]}" --storage fixed8
+draw nearest $scenes/sky.toml "${inCloud[@]}" --set render.lookup=nearest
+draw level_of_detail $scenes/sky.toml "${inCloud[@]}" --set render.level_of_detail=40
+draw fixed8 $scenes/sky.toml "${inCloud[@]}" --storage fixed8
 
 for program in before after; do
     (cd "$scratch/$program" && "$digest" ./*.exr) >>"$scratch/$program.digests"

@@ -12,6 +12,6 @@ cmake --preset demo
 cmake --build --preset demo --target woodcock_program
 # The program holds the recipe.
 [[ $build/cloud.vdb -nt $build/tools/woodcock ]] ||
-    $build/tools/woodcock bake cumulus --resolution 384 -o $build/cloud.vdb
+    $build/tools/woodcock bake congestus --resolution 500 -o $build/cloud.vdb
 $build/tools/woodcock render data/scenes/demo.toml -o $build/demo.exr -o $build/demo.png "$@"
 echo "The picture: $PWD/$build/demo.png, and for compositing: $PWD/$build/demo.exr"

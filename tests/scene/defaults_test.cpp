@@ -410,6 +410,55 @@ TEST(Defaults, FireGlows) {
               2);
 }
 
+TEST(Defaults, AGridOfColoursIsTheAlbedo) {
+    const TempDir dir;
+    GridSpec smoke = ball({}), colour = ball({});
+    colour.name = "Cd";
+    colour.type = VdbType::Vec3s;
+    const auto completed = [&](double brightest, Look look, std::vector<std::string> overrides) {
+        colour.colour = [=](Vec3i v) { return Vec3d{0.2, 0.5, 1} * (v.x / 24.0 * brightest); };
+        writeVdb(dir / "fire.vdb", {smoke, colour});
+        return completedFire(dir, look, overrides).volumes[0];
+    };
+    const auto gridOf = [](const VolumeDescription& volume) {
+        return std::get<DensityCoefficients>(volume.coefficients).albedoGrid;
+    };
+    EXPECT_EQ(gridOf(completed(0.9, Look::Picture, {})), "Cd");
+    EXPECT_EQ(gridOf(completed(0.9, Look::Plain, {})), "");
+    // An albedo lies between 0 and 1.
+    EXPECT_EQ(gridOf(completed(1.5, Look::Picture, {})), "");
+    EXPECT_EQ(gridOf(completed(1.5, Look::Picture, {"volume[0].repair=true"})), "Cd");
+    EXPECT_EQ(gridOf(completed(0, Look::Picture, {})), "");  // nobody has coloured it
+    EXPECT_EQ(gridOf(completed(-0.5, Look::Picture, {})), "");
+    // What the user says stands.
+    EXPECT_EQ(gridOf(completed(0.9, Look::Picture, {"volume[0].albedo_grid=density"})), "density");
+    // So does a scene file.
+    EXPECT_EQ(
+        gridOf(Completed("[[volume]]\nfile = \"fire.vdb\"\n", dir.path()).description.volumes[0]),
+        "");
+}
+
+TEST(Defaults, CoefficientsInAFileAreTakenAsTheyAre) {
+    const TempDir dir;
+    GridSpec absorption = ball({}), scattering = ball({}), density = ball({});
+    absorption.name = "sigma_a", scattering.name = "sigma_s";
+    const auto text = [&](const std::vector<GridSpec>& grids, Look look = Look::Picture) {
+        writeVdb(dir / "fire.vdb", grids);
+        const std::string all = defaultSceneText({dir / "fire.vdb"}, look);
+        return all.substr(all.find("vdb\"\n") + 5);
+    };
+    EXPECT_EQ(text({scattering, absorption}),
+              "sigma_a = { grid = \"sigma_a\" }\nsigma_s = { grid = \"sigma_s\" }\n");
+    EXPECT_EQ(text({scattering}, Look::Plain), "sigma_s = { grid = \"sigma_s\" }\ng = 0.6\n");
+    EXPECT_EQ(text({scattering, density}), "albedo = 0.97\n");
+    text({scattering, absorption});
+    const SceneDescription scene = completedFire(dir);  // and it can be drawn
+    const auto& sigma = std::get<SeparateCoefficients>(scene.volumes[0].coefficients);
+    EXPECT_EQ(sigma.sigmaS, (GridCoefficient{"sigma_s", Rgb(1)}));
+    EXPECT_EQ(defaultSceneText({dir / "missing.vdb"}),
+              "[[volume]]\nfile = \"" + (dir / "missing.vdb").string() + "\"\nalbedo = 0.97\n");
+}
+
 TEST(Defaults, FireIsAsBrightAtEverySizeAndLightIsDimBesideIt) {
     const TempDir dir;
     const auto fire = [&](double size, bool burns) {

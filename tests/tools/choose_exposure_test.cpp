@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "tools/render/trial.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
 #include "woodcock/scene/scene_file.h"
@@ -46,8 +47,9 @@ TEST(ChooseExposure, BringsTheBrightPartsNearWhite) {
             "scene.toml", ".");
         const LoadedScene loaded = loadScene(scene);
         completeScene(scene, loaded);
-        return chooseExposure(buildScene(scene, loaded), scene::renderSettings(scene.render),
-                              display);
+        return chooseExposure(
+            renderTrial(buildScene(scene, loaded), scene::renderSettings(scene.render)).film,
+            display);
     };
     for (const double radiance : {0.01, 1.0, 30.0}) {
         const auto light = static_cast<float>(radiance * std::exp2(exposure(radiance)));

@@ -36,6 +36,8 @@ void describeVolumes(const Openings& open, const scene::SceneDescription& comple
             parts.push_back(fmt::format("its density scale {:g}", c->scale->mean()));
         if (open.glow[i] && volume.blackbody)
             parts.push_back(fmt::format("that its '{}' glows", volume.blackbody->temperature));
+        if (open.colour[i] && !c->albedoGrid.empty())
+            parts.push_back(fmt::format("that its '{}' colours it", c->albedoGrid));
     }
 }
 
@@ -48,6 +50,7 @@ Openings openingsOf(const scene::SceneDescription& scene) {
         open.density.push_back(c && c->density.empty());
         open.scale.push_back(c && !c->scale);
         open.glow.push_back(!volume.blackbody && !volume.emission);
+        open.colour.push_back(c && c->albedoGrid.empty());
     }
     open.camera = !scene.camera.pose;
     open.lights = scene.lights.empty();

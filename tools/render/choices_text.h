@@ -10,7 +10,7 @@ namespace woodcock::tool {
 
 /// What a scene leaves open, before it is completed.
 struct Openings {
-    std::vector<bool> density, scale, glow;  ///< of each volume
+    std::vector<bool> density, scale, glow, colour;  ///< of each volume
     bool camera = false, lights = false, exposure = false;
 };
 Openings openingsOf(const scene::SceneDescription& scene);

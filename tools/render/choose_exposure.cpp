@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "tools/common/interrupt.h"
-
 namespace woodcock::tool {
 
 namespace {
@@ -45,24 +43,8 @@ double brightRadiance(const image::Film& film) {
     return 0;
 }
 
-double chooseExposure(const render::Scene& scene, const render::RenderSettings& settings,
-                      const image::DisplayTransform& display) {
-    constexpr double pixels = 96 * 54;
-    constexpr int samples = 16;
-    render::RenderSettings small = settings;
-    const double share = std::sqrt(pixels / (double(settings.width) * settings.height));
-    const auto scaled = [&](int side) {
-        return std::max(9, static_cast<int>(std::lround(side * share)));
-    };
-    small.width = scaled(settings.width), small.height = scaled(settings.height);
-    small.crop.reset();
-    small.firstSample = 0, small.endSample = samples;
-    small.adaptive = false, small.timeLimit = 0, small.noise = 0;
-    small.depthLayers = small.featureLayers = false;
-    const double bright =
-        brightRadiance(render::render(scene, small, [](const render::RenderProgress&) {
-                           return !interrupted();
-                       }).film);
+double chooseExposure(const image::Film& trial, const image::DisplayTransform& display) {
+    const double bright = brightRadiance(trial);
     if (!(bright > 0)) return 0;
     double low = -10, high = 10;  // displays show more light brighter
     while (high - low > 0.01) {

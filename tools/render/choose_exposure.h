@@ -3,8 +3,6 @@
 
 #include "woodcock/image/display.h"
 #include "woodcock/image/film.h"
-#include "woodcock/render/scene.h"
-#include "woodcock/render/session.h"
 
 namespace woodcock::tool {
 
@@ -14,11 +12,10 @@ inline constexpr double brightDisplayValue = 0.84;
 /// The share of what a picture shows that is darker than its bright parts.
 inline constexpr double brightShare = 0.95;
 
-/// Stops that bring the bright parts of the scene to brightDisplayValue through `display` (which
-/// has no exposure of its own), from a small render with the seed and the methods of `settings`;
-/// within -10 and 10. 0 where there is nothing to be seen.
-double chooseExposure(const render::Scene& scene, const render::RenderSettings& settings,
-                      const image::DisplayTransform& display);
+/// Stops that bring the bright parts of what renderTrial() found to brightDisplayValue through
+/// `display`, which has no exposure of its own; within -10 and 10. 0 where there is nothing to be
+/// seen.
+double chooseExposure(const image::Film& trial, const image::DisplayTransform& display);
 
 /// The radiance (mean of the channels) of the bright parts of a film: a weighted quantile over its
 /// blocks of 3 x 3 pixels, in which noise is less; each counts as much as it covers of the

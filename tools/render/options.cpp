@@ -10,6 +10,7 @@
 #include "tools/common/scene_input.h"
 #include "woodcock/base/nearest_name.h"
 #include "woodcock/image/write_exr.h"
+#include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/quality.h"
 
 namespace woodcock::tool {
@@ -230,6 +231,17 @@ SceneInput RenderOptions::sceneInput() const {
     if (quality && !choosesQuality())
         input.overrides.insert(input.overrides.begin(), "render.quality=" + *quality);
     return input;
+}
+
+bool RenderOptions::leavesSamplesOpen(const scene::SceneDescription& scene) const {
+    if (plain || isSceneFile(inputs.front())) return false;
+    if (spp || samples || timeLimit || noise || adaptive || quality) return false;
+    const scene::RenderDescription& render = scene.render;
+    const auto isOpen = [&](const auto& member) {
+        return scene::findPlace(scene.places, "render." + scene::keyName(render, member)).empty();
+    };
+    return isOpen(render.spp) && isOpen(render.timeLimit) && isOpen(render.noise) &&
+           isOpen(render.adaptive) && scene::findPlace(scene.places, "render.quality").empty();
 }
 
 void RenderOptions::check() const {

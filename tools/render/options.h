@@ -55,6 +55,8 @@ struct RenderOptions {
     /// The scene, of the quality that is asked for unless that is to be chosen.
     SceneInput sceneInput() const;
     scene::Look choicesLook() const { return plain ? scene::Look::Plain : scene::Look::Picture; }
+    /// Whether nobody says how long a picture of a file alone takes, or how good it has to be.
+    bool leavesSamplesOpen(const scene::SceneDescription& scene) const;
     bool choosesQuality() const { return quality == "auto"; }
     /// Whether names of volumes may hold a place for a frame's number.
     bool takesFrames() const { return !frames.empty() || !rendersImages(); }

@@ -23,11 +23,13 @@
 #include "tools/render/checkpoint.h"
 #include "tools/render/choices_text.h"
 #include "tools/render/choose_exposure.h"
+#include "tools/render/choose_samples.h"
 #include "tools/render/estimate.h"
 #include "tools/render/frame_reader.h"
 #include "tools/render/options.h"
 #include "tools/render/picture_warnings.h"
 #include "tools/render/quality_auto.h"
+#include "tools/render/trial.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
 #include "woodcock/base/frame_range.h"
@@ -389,11 +391,12 @@ private:
         loaded_ = loadAndComplete(description_, options_.choicesLook());
         checkFiles(description_, options_);  // with what --set says of lights that were chosen
         const bool exposes = choosesExposure(open);
-        if (exposes) {
+        const bool counts = options_.leavesSamplesOpen(description_);
+        if (exposes || counts) {
             const bool other = !frame.empty() && frame != description_.volumes[0].file;
             scene::SceneDescription scene = description_;
             if (other) scene.volumes[0].file = frame;
-            chooseExposureOf(scene, other ? scene::loadScene(scene) : loaded_);
+            chooseByTrial(scene, other ? scene::loadScene(scene) : loaded_, exposes, counts);
         }
         saveScene(open);
         return exposes;
@@ -411,14 +414,24 @@ private:
                });
     }
 
-    /// From a complete scene, which may be another frame of this one.
-    void chooseExposureOf(const scene::SceneDescription& scene, scene::LoadedScene loaded) {
-        description_.output.exposure = chooseExposure(
-            scene::buildScene(scene, std::move(loaded)), settings_,
-            image::ColorConfig(scene.ocio)
-                .displayTransform({scene.output.display, scene.output.view, scene.output.look, 0}));
-        spdlog::info("chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
-                     tomlNumber(description_.output.exposure));
+    /// What a small render tells: of a complete scene, which may be another frame of this one.
+    void chooseByTrial(const scene::SceneDescription& scene, scene::LoadedScene loaded,
+                       bool exposes, bool counts) {
+        const render::RenderResult trial =
+            renderTrial(scene::buildScene(scene, std::move(loaded)), settings_);
+        if (exposes) {
+            const scene::OutputDescription& output = scene.output;
+            description_.output.exposure = chooseExposure(
+                trial.film, image::ColorConfig(scene.ocio)
+                                .displayTransform({output.display, output.view, output.look, 0}));
+            spdlog::info(
+                "chosen, so that its bright parts are near white:\n[output]\nexposure = {}",
+                tomlNumber(description_.output.exposure));
+        }
+        if (!counts) return;
+        const ChosenSamples chosen = chooseSamples(trial);
+        description_.render.spp = settings_.endSample = chosen.perPixel;
+        spdlog::info("{}:\n[render]\nspp = {}", describe(chosen), chosen.perPixel);
     }
 
     void saveScene(const Openings& open) const {
@@ -492,10 +505,13 @@ private:
                 spdlog::info("{}", choice);
             reader_->setComplete();
             description_ = reader_->atLargest(frame);
-            if (choosesExposure(open)) {
+            const bool exposes = choosesExposure(open);
+            const bool counts = options_.leavesSamplesOpen(description_);
+            if (exposes || counts) {
                 reader_->loadChosen(description_, loaded);
-                chooseExposureOf(description_, std::move(loaded));
+                chooseByTrial(description_, std::move(loaded), exposes, counts);
                 sequence.output.exposure = description_.output.exposure;
+                sequence.render.spp = description_.render.spp;
             }
         }
         description_ = sequence;

@@ -8,6 +8,7 @@
 
 #include "woodcock/base/path_variables.h"
 #include "woodcock/base/toml_text.h"
+#include "woodcock/grid/grid_roles.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/choose_camera.h"
@@ -90,20 +91,42 @@ Choice chooseScale(VolumeDescription& volume, const LoadedVolume& loaded, double
                                 depth)};
 }
 
+/// A grid of colours is the albedo of a volume of no scene file. Returns why, or why not, in a part
+/// of a sentence; empty: there is none.
+std::string chooseColour(SceneDescription& scene, const LoadedVolume& loaded, size_t index) {
+    VolumeDescription& volume = scene.volumes[index];
+    auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+    const bool given =
+        !findPlace(scene.places, fmt::format("volume[{}].file", index)).empty() ||
+        !findPlace(scene.places, fmt::format("volume[{}].albedo_grid", index)).empty();
+    if (!c || given || volume.file.empty() || !loaded.density || !(loaded.palest > 0) ||
+        loaded.colours == loaded.density.grid)
+        return {};
+    if (loaded.palest > 1 && !volume.repair)
+        return fmt::format(
+            "its '{}' is not used: it holds values up to {:.4g}, and an albedo lies between 0 and "
+            "1 (--repair sets them to 1)",
+            loaded.colours, loaded.palest);
+    c->albedoGrid = loaded.colours;
+    return fmt::format("its '{}' colours it", loaded.colours);
+}
+
 std::optional<std::string> chooseVolume(SceneDescription& scene, const LoadedScene& loaded,
                                         size_t index, Look look) {
     VolumeDescription& volume = scene.volumes[index];
     const Choice density = nameDensity(volume, loaded.volumes[index]);
-    const std::string glow =
-        look == Look::Picture ? chooseGlow(scene, loaded.volumes[index], index) : "";
+    std::string reasons;
+    if (look == Look::Picture)
+        for (const std::string& reason : {chooseGlow(scene, loaded.volumes[index], index),
+                                          chooseColour(scene, loaded.volumes[index], index)})
+            if (!reason.empty()) reasons += "; " + reason;
     const Choice scale = chooseScale(volume, loaded.volumes[index], typicalDepth(look));
     std::string toml = density.toml + scale.toml;
     if (!volume.file.empty() &&
         findPlace(scene.places, fmt::format("volume[{}].file", index)).empty())
         toml = writeVolume(volume);
     if (toml.empty()) return std::nullopt;
-    return fmt::format("chosen for volume[{}]{}{}:\n{}", index, scale.reason,
-                       glow.empty() ? "" : "; " + glow, toml);
+    return fmt::format("chosen for volume[{}]{}{}:\n{}", index, scale.reason, reasons, toml);
 }
 
 std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up, Look look) {
@@ -118,6 +141,24 @@ std::optional<std::string> chooseLights(SceneDescription& scene, UpAxis up, Look
     scene.lightChanges.clear();
     for (const LightDescription& light : scene.lights) text += "\n" + writeLight(light);
     return text;
+}
+
+/// The coefficients of a file that holds no density, but grids that bear their names; else empty,
+/// also where the file cannot be read, which loadScene() tells.
+std::string coefficientLines(const std::filesystem::path& path) {
+    grid::VdbFile file;
+    try {
+        file = grid::listGrids(path);
+    } catch (const Error&) {
+        return {};
+    }
+    if (grid::hasRole(file, grid::GridRole::Density)) return {};
+    std::string lines;
+    for (const char* name : {"sigma_a", "sigma_s"})
+        for (const grid::GridListing& grid : file.grids)
+            if (grid.uniqueName == name && grid.usable() && grid.channels > 0)
+                lines += fmt::format("{0} = {{ grid = \"{0}\" }}\n", name);
+    return lines;
 }
 
 UpAxis upOf(const SceneDescription& scene, const LoadedScene& loaded) {
@@ -136,9 +177,14 @@ double typicalDepth(Look look) { return look == Look::Plain ? 10 : 20; }
 
 std::string defaultSceneText(const std::vector<std::filesystem::path>& vdbFiles, Look look) {
     std::string text;
-    for (const std::filesystem::path& file : vdbFiles)
-        text += fmt::format("[[volume]]\nfile = {}\n{}\n", tomlText(escapePath(file)),
-                            look == Look::Plain ? "g = 0.6" : "albedo = 0.97");
+    for (const std::filesystem::path& file : vdbFiles) {
+        const std::string coefficients = coefficientLines(file);
+        text += fmt::format("[[volume]]\nfile = {}\n{}", tomlText(escapePath(file)), coefficients);
+        if (look == Look::Plain)
+            text += "g = 0.6\n";
+        else if (coefficients.empty())
+            text += "albedo = 0.97\n";
+    }
     return text;
 }
 

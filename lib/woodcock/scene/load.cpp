@@ -151,18 +151,21 @@ public:
         return cache_.get<Read>(name, [&] { return readVelocity(volume, grids, asStored); });
     }
 
-    /// The largest value of a grid that is only spoken of; 0 where that is not known, or would take
-    /// long.
-    float largest(const VolumeDescription& volume, const std::string& name) {
+    /// The values of a grid that is only spoken of; nothing where there are none, they are not
+    /// known, or would take long.
+    std::optional<grid::VoxelScan> look(const VolumeDescription& volume, const std::string& name,
+                                        grid::GridUse use) {
         constexpr std::uint64_t long_ = std::uint64_t{64} << 20;
+        if (name.empty()) return std::nullopt;
         const grid::VdbFile& vdb = file(volume);
         const grid::FoundGrid found = grid::findGrid(vdb, name);
-        if (found.grid.fileBytes > long_) return 0;
+        if (found.grid.fileBytes > long_) return std::nullopt;
         try {
-            const grid::LoadOptions options{.nonNegative = false, .repair = true};
-            return grid::loadGrid(vdb, found.grid, options).statistics.voxels.max[0];
+            const grid::LoadOptions options{.use = use, .nonNegative = false, .repair = true};
+            const grid::VoxelScan scan = grid::loadGrid(vdb, found.grid, options).statistics.voxels;
+            return scan.finite > 0 ? std::optional(scan) : std::nullopt;
         } catch (const Error&) {
-            return 0;  // what is wrong with it is told where it is used
+            return std::nullopt;  // what is wrong with it is told where it is used
         }
     }
 
@@ -354,6 +357,23 @@ std::string namesOf(const grid::VelocityGrids& grids) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// What has to be known of grids that a scene does not ask for, to choose what becomes of them.
+void lookThrough(const VolumeDescription& volume, Loader& loader, LoadedVolume& loaded) {
+    if (!volume.blackbody && !volume.emission) {
+        const auto largest = [&](const std::string& grid) {
+            const auto scan = loader.look(volume, grid, grid::GridUse::Scalar);
+            return scan ? scan->max[0] : 0;
+        };
+        loaded.hottest = largest(loaded.temperatures);
+        loaded.brightest = largest(loaded.flames);
+    }
+    const auto* c = std::get_if<DensityCoefficients>(&volume.coefficients);
+    if (!c || !c->albedoGrid.empty()) return;
+    if (const auto scan = loader.look(volume, loaded.colours, grid::GridUse::Colour))
+        if (scan->nan.count + scan->infinite.count + scan->negative.count == 0)
+            loaded.palest = std::max({scan->max[0], scan->max[1], scan->max[2]});
+}
+
 LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loader,
                         LoadCache& cache) {
     const VolumeDescription& volume = scene.volumes[index];
@@ -414,13 +434,11 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     };
     loaded.temperatures = nameOf(grid::GridRole::Temperature);
     loaded.flames = nameOf(grid::GridRole::Emission);
-    if (!volume.blackbody && !volume.emission && placeOf(volume.file).empty()) {
-        const auto largest = [&](const std::string& grid) {
-            return grid.empty() ? 0 : loader.largest(volume, grid);
-        };
-        loaded.hottest = largest(loaded.temperatures);
-        loaded.brightest = largest(loaded.flames);
-    }
+    for (const grid::GridListing& grid : file.grids)
+        if (loaded.colours.empty() && grid.channels == 3 && grid.usable() &&
+            grid::isNamedFor(grid, grid::GridRole::Colour))
+            loaded.colours = grid.uniqueName;
+    if (placeOf(volume.file).empty()) lookThrough(volume, loader, loaded);
     inPlace(placeOf(volume.velocity.grid), [&] {
         const grid::VelocityGrids grids = loader.velocityGrids(volume);
         if (grids.empty() || !scene.needsVelocities(volume)) return;
@@ -512,8 +530,12 @@ void loadChosen(const SceneDescription& scene, LoadedScene& loaded, LoadCache* k
     Loader loader(scene.render, kept ? *kept : own);
     for (size_t i = 0; i < scene.volumes.size(); ++i) {
         LoadedVolume& volume = loaded.volumes[i];
-        if (scene.volumes[i].blackbody && !volume.blackbody)
-            volume.blackbody = loader.blackbody(scene.volumes[i], volume.ambient);
+        const VolumeDescription& chosen = scene.volumes[i];
+        if (chosen.blackbody && !volume.blackbody)
+            volume.blackbody = loader.blackbody(chosen, volume.ambient);
+        const auto* c = std::get_if<DensityCoefficients>(&chosen.coefficients);
+        if (c && !c->albedoGrid.empty() && !volume.albedo)
+            volume.albedo = loader.field(chosen, c->albedoGrid, Purpose::Albedo, reachOf(chosen));
     }
 }
 

@@ -38,11 +38,14 @@ struct LoadedVolume {
     LoadedField blackbody;        ///< radiance of the temperature grid, as blackbodySource() says
     float ambient = 0;            ///< the temperature grid's background, where nothing glows
     LoadedField sigmaA, sigmaS;   ///< of SeparateCoefficients; one field where one grid is both
-    /// Grids of the file that usually mean fire, whether or not they are asked for; empty: none.
-    std::string temperatures, flames;
+    /// Grids of the file that usually mean fire, and the colour of smoke (of three channels),
+    /// whether or not they are asked for; empty: none.
+    std::string temperatures, flames, colours;
     /// The largest values of `temperatures` and `flames`, where they are of use: the scene comes
     /// from the VDB file alone, and the grid is small enough to be looked through; 0: unknown.
     float hottest = 0, brightest = 0;
+    /// The same of `colours`, whose values are sound: finite, and nowhere below 0.
+    float palest = 0;
     /// By which the volume moves; null: it stands still, or the shutter opens for no time.
     std::shared_ptr<const grid::Velocity> velocity;
     std::string velocities;  ///< their grids' names; of a volume that stands still, of the first
@@ -75,7 +78,7 @@ struct LoadedScene {
 LoadedScene loadScene(const SceneDescription& scene, LoadCache* cache = nullptr);
 
 /// What completeScene() chose and loadScene() could not know of: images of lights, as --set asked
-/// for them, and grids that glow. Throws Error{Input}.
+/// for them, grids that glow and grids of colours. Throws Error{Input}.
 void loadChosen(const SceneDescription& scene, LoadedScene& loaded, LoadCache* cache = nullptr);
 
 }  // namespace woodcock::scene
