@@ -244,7 +244,7 @@ TEST_F(Cli, WrongUsage) {
         expectFailure(render("smoke.vdb", options), 2, said);
     };
     wrong({"--progess", "bar"}, {"--progess", "did you mean '--progress'?"});
-    wrong({"--progress", "baz"}, {"'baz'", "auto, bar, json, none"});
+    wrong({"--progress", "baz"}, {"'baz'", "auto, bar, json, alfred, openjd, none"});
     wrong({"--spp", "0"}, {"--spp", "'0'", "from 1"});
     wrong({"--spp", "1", "--spp", "2"}, {"--spp is given twice"});
     wrong({"--spp"}, {"--spp has no value", "--spp COUNT"});

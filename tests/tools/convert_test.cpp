@@ -129,7 +129,7 @@ TEST_F(Convert, RefusesWrongUsage) {
 
 TEST_F(Convert, NamesNoFileAfterAPattern) {
     for (const char* pattern : {"####", "%04d", "$F4"})
-        expectRefused(2, std::string(pattern) + " is not filled in", "a.raw",
+        expectRefused(2, std::string(pattern) + " stands for a frame's number", "a.raw",
                       std::string("b.") + pattern + ".vdb", layout);
 }
 

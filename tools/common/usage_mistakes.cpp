@@ -52,7 +52,7 @@ std::string answerFor(std::string_view option) {
         {"--silent", "it is --quiet"},
         {"--gpu", "renders use the processor alone"},
         {"--device", "renders use the processor alone"},
-        {"--frames", "one call draws one frame; a shell's loop or a farm calls it for each"},
+        {"--frames", "this command works on one frame; a shell's loop calls it for each"},
         {"--resume", "a render cannot be resumed"},
         {"--overwrite", "outputs are written over"},
         {"--force", "outputs are written over"},
