@@ -74,6 +74,9 @@ TEST_F(Frames, EqualSingleRunsBitForBit) {
         EXPECT_EQ(pixels(fmt::format("a.{:04}.exr", n)), pixels(one + ".exr"));
         EXPECT_EQ(pixels(fmt::format("a.{}.png", n)), pixels(one + ".png"));
     }
+    ASSERT_EQ(render("s.####.vdb", {"--frame", "12.7", "--spp", "2", "-o", file("c.exr")}).exitCode,
+              0);
+    EXPECT_EQ(pixels("c.exr"), pixels("one.12.exr"));
     // Scenes with all patterns, and quiet ones.
     for (const char* pattern : {"%04d", "$F4", "<frame04>"}) {
         std::string text = sequence();

@@ -14,6 +14,7 @@
 #include "woodcock/scene/animation.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
+#include "woodcock/scene/frame_files.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
@@ -63,7 +64,11 @@ scene::SceneDescription parseAtAnySize(const SceneInput& input,
             overrides.push_back(std::move(set));
         scene = parseWith(input, overrides);
     }
-    return input.frame ? scene::atFrame(scene, *input.frame) : scene;
+    if (!input.frame) return scene;
+    scene = scene::atFrame(scene, *input.frame);
+    // Between two frames, the files are those of the first.
+    const auto whole = static_cast<int>(std::floor(*input.frame));
+    return scene::readsFrames(scene) ? scene::FrameFiles().at(scene, whole) : scene;
 }
 
 }  // namespace
@@ -80,7 +85,7 @@ void checkInput(const SceneInput& input) {
         throw usageError("a scene file is rendered alone, but {} inputs are given", files.size());
     if (std::any_of(files.begin(), files.end(), [](const auto& file) { return file.empty(); }))
         throw usageError("an input is empty; name a scene (.toml) or volumes (.vdb, .nvdb)");
-    checkNoFrames(files, input.overlay, input.frames);
+    checkNoFrames(files, input.overlay, input.frames || input.frame);
 }
 
 CLI::Option* addOverlay(CLI::App& command, bool& overlay) {

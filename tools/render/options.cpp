@@ -144,7 +144,8 @@ void addScene(CLI::App& command, RenderOptions& o) {
         addParsed(
             command, "--frame", o.frame,
             [](const std::string& text) { return parseNumber(text, -1e9, 1e9); },
-            "The frame of a scene's animated values. It may lie between two frames; default 0")
+            "Draw the scene at this frame: its animated values, and the files of sequences. It may "
+            "lie between two frames; default 0")
             ->type_name("FRAME"),
         addParsed(command, "--shutter", o.shutter, parseShutter,
                   "For how many frames the shutter is open, around the frame: 0.5 for 180 degrees. "
@@ -253,6 +254,7 @@ void RenderOptions::check() const {
             "--quality auto needs to know what for: give --time-limit, such as 60s, or --noise, "
             "such as 1%");
     exclude(spp.has_value(), samples.has_value(), "--spp and --samples");
+    exclude(frame.has_value(), !frames.empty(), "--frame and --frames");
     exclude(estimate, choosesQuality(), "--estimate and --quality auto");
     exclude(estimate, !writeScene.empty(), "--estimate and --write-scene");
     exclude(estimate, !stats.empty(), "--estimate and --stats");
