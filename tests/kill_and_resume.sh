@@ -8,7 +8,14 @@ set -euo pipefail
 woodcock=$1 digest=$2 pictures=${3:-3}
 RANDOM=${4:-1}
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+kills=0 resumed=0 picture=0
+end() {
+    echo "$picture pictures of the same pixels, $kills kills, $resumed of them after a resume"
+    kill -9 ${process:-} 2>/dev/null || true
+    rm -rf "$folder"
+}
+trap end EXIT
+trap 'exit 130' INT TERM
 cd "$folder"
 
 cat >fog.toml <<'SCENE'
@@ -44,7 +51,6 @@ done
 
 # Milliseconds that a render takes on this machine, which may be busy.
 takes=$((($(date +%s%N) - start) / 2000000))
-kills=0 resumed=0
 for ((picture = 0; picture < pictures; ++picture)); do
     if ((picture % 2)); then kind=adaptive; else kind=even; fi
     rm -f a.exr
@@ -79,4 +85,3 @@ for ((picture = 0; picture < pictures; ++picture)); do
         exit 1
     fi
 done
-echo "$pictures pictures, $kills kills, $resumed of them after a resume: all the same pixels"
