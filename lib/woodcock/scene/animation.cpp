@@ -30,8 +30,8 @@ void refuseMotion(const TomlValue& value, const KeyInfo& info,
     }
     for (const TomlValue& element : value.elements("a list")) {
         if (!element.isTable() && element.isAtFrame())
-            throw element.error("cannot be animated by itself; animate all of {}{}", value.name(),
-                                info.moves ? "" : ", if it were one of those that can be");
+            throw element.error("cannot be animated by itself{}",
+                                info.moves ? fmt::format("; animate all of {}", value.name()) : "");
         refuseMotion(element, info, movingNames, table);
     }
 }
@@ -215,11 +215,12 @@ SceneDescription atFrame(const SceneDescription& scene, double frame) {
         const std::string place = placeAtFrame("", frame).substr(2);
         toml::table file = toml::parse(writeSection(scene, name), place);
         toml::table& section = sectionOf(file);
-        for (const AnimatedValue& value : scene.animation)
-            if (value.table == table)
-                setValue(section, value.key, textAt(value.value, frame),
-                         placeAtFrame(findPlace(scene.places, table + "." + value.key), frame),
-                         keys);
+        for (const AnimatedValue& value : scene.animation) {
+            if (value.table != table) continue;
+            const std::string written = findPlace(scene.places, table + "." + value.key);
+            setValue(section, value.key, textAt(value.value, frame),
+                     written.empty() ? place : placeAtFrame(written, frame), keys);
+        }
         readSection(there, name, TomlTable(section, table));
     }
     if (!scene.animation.empty()) checkSurfaces(there);
