@@ -63,8 +63,9 @@ TEST(Movements, LightsMoveInTheShutter) {
     for (const std::string& light :
          {"type = \"point\"\nintensity = 3\n" + moves, "type = \"sphere\"\nradius = 0.5\n" + moves,
           "type = \"spot\"\nlook_at = [0, 0, 0]\ncone = 170\n" + moves,
-          "type = \"spot\"\ncone = 90\nposition = [0, 3, 0]\ndirection = { keys = [[0, [0, -1, "
-          "0]], [4, [1, -1, 0]]] }\n",
+          std::string(
+              "type = \"spot\"\ncone = 90\nposition = [0, 3, 0]\ndirection = { keys = [[0, [0, -1, "
+              "0]], [4, [1, -1, 0]]] }\n"),
           "type = \"rectangle\"\nsize = [1, 2]\nlook_at = [0, -5, 0]\n" + moves,
           std::string("type = \"disk\"\ntransform = { rotate = { keys = [[0, [180, 0, 0]], [4, "
                       "[230, 20, 0]]] }, translate = [0, 3, 0], scale = [1, 1, 2] }\n")}) {
