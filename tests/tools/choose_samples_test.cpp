@@ -15,8 +15,7 @@ namespace {
 /// take so many steps.
 render::RenderResult trial(float scatter, std::uint64_t stepsOfPath) {
     constexpr int width = 12, height = 9, samples = 16;
-    render::RenderResult result{
-        .film = image::Film(width, height, {0, 0, width, height}), .needs = {}, .counters = {}};
+    render::RenderResult result{{image::Film(width, height, {0, 0, width, height})}, {}};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int i = 0; i < samples; ++i)
@@ -54,8 +53,7 @@ TEST(ChooseSamples, KeepsToTheirBounds) {
     EXPECT_EQ(chooseSamples(trial(0, 4)).perPixel, 4);           // no noise at all
     EXPECT_EQ(chooseSamples(trial(0.9f, 1000000)).perPixel, 4);  // endless work
     // Of nothing that shines the noise is unknown, and it takes no work.
-    const render::RenderResult nothing{
-        .film = image::Film(9, 9, {0, 0, 9, 9}), .needs = {}, .counters = {}};
+    const render::RenderResult nothing{{image::Film(9, 9, {0, 0, 9, 9})}, {}};
     EXPECT_EQ(chooseSamples(nothing).perPixel, 1024);
     EXPECT_EQ(describe(chooseSamples(nothing)), "chosen for an unknown noise");
 }
