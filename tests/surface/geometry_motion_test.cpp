@@ -110,7 +110,9 @@ TEST(MovingGeometry, IsMetWhereItIsAtTheTimeOfTheRay) {
             SurfaceHit onA, onB;
             const bool on = moving.intersect(a.position, to - from, infinity, &a, onA, time);
             ASSERT_EQ(on, still.intersect(b.position, to - from, infinity, &b, onB));
-            if (on) EXPECT_EQ(onA.t, onB.t);
+            if (on) {
+                EXPECT_EQ(onA.t, onB.t);
+            }
         }
     }
     EXPECT_GT(hits, 3000);
