@@ -32,6 +32,22 @@ defect "support ends at the outermost voxels" 'Field.*' "table of slabs" \
     'field_.support_ = {box.lower - Vec3d{1, 1, 1}, box.upper + Vec3d{1, 1, 1}}' \
     'field_.support_ = {box.lower, box.upper}'
 
+defect "motion looks up once" 'Motion.*' "" \
+    lib/woodcock/grid/motion.h \
+    'return index - velocityAt(index - first) * dt;' 'return index - first;'
+
+defect "motion backwards in time" 'Motion.*:Velocities.*' "even velocity" \
+    lib/woodcock/grid/motion.h \
+    'return index - velocityAt(index - first) * dt;' 'return index + velocityAt(index + first) * dt;'
+
+defect "bounds of motion without the second look-up" 'Motion.*:MovedRanges.*' "bounds in motion" \
+    lib/woodcock/grid/motion.cpp \
+    'return moved(first);' 'return first;'
+
+defect "staggered velocities on the other faces" 'Velocities.*' "" \
+    lib/woodcock/scene/load.cpp \
+    '.offset[static_cast<int>(i)] = -0.5;' '.offset[static_cast<int>(i)] = 0.5;'
+
 # ---- medium
 
 defect "transform transposed" 'BuildScene.*:MediumPart.*:Invariance.Orientation' "" \

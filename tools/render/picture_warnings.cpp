@@ -76,7 +76,7 @@ std::vector<std::string> PictureWarnings::ofMotion(const render::Scene& scene) c
         const Vec3i at = motion.velocity().fastest().voxel;
         warnings.push_back(fmt::format(
             "{}: its velocity at voxel [{}, {}, {}] moves by {:.3g} voxels while the shutter is "
-            "open, and the volume is {:.3g} wide. Nothing is cut off, but {:.2g} % of its blocks "
+            "open, and the volume is {:.3g} wide. Nothing is cut off, but {:.0f} % of its blocks "
             "have loose bounds, which take time. Look at velocity_unit, velocity_scale and "
             "render.fps, or at that voxel",
             volumeName(i), at.x, at.y, at.z, voxels, widest, 100 * part.moved()->looseShare()));

@@ -38,19 +38,34 @@ Box3i tapsOf(const Field& field, const Box3d& box, double slack) {
     return {floorToInt(lower), -floorToInt(-upper)};
 }
 
-/// One channel at a position of the lattice. As Field::trilinear(), but finds a block once.
-float valueAt(const Field& field, int channel, Vec3d p) {
+/// Channels from `first` on at a position of the lattice. As Field::trilinear(), but finds a block
+/// once for all voxels in it.
+template <int count>
+std::array<double, count> valuesAt(const Field& field, int first, Vec3d p) {
     p = field.nearSupport(p);
     const Vec3i v = floorToInt(p);
-    if (((v.x & 7) == 7) | ((v.y & 7) == 7) | ((v.z & 7) == 7)) return field.trilinear(p, channel);
-    const Field::BlockVoxels block(field, {v.x >> 3, v.y >> 3, v.z >> 3});
     const Vec3d f = p - v.as<double>();
+    std::array<std::array<double, count>, 8> corners;
+    const Vec3i block{v.x >> 3, v.y >> 3, v.z >> 3};
+    const Field::BlockVoxels own(field, block);
+    const bool whole = (v.x & 7) != 7 && (v.y & 7) != 7 && (v.z & 7) != 7;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3i at = v + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+        const Vec3i its{at.x >> 3, at.y >> 3, at.z >> 3};
+        const Field::BlockVoxels voxels =
+            whole || its == block ? own : Field::BlockVoxels(field, its);
+        for (int c = 0; c < count; ++c)
+            corners[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)] =
+                voxels(at, first + c);
+    }
     const auto lerp = [](double t, double a, double b) { return a + t * (b - a); };
-    const auto row = [&](int y, int z) {
-        return lerp(f.x, block(v + Vec3i{0, y, z}, channel), block(v + Vec3i{1, y, z}, channel));
-    };
-    return static_cast<float>(
-        lerp(f.z, lerp(f.y, row(0, 0), row(1, 0)), lerp(f.y, row(0, 1), row(1, 1))));
+    std::array<double, count> values;
+    for (std::size_t c = 0; c < count; ++c) {
+        const auto row = [&](std::size_t i) { return lerp(f.x, corners[i][c], corners[i + 1][c]); };
+        values[c] =
+            static_cast<float>(lerp(f.z, lerp(f.y, row(0), row(2)), lerp(f.y, row(4), row(6))));
+    }
+    return values;
 }
 
 }  // namespace
@@ -69,8 +84,12 @@ Motion::Motion(std::shared_ptr<const Velocity> velocity, const Affine3d& objectF
         Lattice& l = lattices_[static_cast<std::size_t>(i)];
         l = {s.field.get(), s.channel, Affine3d::translate(-s.offset) * place, same ? 0 : 1e-7};
     }
-    oneLattice_ = lattices_[0].fromIndex == lattices_[1].fromIndex &&
-                  lattices_[0].fromIndex == lattices_[2].fromIndex;
+    together_ = true;
+    for (int i = 0; i < 3; ++i) {
+        const Lattice& l = lattices_[static_cast<std::size_t>(i)];
+        together_ &= l.field == lattices_[0].field && l.channel == i &&
+                     l.fromIndex == lattices_[0].fromIndex;
+    }
     Box3d all;
     for (int i = 0; i < 3; ++i) {
         const Range r = velocity_->source(i).field->range();
@@ -85,18 +104,14 @@ Motion::Motion(std::shared_ptr<const Velocity> velocity, const Affine3d& objectF
 }
 
 Vec3d Motion::velocityAt(Vec3d index) const {
+    if (together_) {
+        const auto v = valuesAt<3>(*lattices_[0].field, 0, lattices_[0].fromIndex.point(index));
+        return indexFromObject_.vector({v[0], v[1], v[2]});
+    }
     Vec3d v;
-    if (oneLattice_) {
-        const Vec3d p = lattices_[0].fromIndex.point(index);
-        for (int i = 0; i < 3; ++i) {
-            const Lattice& l = lattices_[static_cast<std::size_t>(i)];
-            v[i] = valueAt(*l.field, l.channel, p);
-        }
-    } else {
-        for (int i = 0; i < 3; ++i) {
-            const Lattice& l = lattices_[static_cast<std::size_t>(i)];
-            v[i] = valueAt(*l.field, l.channel, l.fromIndex.point(index));
-        }
+    for (int i = 0; i < 3; ++i) {
+        const Lattice& l = lattices_[static_cast<std::size_t>(i)];
+        v[i] = valuesAt<1>(*l.field, l.channel, l.fromIndex.point(index))[0];
     }
     return indexFromObject_.vector(v);
 }

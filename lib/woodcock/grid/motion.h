@@ -67,7 +67,7 @@ private:
     std::shared_ptr<const Velocity> velocity_;
     Affine3d indexFromObject_;
     std::array<Lattice, 3> lattices_;
-    bool oneLattice_;
+    bool together_;  // the components are channels of one field, on one lattice
     double open_, length_;
 };
 

@@ -34,12 +34,21 @@ Spectrum<N> read(const grid::Field& field, Vec3d index, InFull) {
     return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
 }
 
+/// densityAt() of a part that is read elsewhere. Not inline: the other parts have more registers
+/// without it.
+template <int N, class How>
+[[gnu::noinline]] Spectrum<N> densityElsewhere(const MediumPart& part, Vec3d index, float time,
+                                               How how) {
+    if (!part.placedInField(index, time)) return Spectrum<N>(0.0f);
+    return read<N>(*part.field(), index, how);
+}
+
 /// f of a part that has a field, at an index position within the part's extent.
 template <int N, class How>
 [[gnu::always_inline]] inline Spectrum<N> densityAt(const MediumPart& part, Vec3d index, float time,
                                                     How how) {
     if (part.readElsewhere()) [[unlikely]]
-        if (!part.placedInField(index, time)) return Spectrum<N>(0.0f);
+        return densityElsewhere<N>(part, index, time, how);
     return read<N>(*part.field(), index, how);
 }
 

@@ -14,6 +14,8 @@ namespace {
 
 /// Majorant optical depths below which a piece, or a whole cell, needs no better bounds.
 constexpr double shallow = 1, shallowCell = 16;
+/// The same of a cell of what moves: its bounds take the time of so many collisions.
+constexpr double shallowMovedCell = 512;
 /// Bounds whose ratio is at most this are tight: at least every second collision is real.
 constexpr float closeRatio = 2;
 /// The bounds below are exact but for rounding: of floats, and of index positions.
@@ -94,7 +96,8 @@ grid::Segment RefinedWalk::piece(const MediumPart& part, const grid::IndexRay& r
     const double largest = extinction_;
     collisions_ = 0;
     stale_ = false;
-    tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) > shallowCell;
+    tight_ = (double{cell_.range.max} - cell_.range.min) * largest * (cell_.t1 - t) >
+             (part.moved() ? shallowMovedCell : shallowCell);
     if (!tight_) return {t, cell_.t1, cell_.range};
     const grid::Field& field = *part.field();
     const grid::MovedRanges* moved = part.moved();

@@ -237,7 +237,7 @@ std::vector<std::string> motionNotes(const SceneDescription& description, const 
         if (!part.moved()) continue;
         const size_t volume = volumes[i];
         notes.push_back(fmt::format(
-            "volume[{}]: '{}' moves it by up to {:.3g} voxels while the shutter is open; {:.2g} % "
+            "volume[{}]: '{}' moves it by up to {:.3g} voxels while the shutter is open; {:.0f} % "
             "of its blocks have bounds that reach further than a block's width",
             volume, loaded.volumes[volume].velocities, part.description().motion->mostVoxels(),
             100 * part.moved()->looseShare()));
