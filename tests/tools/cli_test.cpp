@@ -253,7 +253,7 @@ TEST_F(Cli, WrongUsage) {
     wrong({"--seed", "9223372036854775808"}, {"--seed", "to 9223372036854775807"});
     wrong({"--samples", "0:2147483648"}, {"--samples", "END <= 2147483647"});
     wrong({"--exposure", "1e9"}, {"--exposure: '1e9'", "from -100 to 100"});
-    wrong({"--res", "65536x65536"}, {"--res: 65536 x 65536 pixels need 896 GiB", "--crop"});
+    wrong({"--res", "65536x65536"}, {"--res: 65536 x 65536 pixels need 912 GiB", "--crop"});
     wrong({"--res", "0x8"}, {"--res", "'0x8'", "WIDTHxHEIGHT"});
     wrong({"--samples", "4:4"}, {"--samples", "'4:4'", "FIRST:END"});
     wrong({"--crop", "4,4,4,8"}, {"--crop", "'4,4,4,8'", "X0,Y0,X1,Y1"});

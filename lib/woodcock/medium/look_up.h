@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <memory>
+
 #include "woodcock/grid/motion.h"
 #include "woodcock/medium/medium.h"
 
@@ -72,6 +75,21 @@ inline Rgb glowAt(const EmissionPart& part, Vec3d index, float time) {
         if (field.limits() && !field.limits()->contains(index)) return {};
     }
     return read<3>(field, field.nearSupport(index), InFull{});
+}
+
+/// Whether anything of a medium is not at the same place at all times of the shutter.
+inline bool moves(const Medium& medium) {
+    const auto does = [](const std::shared_ptr<const grid::Motion>& motion) {
+        return motion && motion->moves();
+    };
+    return std::ranges::any_of(medium.parts,
+                               [&](const MediumPart& part) {
+                                   const MediumPart::Description& d = part.description();
+                                   return d.movement || does(d.motion) || does(d.albedoMotion);
+                               }) ||
+           std::ranges::any_of(medium.emission, [&](const EmissionPart& part) {
+               return part.description().movement || does(part.description().motion);
+           });
 }
 
 }  // namespace woodcock::medium

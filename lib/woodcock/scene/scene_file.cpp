@@ -81,9 +81,10 @@ void checkOrbit(const SceneDescription& scene) {
 
 /// The scene at frame 0. All others are read at every key, to find mistakes there.
 SceneDescription readAnimated(toml::table& table, const std::string& name,
-                              const std::filesystem::path& base) {
+                              const std::filesystem::path& base, const Places& places) {
     const auto read = [&] {
         SceneDescription scene = readScene(TomlTable(table, ""), name, base);
+        scene.places = places;
         checkSurfaces(scene);
         return scene;
     };
@@ -230,8 +231,7 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
     expandQuality(table);
     Places places;
     for (const auto& [key, value] : table) collectPlaces(value, std::string(key.str()), places);
-    SceneDescription scene = readAnimated(table, name, baseDirectory);
-    scene.places = std::move(places);
+    SceneDescription scene = readAnimated(table, name, baseDirectory, places);
     checkOrbit(scene);
     scene.lightChanges = std::move(lightChanges);
     checkLightChanges(scene);
