@@ -60,15 +60,16 @@ TEST(Movements, LightsMoveInTheShutter) {
     };
     const std::string moves = "position = { keys = [[0, [0, 3, 0]], [4, [2, 3, -1]]] }\n";
     RandomStream random(1);
-    for (const std::string& light :
-         {"type = \"point\"\nintensity = 3\n" + moves, "type = \"sphere\"\nradius = 0.5\n" + moves,
-          "type = \"spot\"\nlook_at = [0, 0, 0]\ncone = 170\n" + moves,
-          std::string(
-              "type = \"spot\"\ncone = 90\nposition = [0, 3, 0]\ndirection = { keys = [[0, [0, -1, "
-              "0]], [4, [1, -1, 0]]] }\n"),
-          "type = \"rectangle\"\nsize = [1, 2]\nlook_at = [0, -5, 0]\n" + moves,
-          std::string("type = \"disk\"\ntransform = { rotate = { keys = [[0, [180, 0, 0]], [4, "
-                      "[230, 20, 0]]] }, translate = [0, 3, 0], scale = [1, 1, 2] }\n")}) {
+    const std::vector<std::string> lights{
+        "type = \"point\"\nintensity = 3\n" + moves,
+        "type = \"sphere\"\nradius = 0.5\n" + moves,
+        "type = \"spot\"\nlook_at = [0, 0, 0]\ncone = 170\n" + moves,
+        "type = \"spot\"\ncone = 90\nposition = [0, 3, 0]\n"
+        "direction = { keys = [[0, [0, -1, 0]], [4, [1, -1, 0]]] }\n",
+        "type = \"rectangle\"\nsize = [1, 2]\nlook_at = [0, -5, 0]\n" + moves,
+        "type = \"disk\"\ntransform = { rotate = { keys = [[0, [180, 0, 0]], [4, [230, 20, 0]]] }, "
+        "translate = [0, 3, 0], scale = [1, 1, 2] }\n"};
+    for (const std::string& light : lights) {
         SCOPED_TRACE(light);
         const render::Scene moving = build(light, 2, "2");  // from 1 to 3
         ASSERT_TRUE(moving.lights.moves());
