@@ -38,7 +38,8 @@ TEST(ParseErrors, NameTheNearestKnownKey) {
     EXPECT_EQ(volumeMistake("albdo = 1"),
               "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
               "keys: file, box, density, scale, albedo, albedo_grid, sigma_a, sigma_s, emission, "
-              "blackbody, g, phase, transform, matrix, inside, storage, background, repair");
+              "blackbody, g, phase, transform, matrix, velocity, velocity_scale, velocity_unit, "
+              "velocity_sampling, inside, storage, background, repair");
     EXPECT_EQ(
         sectionMistake("[rendr]\nspp = 1"),
         "scene.toml:3:2: unknown key 'rendr' in the scene; did you mean 'render'? known keys: "

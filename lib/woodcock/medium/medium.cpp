@@ -148,6 +148,17 @@ bool MediumPart::chromatic() const {
            (d_.albedo && d_.albedo->channels() == 3);
 }
 
+bool Medium::moves() const {
+    const auto does = [](const std::shared_ptr<const grid::Motion>& motion) {
+        return motion && motion->moves();
+    };
+    for (const MediumPart& p : parts)
+        if (does(p.description().motion) || does(p.description().albedoMotion)) return true;
+    for (const EmissionPart& p : emission)
+        if (does(p.description().motion)) return true;
+    return false;
+}
+
 Box3d Medium::worldBounds() const {
     Box3d box;
     for (const MediumPart& p : parts)

@@ -157,6 +157,8 @@ struct Medium {
 
     /// World box of all parts' extents (a background without limits reaches beyond it).
     Box3d worldBounds() const;
+    /// Whether anything is not at the same place at all times of the shutter.
+    bool moves() const;
 };
 
 /// Walks the part of a ray that a medium part fills, as segments of world ray parameter in order:

@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/needs.h"
 
-#include "woodcock/grid/motion.h"
 #include "woodcock/render/scene.h"
 
 namespace woodcock::render {
-
-namespace {
-
-/// Whether anything is not at the same place at all times of the shutter.
-bool moves(const medium::Medium& medium) {
-    const auto does = [](const std::shared_ptr<const grid::Motion>& motion) {
-        return motion && motion->moves();
-    };
-    for (const medium::MediumPart& p : medium.parts)
-        if (does(p.description().motion) || does(p.description().albedoMotion)) return true;
-    for (const medium::EmissionPart& p : medium.emission)
-        if (does(p.description().motion)) return true;
-    return false;
-}
-
-}  // namespace
 
 Needs findNeeds(const Scene& scene) {
     Needs n = scene.forcedNeeds;
@@ -32,7 +15,7 @@ Needs findNeeds(const Scene& scene) {
         }
         n.overlap |= medium.parts.size() > 1;
         n.emission |= !medium.emission.empty();
-        n.motion |= scene.shutter.length() > 0 && moves(medium);
+        n.motion |= scene.shutter.length() > 0 && medium.moves();
         const Box3d box = medium.worldBounds();
         if (!box.empty()) bounds.add(box.lower), bounds.add(box.upper);
     };
