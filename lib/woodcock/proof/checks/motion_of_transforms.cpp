@@ -70,7 +70,7 @@ void addPassing(Lab& lab) {
         "[[surface]]\nbox = { min = [0, -1, -0.5], max = [1, 1, 0.5] }\n" + passesBy;
     lab.add(coverage(lab, "alpha of an opaque box that passes", 0.25, box + light + alongZ));
     const std::string filled = box +
-                               "material = \"air\"\ninterior = { sigma_a = 2 }\n"
+                               "material = \"air\"\nmedium = { sigma_a = 2 }\n"
                                "[[material]]\nname = \"air\"\ntype = \"interface\"\n";
     lab.add(
         coverage(lab, "alpha of fog in a box that passes", opacity / 4, filled + light + alongZ));
