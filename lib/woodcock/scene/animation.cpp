@@ -211,15 +211,16 @@ SceneDescription atFrame(const SceneDescription& scene, double frame) {
     for (const std::string& table : tablesOf(scene)) {
         const SectionName name(table);
         const SectionKeys keys = keysOfSection(scene, table);
-        // Of what is not animated, a mistake's place is the frame.
-        const std::string place = placeAtFrame("", frame).substr(2);
+        // Not by placeAtFrame(): what can be animated was found out when the scene was read, and
+        // values that only stand beside such a one cannot.
+        const std::string place = fmt::format("at frame {}", frame);
         toml::table file = toml::parse(writeSection(scene, name), place);
         toml::table& section = sectionOf(file);
         for (const AnimatedValue& value : scene.animation) {
             if (value.table != table) continue;
             const std::string written = findPlace(scene.places, table + "." + value.key);
             setValue(section, value.key, textAt(value.value, frame),
-                     written.empty() ? place : placeAtFrame(written, frame), keys);
+                     written.empty() ? place : fmt::format("{}, {}", place, written), keys);
         }
         readSection(there, name, TomlTable(section, table));
     }
