@@ -38,10 +38,6 @@ double Outputs::bytesPerPixel() const {
     return most;
 }
 
-ExrSettings Outputs::exrSettings() const {
-    return {settings_.half, settings_.layers, settings_.colour.chromaticities()};
-}
-
 std::string Outputs::write(const Film& film, const RenderMetadata& metadata,
                            const FilmState* state) const {
     std::string failures, note;

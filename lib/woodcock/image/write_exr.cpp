@@ -124,7 +124,7 @@ std::vector<float> pixelsOf(const Film& film, std::span<const ChannelGroup> grou
 
 }  // namespace
 
-double exrBytesPerPixel(const ExrSettings& settings, const FilmState* state) {
+double exrBytesPerPixel(const ExrSettings& settings) {
     double bytes = 0;
     for (const ChannelGroup& group : channelGroups(settings))
         bytes += double(group.names.size()) * (sizeof(float) + (group.half ? 2 : sizeof(float)));
@@ -151,9 +151,6 @@ void writeExr(const std::filesystem::path& file, const Film& film, const RenderM
     }
     const std::vector<unsigned char> bytes =
         settings.multipart ? joinExrParts(parts) : std::move(parts.front().file);
-    state ? writeWithState(file, bytes, *state)
-          : const std::vector<unsigned char> bytes =
-                settings.multipart ? joinExrParts(parts) : std::move(parts.front().file);
     state ? writeWithState(file, bytes, *state) : writeWholeFile(file, bytes);
 }
 
