@@ -17,6 +17,7 @@
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
+#include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/load.h"
 #include "woodcock/scene/scene_file.h"
 
@@ -129,9 +130,7 @@ scene::LoadedScene load(const scene::SceneDescription& scene,
 
 render::RenderSettings settingsOf(const scene::SceneDescription& scene, const RenderCalls& calls) {
     render::RenderSettings settings = scene::renderSettings(scene.render);
-    const image::ExrLayers layers = image::layersFromNames(scene.output.layers);
-    settings.depthLayers = layers.depth || layers.transmittance;
-    settings.featureLayers = layers.albedo || layers.normal;
+    settings.layers = scene::layerNeeds(scene);
     settings.threads = calls.threads;
     return settings;
 }
@@ -191,16 +190,19 @@ void RenderedImage::write(const fs::path& file) const {
     image::OutputSettings settings{
         .files = {file},
         .half = output.half,
-        .layers = image::layersFromNames(output.layers),
+        .layers = scene::outputLayers(scene),
+        .multipart = output.multipart,
         .display = {output.display, output.view, output.look, output.exposure},
         .colour = std::move(colour),
         .withAlpha = scene::environmentIsHidden(scene),
         .glows = scene::anythingGlows(scene)};
     const render::RenderResult& result = impl_->result;
-    image::Outputs(std::move(settings))
-        .write(result.film,
-               {impl_->settings.firstSample, result.endSample, impl_->settings.seed, result.seconds,
-                scene::sceneDigest(scene), "", impl_->settings.adaptive});
+    image::RenderMetadata metadata{impl_->settings.firstSample, result.endSample,
+                                   impl_->settings.seed,        result.seconds,
+                                   scene::sceneDigest(scene),   "",
+                                   impl_->settings.adaptive};
+    scene::describeShot(scene, metadata);
+    image::Outputs(std::move(settings)).write(result.film, metadata);
 }
 
 struct Renderer::Impl {

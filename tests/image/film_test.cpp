@@ -245,8 +245,13 @@ TEST(Film, NoiseFallsWithTheRootOfTheSamples) {
 
 /// What samples add to is in a plane, all of it, and once.
 TEST(Film, PlanesListEverySum) {
-    for (const Film::Kept kept : {Film::Kept{false, false, false}, Film::Kept{true, false, true},
-                                  Film::Kept{true, true, true}}) {
+    for (const Film::Kept& kept : {Film::Kept{false, false, false}, Film::Kept{true, false, true},
+                                   Film::Kept{true, true, true},
+                                   Film::Kept{.surfaces = false,
+                                   .features = false,
+                                   .places = true,
+                                   .stops = true,
+                                   .parts = {.kinds = true, .groups = {"key"}}}}) {
         const Film film(5, 4, {1, 1, 4, 3}, kept);
         std::set<std::string> names;
         std::set<const void*> places;
@@ -263,6 +268,28 @@ TEST(Film, PlanesListEverySum) {
         EXPECT_EQ(film.pixelCount(), 6u);
         EXPECT_EQ(places.size() * sizeof(double), film.pixelCount() * Film::bytesPerPixel(kept));
     }
+}
+
+TEST(Film, SplitsLightIntoPartsOfTheSamplesThatCount) {
+    Film film(2, 1, {0, 0, 2, 1},
+              {.surfaces = false, .features = false, .parts = {.kinds = true, .groups = {"key"}}});
+    std::vector<Rgb> parts(8);
+    parts[static_cast<std::size_t>(LightKind::Emission)] = Rgb(1, 2, 3);
+    parts[static_cast<std::size_t>(LightKind::Background)] = Rgb(1, 0, 0);
+    parts[6] = Rgb(0.5f, 1, 0), parts[7] = Rgb(1.5f, 1, 3);
+    film.add(1, 0, FilmSample{Rgb(2, 2, 3), 1}, parts);
+    film.add(1, 0, FilmSample{Rgb(0.0f), 0}, std::vector<Rgb>(8));
+    film.add(1, 0, FilmSample{Rgb(std::nanf("")), 0}, parts);
+    EXPECT_EQ(film.light(LightKind::Emission, 1, 0), Rgb(0.5f, 1, 1.5f));
+    EXPECT_EQ(film.light(LightKind::Background, 1, 0), Rgb(0.5f, 0, 0));
+    EXPECT_EQ(film.light(LightKind::VolumeDirect, 1, 0), Rgb(0.0f));
+    EXPECT_EQ(film.lightOfGroup(0, 1, 0), Rgb(0.25f, 0.5f, 0));
+    EXPECT_EQ(film.lightOfGroup(1, 1, 0), Rgb(0.75f, 0.5f, 1.5f));
+    EXPECT_EQ(film.light(LightKind::Emission, 0, 0), Rgb(0.0f));
+    Film both = film;
+    both.merge(film);
+    EXPECT_EQ(both.lightOfGroup(1, 1, 0), film.lightOfGroup(1, 1, 0));
+    EXPECT_EQ(both.at(1, 0).samples, 4u);
 }
 
 TEST(Film, PlanesAreTheFilmsOwnNumbers) {

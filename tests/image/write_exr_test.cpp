@@ -61,9 +61,10 @@ TEST_F(WriteExr, HalfIsForColourAndFinite) {
     film_.add(3, 3, FilmSample{Rgb(1e9f, 0, 0), 1});
     ExrSettings settings;
     settings.half = true;
-    settings.layers.depth = settings.layers.error = true;
+    settings.layers = layersFromNames({"depth", "error", "albedo"}, {}, true);
     const proof::ReadBack image = write(settings);
-    for (const char* channel : {"R", "G", "B", "A"}) EXPECT_EQ(image.types.at(channel), "half");
+    for (const char* channel : {"R", "G", "B", "A", "albedo.R"})
+        EXPECT_EQ(image.types.at(channel), "half");
     for (const char* channel : {"Z", "error.R", "error.G", "error.B"})
         EXPECT_EQ(image.types.at(channel), "float");
     EXPECT_EQ(image.at(3, 3, "R"), 65504.0f);
@@ -133,16 +134,53 @@ TEST_F(WriteExr, HeaderTellsAdaptiveSamples) {
     EXPECT_EQ(attributes.at("woodcock/samplesAtMost"), "2");
 }
 
-TEST(ExrLayers, UnknownNamesListTheKnown) {
-    try {
-        layersFromNames({"depth", "sample"});
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::Usage);
-        EXPECT_STREQ(e.what(),
-                     "unknown layer 'sample'; did you mean 'samples'? known layers: depth, "
-                     "albedo, normal, transmittance, samples, error, variance");
+TEST_F(WriteExr, PartsOfTheirOwnHaveTheLayersNameAndPlainChannels) {
+    ExrSettings settings;
+    settings.layers = layersFromNames({"depth", "emission:half", "samples"});
+    settings.chromaticities = chromaticitiesFromName("ACEScg");
+    settings.multipart = true;
+    const ReadBack rgba = write(settings);
+    EXPECT_EQ(rgba.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+    EXPECT_EQ(rgba.attributes.at("oiio:subimagename"), "rgba");
+    EXPECT_EQ(rgba.attributes.at("woodcock/sceneDigest"), "digest");
+    EXPECT_EQ(rgba.at(2, 3, "G"), film_.radiance(2, 3)[1]);
+    struct Part {
+        const char* name;
+        std::vector<std::string> channels;
+        const char* type;
+    };
+    int number = 1;
+    for (const Part& part :
+         {Part{"depth", {"Z"}, "float"}, Part{"emission", {"R", "G", "B"}, "half"},
+          Part{"samples", {"samples"}, "float"}}) {
+        const ReadBack read = readBack(dir_ / "a.exr", number++);
+        EXPECT_EQ(read.attributes.at("oiio:subimagename"), part.name);
+        EXPECT_EQ(read.channels, part.channels);
+        EXPECT_EQ(read.types.at(part.channels[0]), part.type);
+        EXPECT_EQ(read.attributes.at("chromaticities"), rgba.attributes.at("chromaticities"));
+        EXPECT_EQ(read.x, 1);
+        EXPECT_EQ(read.fullWidth, 6);
     }
+    EXPECT_EQ(readBack(dir_ / "a.exr", 3).at(1, 2, "samples"), 2.0f);
+    EXPECT_THROW(readBack(dir_ / "a.exr", 4), std::out_of_range);
+}
+
+TEST_F(WriteExr, HeaderSaysWhatIsKnownOfTheShot) {
+    ExrSettings settings;
+    settings.interopId = "lin_ap1_scene";
+    auto attributes = write(settings).attributes;
+    EXPECT_EQ(attributes.at("colorInteropID"), "lin_ap1_scene");
+    for (const char* name : {"worldToCamera", "worldToNDC", "framesPerSecond", "ExposureTime"})
+        EXPECT_FALSE(attributes.contains(name)) << name;
+    metadata_.worldToCamera = Matrix44{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 2, 3, 4, 1};
+    metadata_.worldToNdc = metadata_.worldToCamera;
+    metadata_.framesPerSecond = Rational{24000, 1001};
+    metadata_.shutter = 0.5;
+    attributes = write(settings).attributes;
+    EXPECT_EQ(attributes.at("worldToCamera"), "1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 2, 3, 4, 1");
+    EXPECT_EQ(attributes.at("framesPerSecond"), "24000/1001");
+    EXPECT_NEAR(std::stof(attributes.at("ExposureTime")), 0.5 * 1001 / 24000, 1e-7);
+    EXPECT_EQ(attributes.at("shutterAngle"), "180");
 }
 
 TEST(Chromaticities, KnowTheNamesThatConfigsUse) {

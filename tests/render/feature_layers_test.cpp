@@ -36,7 +36,7 @@ RenderResult featuresOf(const Scene& scene, int samples = 4096) {
     RenderSettings s;
     s.width = s.height = 8, s.endSample = samples;
     s.maxScatterings = 0;  // the picture itself does not matter
-    s.featureLayers = true;
+    s.layers.features = true;
     return render::render(scene, s);
 }
 
@@ -150,7 +150,7 @@ TEST(FeatureLayers, ThePictureIsTheSame) {
     RenderSettings s;
     s.width = s.height = 8, s.endSample = 8;
     const Film without = render::render(scene, s).film;
-    s.featureLayers = true;
+    s.layers.features = true;
     const Film with = render::render(scene, s).film;
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {

@@ -35,7 +35,7 @@ RenderSettings settings(int first, int end) {
     RenderSettings s;
     s.width = picture.x1, s.height = picture.y1;
     s.firstSample = first, s.endSample = end;
-    s.featureLayers = true;
+    s.layers.features = true;
     return s;
 }
 
@@ -142,7 +142,7 @@ TEST_F(MergeParts, RefusesWhatDoesNotFit) {
            part("b.exr", s, {{"scene", "89ab"}, {"files", "4567"}}));
     refuse("are of scenes whose files differ: their digests are 4567 and 0",
            part("c.exr", s, {{"scene", "0123"}, {"files", "0"}}));
-    s.featureLayers = false;
+    s.layers.features = false;
     refuse("were sampled for different layers: depth and features and light", part("d.exr", s));
     s = settings(4, 8);
     s.width = 50, s.height = 30;

@@ -46,7 +46,7 @@ TEST(PathTracer, ResultsDoNotDependOnTheRestOfTheBatch) {
     ASSERT_TRUE(needs.surfaces && needs.localLights && needs.chromatic);
     PathTracer::Options options;
     options.width = options.height = 12;
-    options.featureLayers = true;
+    options.layers.features = true;
     const auto tracer = PathTracer::make(scene, needs, options);
     const auto never = [] { return false; };
     const std::vector<PathJob> jobs = someJobs();

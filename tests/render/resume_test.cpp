@@ -35,7 +35,7 @@ RenderSettings settings(int samples) {
     RenderSettings s;
     s.width = 70, s.height = 50, s.endSample = samples;
     s.seed = 9;
-    s.featureLayers = true;
+    s.layers.features = true;
     return s;
 }
 
@@ -183,7 +183,7 @@ TEST_F(Resume, RefusesWhatIsNotItsOwn) {
     refuse("adaptive sampling is 'no' there and 'yes' here",
            [](RenderSettings& o) { o.adaptive = true; });
     refuse("sampled for layers is 'depth and features' there and 'light' here",
-           [](RenderSettings& o) { o.featureLayers = false; });
+           [](RenderSettings& o) { o.layers.features = false; });
     refuse("Go on with what it was made by, or remove the file to begin anew",
            [](RenderSettings& o) { o.seed = 8; });
 }

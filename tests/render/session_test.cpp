@@ -31,7 +31,7 @@ Scene fog(const char* sigma = "sigma_a = 0.1\nsigma_s = [1, 2, 0.5]\n") {
 RenderSettings settings(int width = 41, int height = 35, int samples = 8) {
     RenderSettings s;
     s.width = width, s.height = height, s.endSample = samples;
-    s.depthLayers = true;
+    s.layers.depth = true;
     return s;
 }
 

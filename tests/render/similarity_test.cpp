@@ -45,7 +45,7 @@ Scene fog(double g, bool surfaces) {
 
 RenderResult draw(const Scene& scene, std::optional<int> after, RenderSettings s = {}) {
     s.width = 24, s.height = 16, s.endSample = 8;
-    s.depthLayers = true;
+    s.layers.depth = true;
     s.approximations.similarityAfter = after;
     return render::render(scene, s);
 }

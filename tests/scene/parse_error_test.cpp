@@ -6,6 +6,8 @@
 #include "tests/support/paths.h"
 #include "tests/support/scene_mistake.h"
 #include "woodcock/base/error.h"
+#include "woodcock/base/nearest_name.h"
+#include "woodcock/image/layers.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::test {
@@ -35,20 +37,21 @@ TEST(ParseErrors, NamePlaceValueAndRange) {
 }
 
 TEST(ParseErrors, NameTheNearestKnownKey) {
-    EXPECT_EQ(volumeMistake("albdo = 1"),
-              "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
-              "keys: file, box, frame_start, offset, outside, missing, density, scale, albedo, "
-              "albedo_grid, sigma_a, sigma_s, emission, blackbody, g, phase, transform, matrix, "
-              "velocity, velocity_scale, velocity_unit, velocity_sampling, inside, storage, "
-              "background, repair");
+    EXPECT_EQ(
+        volumeMistake("albdo = 1"),
+        "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
+        "keys: file, box, frame_start, offset, outside, missing, density, scale, albedo, "
+        "albedo_grid, sigma_a, sigma_s, emission, blackbody, group, g, phase, transform, matrix, "
+        "velocity, velocity_scale, velocity_unit, velocity_sampling, inside, storage, "
+        "background, repair");
     EXPECT_EQ(
         sectionMistake("[rendr]\nspp = 1"),
         "scene.toml:3:2: unknown key 'rendr' in the scene; did you mean 'render'? known keys: "
         "volume, material, surface, light, camera, render, output, ocio");
-    EXPECT_EQ(
-        lightMistake("type = \"point\"\nposition = [0, 0, 0]\nradius = 1"),
-        "scene.toml:6:1: unknown key 'radius' in a [[light]] of type point; known keys: type, "
-        "position, intensity, power, ies, direction, look_at, roll, up");
+    EXPECT_EQ(lightMistake("type = \"point\"\nposition = [0, 0, 0]\nradius = 1"),
+              "scene.toml:6:1: unknown key 'radius' in a [[light]] of type point; known keys: "
+              "group, type, "
+              "position, intensity, power, ies, direction, look_at, roll, up");
 }
 
 TEST(ParseErrors, ReportTheFirstUnknownKeyOfTheFile) {
@@ -310,10 +313,13 @@ TEST(ParseErrors, OfOutputs) {
     EXPECT_EQ(sectionMistake("[output]\nfiles = [\"a.exr\", \"b.tga\"]").substr(0, 48),
               "scene.toml:4:19: output.files[1]: cannot write '");
     EXPECT_EQ(sectionMistake("[output]\nlayers = [\"deep\"]"),
-              "scene.toml:4:11: unknown layer 'deep'; known: depth, albedo, normal, "
-              "transmittance, samples, error, variance");
+              "scene.toml:4:11: output.layers[0]: unknown layer 'deep'; known layers: " +
+                  joinNames(image::layerNames()));
+    EXPECT_EQ(sectionMistake("[output]\nlayers = \"depth:half\""),
+              "scene.toml:4:10: output.layers: the layer 'depth' is float always: half precision "
+              "would harm it");
     EXPECT_EQ(sectionMistake("[output]\nlayers = [\"depth\", \"depth\"]"),
-              "scene.toml:4:20: output.layers[1] repeats the layer 'depth'");
+              "scene.toml:4:10: output.layers: the layer 'depth' is named twice");
     EXPECT_EQ(sectionMistake("[output]\nexposure = inf"),
               "scene.toml:4:12: output.exposure is inf; it must be finite");
     EXPECT_EQ(sectionMistake("[output]\nexposure = 101"),

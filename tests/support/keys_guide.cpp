@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "woodcock/image/layers.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
@@ -47,6 +48,18 @@ std::string row(const KeyInfo& key) {
     return fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.type, fallbackCell(key), key.doc);
 }
 
+/// The table of the layers of an EXR.
+std::string layersTable() {
+    std::string text = "| layer | channels | precision | what it holds |\n|---|---|---|---|\n";
+    for (const image::Layer& layer : image::layerTable())
+        text += fmt::format("| `{}` | `{}` | {} | {} |\n", layer.name,
+                            fmt::join(layer.channels, "`, `"), layer.exact ? "float" : "any",
+                            layer.doc);
+    return text +
+           "| `lightgroup_NAME` | `lightgroup_NAME.R`, `.G`, `.B` | any | light of a group; "
+           "`NAME` is its name, or `rest` |\n";
+}
+
 constexpr std::string_view beginMark = "<!-- keys: ", endMark = "<!-- end -->", markEnd = " -->";
 
 }  // namespace
@@ -56,7 +69,7 @@ std::vector<KeyList> allKeys() {
         listsOf<SceneDescription, VolumeDescription, GridCoefficient, BlackbodyDescription, Box3d,
                 SurfaceDescription, SphereShape, DiskShape, PlaneShape, LatheShape, mesh::FacetRing,
                 Transform, InteriorDescription, MaterialDescription, TextureDescription,
-                CameraDescription, RenderDescription, OutputDescription>();
+                LightDescription, CameraDescription, RenderDescription, OutputDescription>();
     for (KeyList& list : listsOfKinds(MaterialDescription().material)) all.push_back(list);
     for (KeyList& list : listsOfKinds(LightDescription().light)) all.push_back(list);
     for (KeyList& list : listsOfKinds(PhaseDescription())) all.push_back(list);
@@ -82,11 +95,15 @@ std::string withGuideTables(const std::string& guide) {
         if (!line.starts_with(beginMark)) continue;
         const std::string id =
             line.substr(beginMark.size(), line.size() - beginMark.size() - markEnd.size());
+        inTable = true;
+        if (id == "layers") {
+            text += layersTable();
+            continue;
+        }
         const auto list = std::find_if(all.begin(), all.end(),
                                        [&](const KeyList& each) { return each.id == id; });
         if (list == all.end()) throw inputError("there is no table of keys '{}'", id);
         text += guideTable(*list);
-        inTable = true;
     }
     if (inTable) throw inputError("the last table of keys has no '{}' behind it", endMark);
     return text;

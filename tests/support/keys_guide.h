@@ -24,7 +24,8 @@ std::vector<KeyList> allKeys();
 std::string guideTable(const KeyList& list);
 
 /// A guide's text whose tables, between the lines "<!-- keys: ID -->" and "<!-- end -->", are made
-/// anew. Throws Error{Input} on an unknown ID and a table without an end.
+/// anew; of the ID "layers", that of the layers of an EXR. Throws Error{Input} on an unknown ID and
+/// a table without an end.
 std::string withGuideTables(const std::string& guide);
 
 }  // namespace woodcock::test

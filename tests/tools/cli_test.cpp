@@ -263,7 +263,7 @@ TEST_F(Cli, WrongUsage) {
     wrong({"--set", "volume"}, {"volume", "KEY=VALUE"});
     wrong({"--noise", "5"}, {"--noise", "'5'", "up to 1 (100%)"});
     wrong({"--layers", "dept"}, {"--layers: ", "'dept'", "did you mean 'depth'?"});
-    wrong({"--layers", "depth,depth"}, {"--layers names 'depth' twice"});
+    wrong({"--layers", "depth,depth"}, {"--layers: the layer 'depth' is named twice"});
     wrong({"-o", file("a.png"), "--view", "Filmish"}, {"'Filmish'", "Standard"});
 }
 

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "woodcock/image/layers.h"
 #include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/write_vdb.h"
 #include "woodcock/scene/scene_file.h"
@@ -380,6 +382,62 @@ TEST_F(Render, TheShutterIsThatOfTheCommandLine) {
         EXPECT_EQ(wrong.exitCode, 2);
         EXPECT_NE(wrong.err.find(told), std::string::npos) << wrong.err;
     }
+}
+
+TEST_F(Render, LayersAreThoseOfTheSceneOrOfTheCommandLine) {
+    const std::string scene =
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_s = 1\n"
+        "emission = 1\ngroup = \"fire\"\n"
+        "[[light]]\ntype = \"sun\"\nelevation = 40\ngroup = \"key\"\n"
+        "[output]\nlayers = \"lightgroups\"\n";
+    const auto channels = [&](const Words& more) {
+        EXPECT_EQ(renderScene(scene, more).exitCode, 0);
+        const Words all = readBack(dir / "out.exr").channels;
+        return std::set<std::string>(all.begin(), all.end());
+    };
+    const std::set<std::string> rgba{"R", "G", "B", "A"};
+    std::set<std::string> groups = rgba;
+    for (const char* group : {"rest", "fire", "key"})
+        for (const char* channel : {"R", "G", "B"})
+            groups.insert(fmt::format("lightgroup_{}.{}", group, channel));
+    EXPECT_EQ(channels({}), groups);
+    EXPECT_EQ(channels({"--layers", "default"}), rgba);
+    EXPECT_EQ(channels({"--layers", "samples"}),
+              (std::set<std::string>{"R", "G", "B", "A", "samples"}));
+    std::set<std::string> all = groups;
+    for (const image::Layer& layer : image::layerTable())
+        all.insert(layer.channels.begin(), layer.channels.end());
+    EXPECT_EQ(channels({"--layers", "all"}), all);
+    // Parts of their own say the same numbers.
+    const ReadBack together = readBack(dir / "out.exr");
+    EXPECT_EQ(channels({"--layers", "all", "--multipart"}), rgba);
+    const ReadBack position = readBack(dir / "out.exr", 6);
+    EXPECT_EQ(position.attributes.at("oiio:subimagename"), "position");
+    EXPECT_EQ(position.at(8, 4, "X"), together.at(8, 4, "position.X"));
+    EXPECT_EQ(together.types.at("emission.R"), "float");
+    channels({"--layers", "emission:half,depth", "--half"});
+    EXPECT_EQ(readBack(dir / "out.exr").types.at("emission.R"), "half");
+    EXPECT_EQ(readBack(dir / "out.exr").types.at("Z"), "float");
+    expectSaid(renderScene(scene, {"--layers", "lightgroup_fier"}), 2,
+               {"--layers: the scene has no light group", "did you mean 'lightgroup_fire'?"});
+    expectSaid(renderScene(scene, {"--set", "light[0].group=emission"}), 3,
+               {"light[0].group is 'emission', which is the name of a layer"});
+}
+
+TEST_F(Render, HeadersSayWhereTheCameraStands) {
+    const std::string scene =
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_s = 1\n"
+        "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
+    EXPECT_EQ(renderScene(scene).exitCode, 0);
+    auto attributes = readBack(dir / "out.exr").attributes;
+    EXPECT_EQ(attributes.at("worldToCamera"), "1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 5, 1");
+    EXPECT_TRUE(attributes.contains("worldToNDC"));
+    EXPECT_EQ(attributes.at("colorInteropID"), "lin_rec709_scene");
+    EXPECT_FALSE(attributes.contains("framesPerSecond"));
+    EXPECT_EQ(renderScene(scene + "shutter = 0.5\n[render]\nfps = 23.976\n").exitCode, 0);
+    attributes = readBack(dir / "out.exr").attributes;
+    EXPECT_EQ(attributes.at("framesPerSecond"), "24000/1001");
+    EXPECT_EQ(attributes.at("shutterAngle"), "180");
 }
 
 TEST_F(Render, SmallNumbersAndWordsAreTaken) {

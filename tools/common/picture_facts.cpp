@@ -23,6 +23,7 @@ image::StateFacts factsOf(const scene::SceneDescription& scene) {
             {"files", scene::filesDigest(scene)},
             {"layers", fmt::format("{}", fmt::join(o.layers, ","))},
             {"half", o.half ? yes : no},
+            {"multipart", o.multipart ? yes : no},
             {"display", o.display},
             {"view", o.view},
             {"look", o.look},
@@ -37,6 +38,7 @@ PictureFacts pictureFactsOf(const image::StateFile& file) {
     std::istringstream layers(file.fact("layers"));
     for (std::string layer; std::getline(layers, layer, ',');) facts.output.layers.push_back(layer);
     facts.output.half = file.fact("half") == yes;
+    facts.output.multipart = file.fact("multipart") == yes;
     facts.output.display = file.fact("display");
     facts.output.view = file.fact("view");
     facts.output.look = file.fact("look");

@@ -32,7 +32,8 @@ struct MergeOptions {
 };
 
 /// The pictures are those that the first part tells of, where the options say nothing else.
-image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& facts) {
+image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& facts,
+                              const std::vector<std::string>& groups) {
     const scene::OutputDescription& output = facts.output;
     image::OutputSettings settings{.colour = image::ColorConfig(facts.ocio)};
     settings.files = options.outputs;
@@ -42,8 +43,9 @@ image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& f
     }
     refuseOverwriting(settings.files, settings.colour.files());
     settings.half = output.half;
-    settings.layers =
-        image::layersFromNames(options.layers.empty() ? output.layers : options.layers);
+    settings.multipart = output.multipart;
+    settings.layers = image::layersFromNames(
+        options.layers.empty() ? output.layers : options.layers, groups, output.half);
     settings.display = {output.display, output.view, output.look,
                         options.exposure.value_or(output.exposure)};
     settings.withAlpha = facts.withAlpha;
@@ -53,18 +55,19 @@ image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& f
 
 /// Throws where the parts hold nothing of a layer.
 void checkLayers(const MergeOptions& options, const image::StateFile& first) {
-    const image::ExrLayers layers = image::layersFromNames(options.layers);
-    const std::string& sampled = first.fact("sampled");
-    const auto demand = [&](bool layer, const char* name, bool there) {
-        if (layer && !there)
+    const image::Film::Kept kept = image::Film::keptIn(first.planes());
+    const bool depth = first.fact("sampled").starts_with("depth");
+    for (const image::ChosenLayer& chosen :
+         image::layersFromNames(options.layers, kept.parts.groups)) {
+        const image::LayerNeeds needs = image::needsOf({chosen});
+        const bool there = (depth || !needs.depthSamples()) && (kept.features || !needs.features) &&
+                           (kept.places || !needs.places) && (kept.stops || !needs.stops) &&
+                           (kept.parts.kinds || !needs.parts.kinds);
+        if (!there)
             throw usageError(
-                "the parts hold nothing of the layer '{}': they were rendered without it", name);
-    };
-    const bool depth = sampled != "light", features = sampled == "depth and features";
-    demand(layers.depth, "depth", depth);
-    demand(layers.transmittance, "transmittance", depth);
-    demand(layers.albedo, "albedo", features);
-    demand(layers.normal, "normal", features);
+                "the parts hold nothing of the layer '{}': they were rendered without it",
+                chosen.layer.name);
+    }
 }
 
 void checkSameLayers(const MergeOptions& options) {
@@ -111,7 +114,8 @@ void runMerge(const MergeOptions& options, const std::string& commandLine) {
     const image::StateFile first(options.parts.front(), "part");
     checkLayers(options, first);
     checkSameLayers(options);
-    const image::Outputs outputs = prepareOutputs(options, pictureFactsOf(first));
+    const image::Outputs outputs = prepareOutputs(options, pictureFactsOf(first),
+                                                  image::Film::keptIn(first.planes()).parts.groups);
     const render::MergedParts merged =
         render::mergeParts(options.parts, {options.partial, options.spp});
     const std::string note = outputs.write(

@@ -9,7 +9,7 @@
 #include "tools/common/output_folders.h"
 #include "tools/common/scene_input.h"
 #include "woodcock/base/nearest_name.h"
-#include "woodcock/image/write_exr.h"
+#include "woodcock/image/layers.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/quality.h"
 
@@ -24,10 +24,17 @@ void addOutput(CLI::App& command, RenderOptions& o) {
                 "pictures to look at")
             ->type_name("FILE"),
         addList(command, "--layers", o.layers,
-                "More layers for EXR files: " + joinNames(image::layerNames()))
+                "Layers of EXR files beside R, G, B and A. all stands for every one, default for "
+                "none, lightgroups for all light groups of the scene. :half or :float behind a "
+                "name says its precision, as in emission:half: " +
+                    joinNames(image::layerNames()))
             ->delimiter(',')
             ->type_name("LAYER,..."),
-        command.add_flag("--half", o.half, "Write the colour of EXR files in half precision"),
+        command.add_flag("--half", o.half,
+                         "Write the colour of EXR files, and layers that it does not harm, in half "
+                         "precision"),
+        command.add_flag("--multipart", o.multipart,
+                         "Write each layer of EXR files as a part of its own"),
         command.add_option("--display", o.display, "OpenColorIO display of pictures (all but EXR)")
             ->type_name("NAME"),
         command.add_option("--view", o.view, "OpenColorIO view of pictures")->type_name("NAME"),
@@ -275,9 +282,7 @@ void RenderOptions::check() const {
             throw usageError(
                 "--frames: --write-scene saves one scene for all frames; leave it out");
     }
-    for (auto layer = layers.begin(); layer != layers.end(); ++layer)
-        if (std::find(layers.begin(), layer, *layer) != layer)
-            throw usageError("--layers names '{}' twice", *layer);
+    scene::inPlace("--layers", [&] { image::parseLayerNames(layers); });
     if ((checkpoint || resume) && !rendersImages())
         throw usageError(
             "{} is for a render, but --write-scene only saves the scene where no -o names an image",
@@ -296,6 +301,7 @@ void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) co
     demandFile(!layers.empty(), "--layers", "EXR", exr);
     demandFile(half, "--half", "EXR", exr);
     demandFile(mergeable, "--mergeable", "EXR", exr);
+    demandFile(multipart, "--multipart", "EXR", exr);
     demandFile(display.has_value(), "--display", pictures, picture);
     demandFile(view.has_value(), "--view", pictures, picture);
     demandFile(look.has_value(), "--look", pictures, picture);

@@ -47,7 +47,7 @@ struct RenderOptions {
     std::optional<double> exposure;
     std::filesystem::path ocio;
     std::vector<std::string> layers;
-    bool half = false, mkdir = false;
+    bool half = false, multipart = false, mkdir = false;
 
     ReportOptions reports;
 

@@ -45,6 +45,7 @@
 #include "woodcock/render/tile_order.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
@@ -75,6 +76,7 @@ scene::SceneDescription describeScene(const RenderOptions& options, std::optiona
     }
     if (!options.layers.empty()) output.layers = options.layers;
     output.half |= options.half;
+    output.multipart |= options.multipart;
     const auto replaceName = [&](std::string& name, const auto& option) {
         if (!option) return;
         name = *option;
@@ -109,8 +111,8 @@ void checkFiles(const scene::SceneDescription& scene, const RenderOptions& optio
 }
 
 /// Those of a scene file are known to be right.
-image::ExrLayers layersOf(const scene::SceneDescription& scene) {
-    return scene::inPlace("--layers", [&] { return image::layersFromNames(scene.output.layers); });
+image::LayerList layersOf(const scene::SceneDescription& scene) {
+    return scene::inPlace("--layers", [&] { return scene::outputLayers(scene); });
 }
 
 /// Where the name that a message of ColorConfig begins with was given: "scene.toml:9:8: ".
@@ -154,6 +156,7 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
     }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
+    settings.multipart = scene.output.multipart;
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
     settings.withAlpha = scene::environmentIsHidden(scene);
@@ -169,8 +172,11 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
 double filmBytesPerPixel(const render::RenderSettings& settings,
                          const scene::SceneDescription& scene) {
     return double(image::Film::bytesPerPixel({.surfaces = !scene.surfaces.empty(),
-                                              .features = settings.featureLayers,
-                                              .background = !scene::environmentIsHidden(scene)})) +
+                                              .features = settings.layers.features,
+                                              .background = !scene::environmentIsHidden(scene),
+                                              .places = settings.layers.places,
+                                              .stops = settings.layers.stops,
+                                              .parts = settings.layers.parts})) +
            double(sizeof(std::uint32_t)) + (settings.adaptive ? 5 * double(sizeof(double)) : 0);
 }
 
@@ -238,9 +244,7 @@ render::RenderSettings renderSettings(const scene::SceneDescription& scene,
     settings.firstSample = samples.first;
     settings.endSample = samples.end;
     settings.threads = options.threads.value_or(0);
-    const image::ExrLayers layers = layersOf(scene);
-    settings.depthLayers = layers.depth || layers.transmittance;
-    settings.featureLayers = layers.albedo || layers.normal;
+    settings.layers = image::needsOf(layersOf(scene), scene::lightGroups(scene));
     constexpr double encoded = 32;  // of a pixel in an image file with all layers, about
     checkMemory(settings, scene, encoded, static_cast<double>(memoryLimit()));
     return settings;
@@ -684,8 +688,11 @@ private:
 
     image::RenderMetadata metadataOf(const render::RenderState& state,
                                      const std::string& digest) const {
-        return {settings_.firstSample, state.endSample,   settings_.seed, state.seconds, digest,
-                commandLine_,          settings_.adaptive};
+        image::RenderMetadata metadata{settings_.firstSample, state.endSample, settings_.seed,
+                                       state.seconds,         digest,          commandLine_,
+                                       settings_.adaptive};
+        scene::describeShot(description_, metadata);
+        return metadata;
     }
 
     void write(const render::RenderResult& result, const image::Outputs& outputs,

@@ -39,4 +39,12 @@ std::optional<Chromaticities> chromaticitiesFromName(std::string_view name) {
     return {};
 }
 
+std::string interopIdOf(const Chromaticities& chromaticities) {
+    if (chromaticities == rec709) return "lin_rec709_scene";
+    if (chromaticities == rec2020) return "lin_rec2020_scene";
+    if (chromaticities == ap1) return "lin_ap1_scene";
+    if (chromaticities == ap0) return "lin_ap0_scene";
+    return "";
+}
+
 }  // namespace woodcock::image

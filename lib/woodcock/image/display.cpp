@@ -282,6 +282,15 @@ std::optional<Chromaticities> ColorConfig::chromaticities() const {
     return found;
 }
 
+std::string ColorConfig::interopId() const {
+#if OCIO_VERSION_HEX >= 0x02050000
+    const auto space = impl_->config->getColorSpace(OCIO::ROLE_SCENE_LINEAR);
+    if (const std::string id = space->getInteropID(); !id.empty()) return id;
+#endif
+    const auto known = chromaticities();
+    return known ? interopIdOf(*known) : "";
+}
+
 DisplayTransform ColorConfig::displayTransform(const DisplaySettings& settings) const {
     const DisplaySettings chosen = impl_->complete(settings);
     try {

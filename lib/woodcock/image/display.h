@@ -49,6 +49,9 @@ public:
     /// The chromaticities of its role scene_linear, where its name tells them: Rec.709, Rec.2020,
     /// ACEScg, ACES2065-1.
     std::optional<Chromaticities> chromaticities() const;
+    /// The name of that space by the Color Interop Forum, as the config says it, or by its
+    /// chromaticities; empty where neither tells.
+    std::string interopId() const;
 
     /// Throws Error{Usage} on names that the config does not have, and lists those that it has.
     DisplayTransform displayTransform(const DisplaySettings& settings) const;

@@ -5,6 +5,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 
 #include "woodcock/base/error.h"
 
@@ -37,6 +38,11 @@ struct AttributeSetter {
         spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, static_cast<int>(v.size())),
                        v.data());
     }
+    void operator()(Rational v) const {
+        const std::array<int, 2> numbers{v.numerator, static_cast<int>(v.denominator)};
+        spec.attribute(name, OIIO::TypeRational, numbers.data());
+    }
+    void operator()(const Matrix44& v) const { spec.attribute(name, OIIO::TypeMatrix44, v.data()); }
 };
 
 OIIO::ImageSpec specOf(const ImageHeader& header) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,7 +19,13 @@ struct ImageChannel {
     PixelType type = PixelType::Float;
 };
 
-using ImageAttribute = std::variant<int, float, std::string, std::vector<float>>;
+struct Rational {
+    int numerator = 0;
+    unsigned denominator = 1;
+};
+using Matrix44 = std::array<float, 16>;  ///< row by row; row vectors are multiplied from the left
+using ImageAttribute =
+    std::variant<int, float, std::string, std::vector<float>, Rational, Matrix44>;
 
 /// The description of an image file, beside its pixels.
 struct ImageHeader {

@@ -2,10 +2,8 @@
 #include "woodcock/image/film.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include "woodcock/base/error.h"
@@ -13,41 +11,8 @@
 
 namespace woodcock::image {
 
-namespace {
-
-Rgb mean(const double (&sum)[3], std::uint64_t n) {
-    if (n == 0) return Rgb(0.0f);
-    return Rgb::map([&](int i) { return static_cast<float>(sum[i] / static_cast<double>(n)); });
-}
-
-using Variance = std::array<double, 3>;  // of one sample
-constexpr Variance unknownVariance{-1, -1, -1};
-
-Variance sampleVariance(const double (&sums)[3], const double (&squares)[3],
-                        std::uint64_t samples) {
-    if (samples < 2) return unknownVariance;
-    const auto n = static_cast<double>(samples);
-    Variance variance;
-    for (std::size_t c = 0; c < 3; ++c)
-        // Equal samples may leave a difference below zero by rounding.
-        variance[c] = std::max(0.0, (squares[c] - sums[c] * (sums[c] / n)) / (n - 1));
-    return variance;
-}
-Variance sampleVariance(const Film::Pixel& p) {
-    return sampleVariance(p.radiance, p.radianceSquared, p.samples);
-}
-
-Rgb errorOfMean(const Variance& variance, std::uint64_t samples) {
-    return Rgb::map([&](int i) {
-        return static_cast<float>(
-            std::sqrt(variance[static_cast<std::size_t>(i)] / static_cast<double>(samples)));
-    });
-}
-
-}  // namespace
-
 Film::Film(int width, int height, Window crop, Kept kept)
-    : width_(width), height_(height), crop_(crop) {
+    : width_(width), height_(height), crop_(crop), parts_(std::move(kept.parts)) {
     if (width <= 0 || height <= 0)
         throw usageError("an image of {} x {} pixels is empty", width, height);
     if (crop.width() <= 0 || crop.height() <= 0)
@@ -61,14 +26,17 @@ Film::Film(int width, int height, Window crop, Kept kept)
             crop.x0, crop.y0, crop.x1, crop.y1, width, height);
     const std::size_t count =
         static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
-    const auto make = [&](auto& pixels) {
-        reserveLarge(pixels, count);
-        pixels.resize(count);
+    const auto make = [&](auto& pixels, std::size_t ofPixel = 1) {
+        reserveLarge(pixels, count * ofPixel);
+        pixels.resize(count * ofPixel);
     };
     make(pixels_);
     if (kept.surfaces) make(surfacePixels_);
     if (kept.features) make(featurePixels_);
     if (kept.background) make(foregroundPixels_);
+    if (kept.places) make(placePixels_);
+    if (kept.stops) make(stopPixels_);
+    if (parts_.count() > 0) make(partSums_, 3 * parts_.count());
 }
 
 std::size_t Film::index(int x, int y) const {
@@ -81,7 +49,7 @@ Film::Pixel& Film::at(int x, int y) { return pixels_[index(x, y)]; }
 
 const Film::Pixel& Film::at(int x, int y) const { return pixels_[index(x, y)]; }
 
-void Film::add(int x, int y, const FilmSample& sample) {
+void Film::add(int x, int y, const FilmSample& sample, std::span<const Rgb> parts) {
     Pixel& p = at(x, y);
     if (!sample.radiance.isFinite() || !std::isfinite(sample.alpha)) {
         ++p.nonFinite;
@@ -99,6 +67,12 @@ void Film::add(int x, int y, const FilmSample& sample) {
             f.radiance[i] += v;
             f.radianceSquared[i] += v * v;
         }
+    }
+    if (!parts.empty()) {
+        assert(parts.size() == parts_.count());
+        double* sum = &partSums_[index(x, y) * 3 * parts.size()];
+        for (const Rgb& part : parts)
+            for (int c = 0; c < 3; ++c) *sum++ += part[c];
     }
     const double alpha = sample.alpha;
     p.alpha += alpha;
@@ -125,6 +99,23 @@ void Film::add(int x, int y, const DepthSample& sample) {
         f.albedo[i] += sample.weightedAlbedo[i];
         f.normal[i] += sample.weightedNormal[i];
     }
+}
+
+void Film::add(int x, int y, const DepthSample& sample, const PlaceSample& place) {
+    const std::uint64_t before = at(x, y).depthSamples;
+    add(x, y, sample);
+    if (at(x, y).depthSamples == before) return;  // it was not finite
+    PlacePixel& p = placePixels_.at(index(x, y));
+    for (int i = 0; i < 3; ++i) p.position[i] += place.weightedPosition[i];
+    for (std::size_t i = 0; i < 2; ++i) p.motion[i] += double{place.weightedMotion[i]};
+}
+
+void Film::add(int x, int y, const StopSample& sample) {
+    StopPixel& s = stopPixels_.at(index(x, y));
+    s.firstDepth += sample.firstDepth;
+    s.firstDepthWeight += sample.firstWeight;
+    s.halfDepth += sample.halfDepth;
+    s.halfDepthWeight += sample.halfWeight;
 }
 
 void Film::add(int x, int y, const CatcherSample& sample) {
@@ -177,6 +168,17 @@ Planes Film::planesOf(Self& film) {
     list("normal", film.featurePixels_, &FeaturePixel::normal);
     list("foreground", film.foregroundPixels_, &ForegroundPixel::radiance);
     list("foregroundSquared", film.foregroundPixels_, &ForegroundPixel::radianceSquared);
+    list("position", film.placePixels_, &PlacePixel::position);
+    list("motion", film.placePixels_, &PlacePixel::motion);
+    list("firstDepth", film.stopPixels_, &StopPixel::firstDepth);
+    list("firstDepthWeight", film.stopPixels_, &StopPixel::firstDepthWeight);
+    list("halfDepth", film.stopPixels_, &StopPixel::halfDepth);
+    list("halfDepthWeight", film.stopPixels_, &StopPixel::halfDepthWeight);
+    for (std::size_t part = 0; part < film.parts_.count(); ++part)
+        planes.push_back({.name = film.parts_.name(part),
+                          .components = 3,
+                          .stride = 3 * film.parts_.count(),
+                          .sums = &film.partSums_[3 * part]});
     return planes;
 }
 
@@ -194,17 +196,27 @@ bool Film::isLike(const Film& other) const {
 }
 
 Film::Kept Film::keptIn(const std::vector<std::string>& planes) {
-    const auto has = [&](const char* name) {
+    const auto has = [&](const std::string& name) {
         return std::find(planes.begin(), planes.end(), name) != planes.end();
     };
-    return {
-        .surfaces = has("catcherLit"), .features = has("albedo"), .background = has("foreground")};
+    Kept kept{.surfaces = has("catcherLit"),
+              .features = has("albedo"),
+              .background = has("foreground"),
+              .places = has("position"),
+              .stops = has("firstDepth")};
+    kept.parts.kinds = has(lightKindNames.front());
+    for (const std::string& plane : planes)
+        if (plane.starts_with(groupPrefix) && plane != groupPrefix + restOfGroups)
+            kept.parts.groups.push_back(plane.substr(groupPrefix.size()));
+    return kept;
 }
 
-std::size_t Film::bytesPerPixel(Kept kept) {
+std::size_t Film::bytesPerPixel(const Kept& kept) {
     return sizeof(Pixel) + (kept.surfaces ? sizeof(SurfacePixel) : 0) +
            (kept.features ? sizeof(FeaturePixel) : 0) +
-           (kept.background ? sizeof(ForegroundPixel) : 0);
+           (kept.background ? sizeof(ForegroundPixel) : 0) +
+           (kept.places ? sizeof(PlacePixel) : 0) + (kept.stops ? sizeof(StopPixel) : 0) +
+           kept.parts.count() * 3 * sizeof(double);
 }
 
 void Film::merge(const Film& other) {
@@ -225,67 +237,6 @@ void Film::merge(const Film& other) {
         };
         to.sums ? add(to.sums, from.sums) : add(to.counts, from.counts);
     }
-}
-
-Rgb Film::radiance(int x, int y) const {
-    const Pixel& p = at(x, y);
-    return mean(p.radiance, p.samples);
-}
-
-float Film::alpha(int x, int y) const {
-    const Pixel& p = at(x, y);
-    if (p.samples == 0) return 0;
-    double alpha = p.alpha;
-    if (!surfacePixels_.empty()) {
-        const SurfacePixel& s = surfacePixels_[index(x, y)];
-        if (s.catcherUnlit > 0)
-            alpha += s.catcherWeight * std::max(0.0, 1 - s.catcherLit / s.catcherUnlit);
-    }
-    return static_cast<float>(alpha / static_cast<double>(p.samples));
-}
-
-Rgb Film::transmittance(int x, int y) const {
-    const Pixel& p = at(x, y);
-    return mean(p.transmittance, p.depthSamples);
-}
-
-Rgb Film::standardError(int x, int y) const {
-    Variance variance = sampleVariance(at(x, y));
-    if (variance[0] < 0) return Rgb(std::numeric_limits<float>::infinity());
-    Variance around{};
-    int pixels = 0;
-    for (int v = std::max(y - 1, crop_.y0); v < std::min(y + 2, crop_.y1); ++v)
-        for (int u = std::max(x - 1, crop_.x0); u < std::min(x + 2, crop_.x1); ++u) {
-            const Variance other = sampleVariance(at(u, v));
-            if (other[0] < 0) continue;
-            for (std::size_t c = 0; c < 3; ++c) around[c] += other[c];
-            ++pixels;
-        }
-    for (std::size_t c = 0; c < 3; ++c) variance[c] = std::max(variance[c], around[c] / pixels);
-    return errorOfMean(variance, at(x, y).samples);
-}
-
-Rgb Film::variance(int x, int y) const {
-    const Rgb error = standardError(x, y);
-    return error * error;
-}
-
-float Film::depth(int x, int y) const {
-    const Pixel& p = at(x, y);
-    return p.depthWeight > 0 ? static_cast<float>(p.weightedDepth / p.depthWeight) : noDepth;
-}
-
-Rgb Film::albedo(int x, int y) const {
-    if (featurePixels_.empty()) return {};
-    const Rgb albedo = mean(featurePixels_[index(x, y)].albedo, at(x, y).depthSamples);
-    // Where channels differ, the weights of single rays may exceed 1, and so may a few rays' mean.
-    return Rgb::map([&](int c) { return std::min(albedo[c], 1.0f); });
-}
-
-Vec3f Film::normal(int x, int y) const {
-    if (featurePixels_.empty()) return {};
-    const Rgb n = mean(featurePixels_[index(x, y)].normal, at(x, y).depthSamples);
-    return {n[0], n[1], n[2]};
 }
 
 std::uint64_t Film::nonFiniteCount() const {
@@ -316,23 +267,6 @@ std::uint64_t Film::fewestSamples() const {
     std::uint64_t fewest = pixels_.front().samples;
     for (const Pixel& p : pixels_) fewest = std::min(fewest, p.samples);
     return fewest;
-}
-
-Film::Foreground Film::foreground(int x, int y) const {
-    const Pixel& p = at(x, y);
-    if (p.samples == 0) return {};
-    const auto n = static_cast<double>(p.samples);
-    const ForegroundPixel* const own =
-        foregroundPixels_.empty() ? nullptr : &foregroundPixels_[index(x, y)];
-    const auto& radiance = own ? own->radiance : p.radiance;
-    const Variance variance =
-        sampleVariance(radiance, own ? own->radianceSquared : p.radianceSquared, p.samples);
-    Foreground f{.coverage = p.coverage / n, .alpha = p.alpha / n};
-    for (std::size_t c = 0; c < 3; ++c) {
-        f.radiance += radiance[c] / n / 3;
-        f.variance += std::max(0.0, variance[c]) / 3;
-    }
-    return f;
 }
 
 }  // namespace woodcock::image

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "woodcock/base/spectrum.h"
 #include "woodcock/base/vec.h"
+#include "woodcock/image/light_parts.h"
 
 namespace woodcock::image {
 
@@ -31,10 +34,42 @@ struct DepthSample {
     Vec3f weightedNormal = {};  ///< world space; see Film::normal()
 };
 
+/// Where the camera ray of a DepthSample meets what it meets first, times that sample's weight.
+struct PlaceSample {
+    Vec3d weightedPosition;  ///< world space
+    /// Pixels, right and down, by which it moves in the picture until the next frame.
+    std::array<float, 2> weightedMotion{};
+};
+
+/// Where a camera ray loses its light, without chance. Weights are 1 where it does so and 0 where
+/// it keeps more, and distances are 0 there; world units.
+struct StopSample {
+    float firstDepth = 0, firstWeight = 0;  ///< the first hundredth: `firstStopped`
+    float halfDepth = 0, halfWeight = 0;    ///< half of it
+};
+inline constexpr double firstStopped = 0.01;
+
+/// What layers need of camera paths beside FilmSample.
+struct LayerNeeds {
+    bool depth = false;     ///< DepthSample, without albedo and normal
+    bool features = false;  ///< DepthSample
+    bool places = false;    ///< DepthSample and PlaceSample
+    bool stops = false;     ///< StopSample
+    LightParts parts = {};  ///< of FilmSample::radiance
+    bool depthSamples() const { return depth || features || places; }
+};
+
 /// Light on a shadow catcher that a camera path met: with the scene's occlusion, and without.
 struct CatcherSample {
     float lit = 0, unlit = 0;  ///< means of the channels
     float weight = 0;          ///< transmittance in front of it
+};
+
+/// Which sums a film keeps beside Film::Pixel.
+struct KeptSums {
+    bool surfaces, features, background = false;
+    bool places = false, stops = false;
+    LightParts parts = {};
 };
 
 /// Sums over samples, for each pixel, in double. So sample ranges can be merged: the sums of [0, n)
@@ -65,10 +100,13 @@ public:
     struct ForegroundPixel {
         double radiance[3] = {}, radianceSquared[3] = {};
     };
-    /// Which sums are kept beside Pixel.
-    struct Kept {
-        bool surfaces, features, background = false;
+    struct PlacePixel {
+        double position[3] = {}, motion[2] = {};
     };
+    struct StopPixel {
+        double firstDepth = 0, firstDepthWeight = 0, halfDepth = 0, halfDepthWeight = 0;
+    };
+    using Kept = KeptSums;
 
     /// `width` x `height` is the whole image; samples may only fall into the crop
     /// [x0, x1) x [y0, y1), which becomes the EXR's data window.
@@ -92,8 +130,11 @@ public:
     const Pixel& at(int x, int y) const;
 
     /// A sample with anything NaN or infinite in it is dropped and counted.
-    void add(int x, int y, const FilmSample& sample);
+    /// `parts` are those of its radiance, one for each of Kept::parts.
+    void add(int x, int y, const FilmSample& sample, std::span<const Rgb> parts = {});
     void add(int x, int y, const DepthSample& sample);
+    void add(int x, int y, const DepthSample& sample, const PlaceSample& place);
+    void add(int x, int y, const StopSample& sample);     ///< only where stops are kept
     void add(int x, int y, const CatcherSample& sample);  ///< only where surfaces are kept
     /// Adds the sums of a film of the same size and crop; throws Error{Usage} on any other, and on
     /// one that keeps other sums.
@@ -122,7 +163,7 @@ public:
     static Kept keptIn(const std::vector<std::string>& planes);
     std::size_t pixelCount() const { return pixels_.size(); }
     /// Memory of a pixel.
-    static std::size_t bytesPerPixel(Kept kept);
+    static std::size_t bytesPerPixel(const Kept& kept);
 
     /// Means over samples; zero where there are none.
     Rgb radiance(int x, int y) const;
@@ -145,6 +186,18 @@ public:
     /// Mean over camera rays of the world-space normal of what they meet first: surfaces', towards
     /// the camera; in media densityNormal(); 0 of nothing. 0 where no features are kept.
     Vec3f normal(int x, int y) const;
+    /// The part of radiance() that came so, or from this group; 0 where it is not split so.
+    Rgb light(LightKind kind, int x, int y) const;
+    Rgb lightOfGroup(LightGroup group, int x, int y) const;
+    /// Mean place, in world space, of what the camera rays meet first; 0 where they meet nothing,
+    /// and where no places are kept.
+    Vec3f position(int x, int y) const;
+    /// Its mean motion until the next frame, in pixels, right and down; 0 as above.
+    std::array<float, 2> motion(int x, int y) const;
+    /// Mean distance at which camera rays have lost the first hundredth of their light, and half of
+    /// it, of the rays that lose so much; `noDepth` where none does.
+    float firstDepth(int x, int y) const;
+    float halfDepth(int x, int y) const;
 
     std::uint64_t nonFiniteCount() const;
     /// Of a render that was stopped inside its first pass.
@@ -178,6 +231,7 @@ private:
     template <typename Planes, typename Self>
     static Planes planesOf(Self& film);
     std::size_t index(int x, int y) const;
+    Rgb part(std::size_t place, int x, int y) const;
 
     int width_, height_;
     Window crop_;
@@ -185,6 +239,10 @@ private:
     std::vector<SurfacePixel> surfacePixels_;        // empty without surfaces
     std::vector<FeaturePixel> featurePixels_;        // empty where not asked for
     std::vector<ForegroundPixel> foregroundPixels_;  // empty where no background is visible
+    std::vector<PlacePixel> placePixels_;            // these three: empty where not asked for
+    std::vector<StopPixel> stopPixels_;
+    LightParts parts_;
+    std::vector<double> partSums_;  // of each pixel, of each part: red, green, blue
 };
 
 }  // namespace woodcock::image

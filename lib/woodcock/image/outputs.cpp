@@ -23,18 +23,19 @@ Outputs::Outputs(OutputSettings settings) : settings_(std::move(settings)) {
     }
 }
 
+ExrSettings Outputs::exrSettings() const {
+    return {settings_.half, settings_.layers, settings_.colour.chromaticities(),
+            settings_.colour.interopId(), settings_.multipart};
+}
+
 double Outputs::bytesPerPixel() const {
     constexpr double displayBytes = 4 * 4 + 3 * 4 + 2 * 4;  // floats, without alpha, and the file's
     double most = 0;
     for (const std::filesystem::path& file : settings_.files)
-        most = std::max(most, imageFormat(file) == ImageFormat::Exr
-                                  ? exrBytesPerPixel({settings_.half, settings_.layers, {}})
-                                  : displayBytes);
+        most =
+            std::max(most, imageFormat(file) == ImageFormat::Exr ? exrBytesPerPixel(exrSettings())
+                                                                 : displayBytes);
     return most;
-}
-
-ExrSettings Outputs::exrSettings() const {
-    return {settings_.half, settings_.layers, settings_.colour.chromaticities()};
 }
 
 std::string Outputs::write(const Film& film, const RenderMetadata& metadata,

@@ -15,7 +15,8 @@ namespace woodcock::image {
 struct OutputSettings {
     std::vector<std::filesystem::path> files = {};  ///< each in the format of its extension
     bool half = false;                              ///< EXR colour in half instead of float
-    ExrLayers layers = {};                          ///< of the EXR files
+    LayerList layers = {};                          ///< of the EXR files
+    bool multipart = false;                         ///< their layers are parts of their own
     DisplaySettings display = {};                   ///< of all others, which are pictures
     ColorConfig colour;                             ///< for those, and for the EXR's chromaticities
     bool withAlpha = false;  ///< pictures keep alpha; for renders whose environment is not visible

@@ -2,15 +2,15 @@
 #include "woodcock/image/write_exr.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include "woodcock/base/error.h"
-#include "woodcock/base/nearest_name.h"
 #include "woodcock/base/version.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/image/exr_parts.h"
 #include "woodcock/image/openimageio_input.h"
 
 namespace woodcock::image {
@@ -19,88 +19,70 @@ namespace {
 
 constexpr float largestHalf = 65504.0f;
 
-constexpr std::array<std::pair<const char*, bool ExrLayers::*>, 7> knownLayers{
-    {{"depth", &ExrLayers::depth},
-     {"albedo", &ExrLayers::albedo},
-     {"normal", &ExrLayers::normal},
-     {"transmittance", &ExrLayers::transmittance},
-     {"samples", &ExrLayers::samples},
-     {"error", &ExrLayers::error},
-     {"variance", &ExrLayers::variance}}};
-
-/// A few neighbouring channels of one type and how a pixel fills them.
+/// Channels of one type in one part, and how a pixel fills them.
 struct ChannelGroup {
+    std::string part;
     std::vector<std::string> names;
-    PixelType type;
-    std::function<void(int x, int y, float* to)> fill;
+    bool half;
+    std::function<void(const Film&, int x, int y, float* to)> fill;
 };
 
-void copy(Rgb from, float* to) { std::copy(from.c.begin(), from.c.end(), to); }
-
-std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& settings) {
-    const bool half = settings.half;
+std::vector<ChannelGroup> channelGroups(const ExrSettings& settings) {
     std::vector<ChannelGroup> groups;
-    groups.push_back({{"R", "G", "B", "A"},
-                      half ? PixelType::Half : PixelType::Float,
-                      [&film, half](int x, int y, float* to) {
-                          copy(film.radiance(x, y), to);
+    groups.push_back({settings.multipart ? "rgba" : "",
+                      {"R", "G", "B", "A"},
+                      settings.half,
+                      [](const Film& film, int x, int y, float* to) {
+                          const Rgb radiance = film.radiance(x, y);
+                          std::copy(radiance.c.begin(), radiance.c.end(), to);
                           to[3] = film.alpha(x, y);
-                          // Beyond its range a half is infinite, which no later program can repair.
-                          if (half)
-                              for (int i = 0; i < 4; ++i)
-                                  to[i] = std::clamp(to[i], -largestHalf, largestHalf);
                       }});
-    const ExrLayers& layers = settings.layers;
-    if (layers.depth)
-        groups.push_back({{"Z"}, PixelType::Float, [&film](int x, int y, float* to) {
-                              *to = film.depth(x, y);
-                          }});
-    if (layers.albedo)
-        groups.push_back({{"albedo.R", "albedo.G", "albedo.B"},
-                          PixelType::Float,
-                          [&film](int x, int y, float* to) { copy(film.albedo(x, y), to); }});
-    if (layers.normal)
-        groups.push_back({{"normal.X", "normal.Y", "normal.Z"},
-                          PixelType::Float,
-                          [&film](int x, int y, float* to) {
-                              const Vec3f n = film.normal(x, y);
-                              to[0] = n.x, to[1] = n.y, to[2] = n.z;
-                          }});
-    if (layers.transmittance)
-        groups.push_back(
-            {{"transmittance.R", "transmittance.G", "transmittance.B"},
-             PixelType::Float,
-             [&film](int x, int y, float* to) { copy(film.transmittance(x, y), to); }});
-    if (layers.samples)
-        groups.push_back({{"samples"}, PixelType::Float, [&film](int x, int y, float* to) {
-                              *to = static_cast<float>(film.at(x, y).samples);
-                          }});
-    if (layers.error)
-        groups.push_back(
-            {{"error.R", "error.G", "error.B"}, PixelType::Float, [&film](int x, int y, float* to) {
-                 copy(film.standardError(x, y), to);
-             }});
-    if (layers.variance)
-        groups.push_back({{"variance.R", "variance.G", "variance.B"},
-                          PixelType::Float,
-                          [&film](int x, int y, float* to) { copy(film.variance(x, y), to); }});
+    for (const auto& [layer, half] : settings.layers) {
+        ChannelGroup group{"", layer.channels, half, layer.fill};
+        if (settings.multipart) {
+            group.part = layer.name;
+            for (std::string& name : group.names) name = layer.nameInPart(name);
+        }
+        groups.push_back(std::move(group));
+    }
     return groups;
 }
 
-ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSettings& settings,
-                   const std::vector<ChannelGroup>& groups) {
+ImageHeader headerOfAnyPart(const Film& film, const ExrSettings& settings) {
     ImageHeader h{"openexr", film.crop(), film.width(), film.height(), {}, {}};
-    for (const ChannelGroup& group : groups)
-        for (const std::string& name : group.names) h.channels.push_back({name, group.type});
+    h.attributes.emplace_back("compression", "zip");
+    // All parts must agree in it.
+    if (settings.chromaticities)
+        h.attributes.emplace_back(
+            "chromaticities",
+            std::vector<float>(settings.chromaticities->begin(), settings.chromaticities->end()));
+    return h;
+}
 
+/// The standard attributes that are known.
+void describeShot(ImageHeader& h, const RenderMetadata& metadata, const ExrSettings& settings) {
     const auto set = [&](const char* name, ImageAttribute value) {
         h.attributes.emplace_back(name, std::move(value));
     };
-    set("compression", "zip");
+    if (!settings.interopId.empty()) set("colorInteropID", settings.interopId);
+    if (metadata.worldToCamera) set("worldToCamera", *metadata.worldToCamera);
+    if (metadata.worldToNdc) set("worldToNDC", *metadata.worldToNdc);
+    if (!metadata.framesPerSecond) return;
+    const Rational rate = *metadata.framesPerSecond;
+    set("framesPerSecond", rate);
+    if (metadata.shutter > 0) {
+        const double seconds = metadata.shutter * rate.denominator / rate.numerator;
+        set("expTime", static_cast<float>(seconds));
+        set("shutterAngle", static_cast<float>(360 * metadata.shutter));
+    }
+}
+
+/// How the picture was made.
+void describeRender(ImageHeader& h, const Film& film, const RenderMetadata& metadata) {
+    const auto set = [&](const char* name, ImageAttribute value) {
+        h.attributes.emplace_back(name, std::move(value));
+    };
     set("Software", fmt::format("woodcock {}", version()));
-    if (settings.chromaticities)
-        set("chromaticities",
-            std::vector<float>(settings.chromaticities->begin(), settings.chromaticities->end()));
     set("woodcock/version", std::string(version()));
     set("woodcock/samples", metadata.endSample - metadata.firstSample);
     set("woodcock/sampleRange", fmt::format("{}:{}", metadata.firstSample, metadata.endSample));
@@ -119,53 +101,56 @@ ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSe
     set("woodcock/sceneDigest", metadata.sceneDigest);
     set("woodcock/renderSeconds", static_cast<float>(metadata.renderSeconds));
     if (!metadata.commandLine.empty()) set("woodcock/commandLine", metadata.commandLine);
-    return h;
 }
 
-}  // namespace
-
-std::vector<std::string> layerNames() {
-    std::vector<std::string> names;
-    for (const auto& [name, layer] : knownLayers) names.emplace_back(name);
-    return names;
-}
-
-ExrLayers layersFromNames(const std::vector<std::string>& names) {
-    ExrLayers layers;
-    for (const std::string& name : names) {
-        const auto known = std::find_if(knownLayers.begin(), knownLayers.end(),
-                                        [&](const auto& layer) { return layer.first == name; });
-        if (known == knownLayers.end())
-            throw usageError("unknown layer '{}'{}", name,
-                             suggestName(name, "known layers", layerNames()));
-        layers.*known->second = true;
-    }
-    return layers;
-}
-
-double exrBytesPerPixel(const ExrSettings& settings) {
-    const ExrLayers& l = settings.layers;
-    const int floats =
-        l.depth + l.samples + 3 * (l.albedo + l.normal + l.transmittance + l.error + l.variance);
-    constexpr int ofFloat = sizeof(float);
-    return ofFloat * (4 + floats) + (settings.half ? 2 : ofFloat) * 4 + ofFloat * floats;
-}
-
-void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings, const FilmState* state) {
-    const std::vector<ChannelGroup> groups = channelGroups(film, settings);
-    const ImageHeader h = header(film, metadata, settings, groups);
+/// Pixels of the crop, row by row, of a part whose header has the channels of these groups.
+std::vector<float> pixelsOf(const Film& film, std::span<const ChannelGroup> groups,
+                            std::size_t channels) {
     const Film::Window crop = film.crop();
-    std::vector<float> pixels(static_cast<std::size_t>(crop.width()) *
-                              static_cast<std::size_t>(crop.height()) * h.channels.size());
+    std::vector<float> pixels(film.pixelCount() * channels);
     float* to = pixels.data();
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x)
             for (const ChannelGroup& group : groups) {
-                group.fill(x, y, to);
+                group.fill(film, x, y, to);
+                // Beyond its range a half is infinite, which no later program can repair.
+                if (group.half)
+                    for (std::size_t i = 0; i < group.names.size(); ++i)
+                        to[i] = std::clamp(to[i], -largestHalf, largestHalf);
                 to += group.names.size();
             }
-    const std::vector<unsigned char> bytes = encodeImage(h, pixels);
+    return pixels;
+}
+
+}  // namespace
+
+double exrBytesPerPixel(const ExrSettings& settings) {
+    double bytes = 0;
+    for (const ChannelGroup& group : channelGroups(settings))
+        bytes += double(group.names.size()) * (sizeof(float) + (group.half ? 2 : sizeof(float)));
+    return bytes;
+}
+
+void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
+              const ExrSettings& settings, const FilmState* state) {
+    const std::vector<ChannelGroup> groups = channelGroups(settings);
+    std::vector<ExrPart> parts;
+    for (auto first = groups.begin(); first != groups.end();) {
+        const auto end = std::find_if(first, groups.end(), [&](const ChannelGroup& group) {
+            return group.part != first->part;
+        });
+        ImageHeader header = headerOfAnyPart(film, settings);
+        describeShot(header, metadata, settings);
+        if (first == groups.begin()) describeRender(header, film, metadata);
+        for (auto group = first; group != end; ++group)
+            for (const std::string& name : group->names)
+                header.channels.push_back({name, group->half ? PixelType::Half : PixelType::Float});
+        parts.push_back({first->part, encodeImage(header, pixelsOf(film, {first, end},
+                                                                   header.channels.size()))});
+        first = end;
+    }
+    const std::vector<unsigned char> bytes =
+        settings.multipart ? joinExrParts(parts) : std::move(parts.front().file);
     state ? writeWithState(file, bytes, *state) : writeWholeFile(file, bytes);
 }
 

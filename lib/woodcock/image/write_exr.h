@@ -12,6 +12,7 @@
 #include "woodcock/image/encode_image.h"
 #include "woodcock/image/film.h"
 #include "woodcock/image/film_state.h"
+#include "woodcock/image/layers.h"
 
 namespace woodcock::image {
 
@@ -23,28 +24,21 @@ struct RenderMetadata {
     std::string sceneDigest;
     std::string commandLine;  ///< empty: not written
     bool adaptive = false;    ///< as much work as the sample range in every pixel
+    /// Of the camera, as OpenEXR's standard attributes of these names have it; absent: not written.
+    std::optional<Matrix44> worldToCamera = {}, worldToNdc = {};
+    /// Frames in a second; absent: not known. A shutter is open for a part of a frame.
+    std::optional<Rational> framesPerSecond = {};
+    double shutter = 0;
 };
-
-/// Channels beyond R, G, B and A, always in float.
-struct ExrLayers {
-    bool depth = false;          ///< Z: Film::depth(), world units
-    bool albedo = false;         ///< albedo.R, .G, .B: Film::albedo()
-    bool normal = false;         ///< normal.X, .Y, .Z: Film::normal()
-    bool transmittance = false;  ///< transmittance.R, .G, .B along the camera ray
-    bool samples = false;        ///< samples: how many make the pixel
-    bool error = false;          ///< error.R, .G, .B: standard error of R, G, B
-    bool variance = false;       ///< variance.R, .G, .B: its square
-};
-
-/// The names that users write, as those of the members.
-std::vector<std::string> layerNames();
-/// The layers of these names. Throws Error{Usage} on any other name.
-ExrLayers layersFromNames(const std::vector<std::string>& names);
 
 struct ExrSettings {
     bool half = false;  ///< R, G, B, A in half, clamped to its largest number; else float
-    ExrLayers layers;
-    std::optional<Chromaticities> chromaticities;  ///< of the working space, where it is known
+    LayerList layers = {};
+    std::optional<Chromaticities> chromaticities = {};  ///< of the working space, where it is known
+    std::string interopId = {};  ///< its name by the Color Interop Forum; empty: not known
+    /// Each layer in a part of its own, after the part "rgba" with R, G, B and A; else all channels
+    /// in one part.
+    bool multipart = false;
 };
 
 /// Bytes of a pixel that writeExr() takes while it works: as floats, and as the file holds it.

@@ -5,11 +5,13 @@
 
 namespace woodcock::light {
 
-LightSet::LightSet(std::vector<Light> lights, Motions motions)
+LightSet::LightSet(std::vector<Light> lights, Motions motions, std::vector<std::uint8_t> groups)
     : lights_(std::move(lights)),
       motions_(std::move(motions)),
       moves_(std::any_of(motions_.begin(), motions_.end(),
-                         [](const auto& m) { return m != nullptr; })) {
+                         [](const auto& m) { return m != nullptr; })),
+      groups_(std::move(groups)) {
+    groups_.resize(lights_.size());
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const auto index = static_cast<int>(i);
         const LightTraits& traits = traits_.emplace_back(lights_[i].traits());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,15 +18,23 @@ class LightSet {
 public:
     LightSet() = default;
     /// `motions`, of each light or of none: from where the light is at rest to where it is at a
-    /// time; null: it stands still.
+    /// time; null: it stands still. `groups`: as group(), one for each light; empty: 0.
     using Motions = std::vector<std::shared_ptr<const MovingTransform>>;
-    explicit LightSet(std::vector<Light> lights, Motions motions = {});
+    explicit LightSet(std::vector<Light> lights, Motions motions = {},
+                      std::vector<std::uint8_t> groups = {});
 
     const std::vector<Light>& lights() const { return lights_; }
     const Light& operator[](int light) const { return lights_[static_cast<std::size_t>(light)]; }
     /// Its position is that at rest: see position().
     const LightTraits& traits(int light) const { return traits_[static_cast<std::size_t>(light)]; }
     bool moves() const { return moves_; }  ///< whether any light does
+
+    /// The number of the light group that a light, or one of the mesh's triangles, counts to; 0:
+    /// none.
+    std::uint8_t group(int light, std::uint32_t emitter = LightSample::none) const {
+        return emitter == LightSample::none ? groups_[static_cast<std::size_t>(light)]
+                                            : mesh()->triangles()[emitter].group;
+    }
 
     /// Indices of the lights that next-event estimation samples: all but constant environments,
     /// which the phase function samples perfectly by itself.
@@ -99,6 +108,7 @@ private:
     Motions motions_;
     bool moves_ = false;
     std::vector<LightTraits> traits_;
+    std::vector<std::uint8_t> groups_;
     std::vector<int> sampled_, local_, meetable_, distant_;
     int mesh_ = -1;
 };

@@ -22,6 +22,7 @@ public:
         std::array<Vec3d, 3> corner;  ///< world space; emits where it is counter-clockwise
         Rgb radiance;                 ///< mean over it, where a texture varies it
         bool bothSides = false;
+        std::uint8_t group = 0;  ///< as LightSet::group()
         bool operator==(const Triangle&) const = default;
     };
     /// Radiance of a triangle where a texture varies it: at corner 0 + b1 (corner 1 - corner 0) +

@@ -104,7 +104,8 @@ std::optional<EmissionPoint> EmissionSampler::sample(std::span<const EmissionPar
     const double weight = 1 / (density * piece->bound);
     const Rgb glow = piece->part->value(q.origin + q.direction * t, q.time);
     return EmissionPoint{
-        t, Rgb::map([&](int c) { return static_cast<float>(double{glow[c]} * weight); })};
+        t, Rgb::map([&](int c) { return static_cast<float>(double{glow[c]} * weight); }),
+        piece->part->description().group};
 }
 
 }  // namespace woodcock::medium

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -37,6 +38,7 @@ public:
         Rgb scale{1.0f};          ///< q where f is 1
         std::shared_ptr<const grid::Motion> motion = {};  ///< of the field; null: it stands still
         std::shared_ptr<const MovingTransform> movement = {};  ///< as of MediumPart::Description
+        std::uint8_t group = 0;  ///< the number of the light group that it counts to; 0: none
     };
     /// Throws Error{Input} where the transform is singular, the scale negative or infinite, or the
     /// field has a background without limits: a medium that emits everywhere is infinitely bright.
@@ -99,6 +101,7 @@ struct EmissionQuery {
 struct EmissionPoint {
     double t;
     Rgb light;
+    std::uint8_t group;  ///< of the part that it was drawn from, which alone makes the light
 };
 
 /// Draws one point on a straight piece of a path in proportion to a bound of the emission there,

@@ -69,4 +69,70 @@ Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, doubl
     return {static_cast<float>(depth.x), static_cast<float>(depth.y), static_cast<float>(depth.z)};
 }
 
+namespace {
+
+double transmittanceAt(Vec3d depth) {
+    return (std::exp(-depth.x) + std::exp(-depth.y) + std::exp(-depth.z)) / 3;
+}
+
+/// The point of the same ray at `t`, further on.
+DepthAlong movedTo(const DepthAlong& along, double t) {
+    const Rgb more =
+        exactOpticalDepth(along.medium, along.origin, along.direction, along.t, t, along.time);
+    return {along.medium,
+            along.origin,
+            along.direction,
+            along.time,
+            t,
+            along.depth + Vec3d{more[0], more[1], more[2]}};
+}
+
+void moveTo(DepthAlong& along, const DepthAlong& further) {
+    along.t = further.t, along.depth = further.depth;
+}
+
+/// Where all that the ray meets ends; infinity in a medium without bounds.
+double endOf(const DepthAlong& along, double tMax) {
+    double end = along.t;
+    for (const MediumPart& part : along.medium.parts) {
+        double t0 = along.t, t1 = tMax;
+        if (part.unbounded())
+            end = tMax;
+        else if (grid::clip({along.origin, along.direction}, part.worldBounds(), t0, t1))
+            end = std::max(end, t1);
+    }
+    return end;
+}
+
+}  // namespace
+
+bool findTransmittance(DepthAlong& along, double tMax, double transmittance) {
+    constexpr double precision = 1e-7, farthest = 1e30;
+    if (transmittanceAt(along.depth) <= transmittance) return true;
+    double end = endOf(along, tMax);
+    if (!(end > along.t)) return false;
+    // Where there is no end, ever longer pieces.
+    for (double step = 1; !std::isfinite(end); step *= 2) {
+        const DepthAlong there = movedTo(along, along.t + step);
+        if (transmittanceAt(there.depth) <= transmittance)
+            end = there.t;
+        else if (moveTo(along, there); along.t > farthest)
+            return false;
+    }
+    const DepthAlong last = movedTo(along, end);
+    if (transmittanceAt(last.depth) > transmittance) {
+        moveTo(along, last);
+        return false;
+    }
+    while (end - along.t > precision * end) {
+        const double middle = (along.t + end) / 2;
+        const DepthAlong there = movedTo(along, middle);
+        if (transmittanceAt(there.depth) > transmittance)
+            moveTo(along, there);
+        else
+            end = middle;
+    }
+    return true;
+}
+
 }  // namespace woodcock::medium

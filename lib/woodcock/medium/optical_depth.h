@@ -18,4 +18,19 @@ struct Medium;
 Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1,
                       float time = 0);
 
+/// A point on a world ray, and the optical depth of each channel up to there.
+struct DepthAlong {
+    const Medium& medium;
+    Vec3d origin, direction;
+    float time = 0;  ///< of the ray
+    double t = 0;
+    Vec3d depth = {};
+};
+
+/// Goes on from a point to where the transmittance, mean over channels, falls to a value, at most
+/// to `tMax`, which may be infinite. Returns whether it falls so far; where it does not, the point
+/// goes to tMax, or to where nothing follows. By bisection of exactOpticalDepth(), to 1e-7 of the
+/// distance.
+bool findTransmittance(DepthAlong& along, double tMax, double transmittance);
+
 }  // namespace woodcock::medium

@@ -5,6 +5,7 @@
 
 #include "woodcock/medium/emission.h"
 #include "woodcock/medium/tracking.h"
+#include "woodcock/render/layer_output.h"
 #include "woodcock/render/light_choice.h"
 #include "woodcock/render/medium_runs.h"
 #include "woodcock/render/path_state.h"
@@ -30,6 +31,7 @@ struct Batch {
     std::vector<medium::DistanceQuery<N>> walks;  ///< the flight of each path
     std::vector<ShadowRay<Surfaces>> shadows;
     std::vector<medium::TransmittanceQuery<N>> shadowQueries;  ///< the ray of each
+    LayerOutput layers;
     RenderCounters counters;
     LightChoice choice;
     medium::EmissionSampler emission;

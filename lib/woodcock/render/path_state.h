@@ -19,7 +19,8 @@ struct SurfaceState {
     BoundaryWalk way;  ///< where the flight starts, and the surface at its end
     Rgb tint{1.0f};    ///< colour of surfaces, where the throughput has one channel
     int bounces = 0;
-    bool seen = true;  ///< by the camera: the ray has met only boundaries so far
+    bool seen = true;           ///< by the camera: the ray has met only boundaries so far
+    bool surfaceFirst = false;  ///< the first thing that it met otherwise was a surface
     /// Whether next-event estimation has sampled the light that the path hits.
     enum class LightSampled {
         Never,              ///< it could not choose this direction: the light counts in full
@@ -71,6 +72,18 @@ Rgb tint(const PathState<N, Surfaces>& p) {
         return Rgb(1.0f);
 }
 
+/// The kind of light that comes to the path's end, after so many events more.
+template <int N, bool Surfaces>
+image::LightKind kindOfLight(const PathState<N, Surfaces>& p, int eventsMore) {
+    std::int64_t events = p.scatterings + eventsMore;
+    bool surfaceFirst = false;
+    if constexpr (Surfaces) events += p.surfaces.bounces, surfaceFirst = p.surfaces.surfaceFirst;
+    using enum image::LightKind;
+    if (events == 0) return Emission;
+    if (surfaceFirst) return events == 1 ? SurfaceDirect : SurfaceIndirect;
+    return events == 1 ? VolumeDirect : VolumeIndirect;
+}
+
 template <int N>
 Rgb toRgb(Spectrum<N> s) {
     return Rgb::map([&](int c) { return s[N == 1 ? 0 : c]; });
@@ -96,6 +109,9 @@ struct ShadowRay {
     bool withinFlight = false;         ///< no surface lies in its way, on the first leg
     std::uint8_t mediumSet = 0;        ///< which media it goes through
     std::uint8_t secondMediumSet = 0;  ///< and on its second leg
+    // Where the picture's light is split into parts:
+    image::LightKind kind = {};
+    image::LightGroup group = 0;
     std::uint32_t emitter = light::LightSample::none;  ///< the triangle that it goes to
     Vec3d origin = {}, direction = {};                 ///< of the second leg
     double tMax = 0;

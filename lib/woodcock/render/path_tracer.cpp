@@ -58,8 +58,10 @@ public:
         : traced_(scene, needs, options), batch_(scene.lights) {}
 
     bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
-               const std::function<bool()>& stop, RenderCounters& counters) override {
+               const PathLayers& layers, const std::function<bool()>& stop,
+               RenderCounters& counters) override {
         batch_.clear();
+        batch_.layers = LayerOutput(traced_.options.layers.parts, results, layers);
         std::size_t next = 0;
         while (true) {
             if (stop()) return false;

@@ -24,9 +24,16 @@ struct PathJob {
 /// What one camera path found.
 struct PathResult {
     image::FilmSample film;
-    image::DepthSample depth;  ///< only with depthLayers or featureLayers
+    image::DepthSample depth;  ///< only where layers ask for it
     image::CatcherSample
         catcher;  ///< where the camera sees a shadow catcher; its radiance is not in `film`
+};
+
+/// What layers ask of paths beside a PathResult; empty where they do not.
+struct PathLayers {
+    std::span<Rgb> parts;  ///< of FilmSample::radiance: options.layers.parts.count() for each job
+    std::span<image::PlaceSample> places;  ///< one for each job
+    std::span<image::StopSample> stops;    ///< one for each job
 };
 
 /// Traces camera paths through a scene in batches; path_tracer.cpp says how. Use one object for
@@ -40,17 +47,22 @@ public:
         std::optional<int> maxScatterings;
         std::optional<int> maxBounces;
         Approximations approximations;
-        bool depthLayers = false, featureLayers = false;
+        image::LayerNeeds layers = {};
         const ApproximateMedia* approximateMedia =
             nullptr;  ///< made from `approximations`; null: no sets
     };
 
     virtual ~PathTracer() = default;
-    /// Fills results[i] for jobs[i], and adds what that took to `counters`. `stop` is called now
-    /// and then; once it returns true, trace() returns false, the results are void, and `counters`
-    /// stay as they were.
+    /// Fills results[i], and what belongs to it in `layers`, for jobs[i]; adds what that took to
+    /// `counters`. `stop` is called now and then; once it returns true, trace() returns false, the
+    /// results are void, and `counters` stay as they were.
     virtual bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
-                       const std::function<bool()>& stop, RenderCounters& counters) = 0;
+                       const PathLayers& layers, const std::function<bool()>& stop,
+                       RenderCounters& counters) = 0;
+    bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
+               const std::function<bool()>& stop, RenderCounters& counters) {
+        return trace(jobs, results, {}, stop, counters);
+    }
 
     /// The tracer for the fewest channels that the scene needs. The scene, and
     /// options.approximateMedia, must outlive it.

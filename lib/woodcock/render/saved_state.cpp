@@ -65,7 +65,15 @@ std::vector<Number> numbersOf(const image::StateFile& file, const char* fact, st
 }
 
 std::string sampledText(const RenderSettings& settings) {
-    return settings.featureLayers ? "depth and features" : settings.depthLayers ? "depth" : "light";
+    const image::LayerNeeds& layers = settings.layers;
+    std::string text = layers.features         ? "depth and features"
+                       : layers.depthSamples() ? "depth"
+                                               : "light";
+    if (layers.places) text += ", places";
+    if (layers.stops) text += ", exact depths";
+    for (std::size_t part = 0; part < layers.parts.count(); ++part)
+        text += ", " + layers.parts.name(part);
+    return text;
 }
 
 void requireMemory(const image::StateFile& file) {

@@ -13,6 +13,8 @@
 
 namespace woodcock::render {
 
+struct NextFrame;
+
 /// A scene as light meets it: scene/ builds it, and a render session renders it. Immutable while
 /// rendering and shared by all threads.
 struct Scene {
@@ -23,6 +25,7 @@ struct Scene {
     std::vector<medium::Medium> interiorMedia =
         {};  ///< inside of surfaces: SurfaceObject::medium - 1 is the index
     camera::Shutter shutter = {};
+    std::shared_ptr<const NextFrame> next = {};  ///< for the layer of motion; null: none asks
     /// Needs that are run although the scene does not have them, to measure their cost. See
     /// forceNeed() in trade/needs_cost.h.
     Needs forcedNeeds = {};

@@ -83,9 +83,13 @@ public:
           needs_(findNeeds(scene)),
           approximateMedia_(scene, settings.approximations),
           tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
-          state_{image::Film(
-                     settings.width, settings.height, crop,
-                     {needs_.surfaces, settings.featureLayers, scene.lights.showsBackground()}),
+          state_{image::Film(settings.width, settings.height, crop,
+                             {.surfaces = needs_.surfaces,
+                              .features = settings.layers.features,
+                              .background = scene.lights.showsBackground(),
+                              .places = settings.layers.places,
+                              .stops = settings.layers.stops,
+                              .parts = settings.layers.parts}),
                  std::vector<std::uint32_t>(), settings.firstSample},
           tiles_(scatteredTiles(crop, tileSize)),
           work_(tiles_.size(), settings.endSample - settings.firstSample),
@@ -300,22 +304,31 @@ private:
             for (std::uint32_t s = first; s < end; ++s) jobs.push_back({x, y, s});
         });
         std::vector<PathResult> results(jobs.size());
+        const image::LayerNeeds& layers = settings_.layers;
+        const std::size_t ofPath = layers.parts.count();
+        std::vector<Rgb> parts(jobs.size() * ofPath);
+        std::vector<image::PlaceSample> places(layers.places ? jobs.size() : 0);
+        std::vector<image::StopSample> stops(layers.stops ? jobs.size() : 0);
         RenderCounters counters;
-        if (!tracers_.local()->trace(jobs, results, stopping, counters)) return false;
+        if (!tracers_.local()->trace(jobs, results, {parts, places, stops}, stopping, counters))
+            return false;
         const std::shared_lock stateLock(stateMutex_);
-        for (std::size_t i = 0; i < jobs.size(); ++i) add(jobs[i], results[i]);
+        image::Film& film = state_.film;
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            const auto [x, y, sample] = jobs[i];
+            film.add(x, y, results[i].film, std::span(parts).subspan(i * ofPath, ofPath));
+            if (layers.places)
+                film.add(x, y, results[i].depth, places[i]);
+            else if (layers.depthSamples())
+                film.add(x, y, results[i].depth);
+            if (layers.stops) film.add(x, y, stops[i]);
+            if (results[i].catcher.weight > 0) film.add(x, y, results[i].catcher);
+            state_.drawn[pixelOf(x, y)] = sample + 1;
+        }
         const std::lock_guard lock(countersMutex_);
         state_.counters += counters;
         work_.finish(tile, secondsSince(tileStart));
         return true;
-    }
-
-    void add(const PathJob& job, const PathResult& result) {
-        image::Film& film = state_.film;
-        film.add(job.x, job.y, result.film);
-        if (settings_.depthLayers || settings_.featureLayers) film.add(job.x, job.y, result.depth);
-        if (result.catcher.weight > 0) film.add(job.x, job.y, result.catcher);
-        state_.drawn[pixelOf(job.x, job.y)] = job.sample + 1;
     }
 
     PathTracer::Options tracerOptions() const {
@@ -325,8 +338,7 @@ private:
                 .maxScatterings = settings_.maxScatterings,
                 .maxBounces = settings_.maxBounces,
                 .approximations = settings_.approximations,
-                .depthLayers = settings_.depthLayers,
-                .featureLayers = settings_.featureLayers,
+                .layers = settings_.layers,
                 .approximateMedia = &approximateMedia_};
     }
 

@@ -30,9 +30,8 @@ struct RenderSettings {
     int threads = 0;  ///< 0: all cores
     /// Seconds; 0: none. The first sample of all pixels may take twice as long.
     double timeLimit = 0;
-    double noise = 0;            ///< stop once Film::noise() is below it; 0: never
-    bool depthLayers = false;    ///< also sample transmittance and depth of camera rays
-    bool featureLayers = false;  ///< these, and albedo and normal of what they meet
+    double noise = 0;  ///< stop once Film::noise() is below it; 0: never
+    image::LayerNeeds layers = {};
 };
 
 struct RenderProgress {

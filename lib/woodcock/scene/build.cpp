@@ -2,11 +2,17 @@
 #include "woodcock/scene/build.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "woodcock/base/error.h"
+#include "woodcock/camera/projection.h"
+#include "woodcock/image/write_exr.h"
 #include "woodcock/light/graded_image.h"
 #include "woodcock/scene/animation.h"
 #include "woodcock/scene/check_surfaces.h"
+#include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/light_groups.h"
+#include "woodcock/scene/next_frame.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/sky.h"
 
@@ -68,7 +74,9 @@ void addLights(std::vector<light::Light>& lights, const SkyDescription& sky, Loa
 
 light::LightSet buildLights(const SceneDescription& description, std::vector<LoadedLight> loaded,
                             const Movements& movements, BuiltSurfaces& surfaces) {
+    const std::vector<std::string> names = lightGroups(description);
     std::vector<light::Light> lights;
+    std::vector<std::uint8_t> groups;
     light::LightSet::Motions motions;
     loaded.resize(description.lights.size());  // lights that were chosen after loading have no file
     for (size_t i = 0; i < loaded.size(); ++i) {
@@ -76,13 +84,30 @@ light::LightSet buildLights(const SceneDescription& description, std::vector<Loa
                    description.lights[i].light);
         motions.resize(lights.size());
         if (i < movements.lights.size()) motions.back() = movements.lights[i];
+        groups.resize(lights.size(), groupNumber(names, description.lights[i].group));
     }
     if (!surfaces.emitters.empty())
         lights.push_back(
             light::MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
     motions.resize(lights.size());
-    return light::LightSet(std::move(lights), std::move(motions));
+    return light::LightSet(std::move(lights), std::move(motions), std::move(groups));
 }
+
+/// As OpenEXR has it: 24/1, and 24000/1001 of 23.976.
+image::Rational frameRate(double fps) {
+    const auto near = [](double a) { return std::abs(a - std::round(a)) < 1e-3; };
+    if (!near(fps) && near(fps * 1.001))
+        return {static_cast<int>(std::round(fps * 1.001)) * 1000, 1001};
+    const unsigned parts = near(fps) ? 1 : 1000;
+    return {static_cast<int>(std::round(fps * parts)), parts};
+}
+
+bool glows(const VolumeDescription& volume) {
+    return (volume.emission && volume.emission->scale.maximum() > 0) ||
+           (volume.blackbody && volume.blackbody->intensity > 0);
+}
+
+}  // namespace
 
 camera::Camera buildCamera(const CameraDescription& description) {
     const bool orthographic = description.kind == CameraDescription::Kind::Orthographic;
@@ -99,12 +124,23 @@ camera::Camera buildCamera(const CameraDescription& description) {
     return camera;
 }
 
-bool glows(const VolumeDescription& volume) {
-    return (volume.emission && volume.emission->scale.maximum() > 0) ||
-           (volume.blackbody && volume.blackbody->intensity > 0);
+void describeShot(const SceneDescription& scene, image::RenderMetadata& metadata) {
+    const camera::Camera camera = buildCamera(scene.camera);
+    const auto floats = [](const camera::Matrix44d& m) {
+        image::Matrix44 all;
+        std::transform(m.begin(), m.end(), all.begin(),
+                       [](double v) { return static_cast<float>(v); });
+        return all;
+    };
+    metadata.worldToCamera = floats(camera::worldToCamera(camera));
+    metadata.worldToNdc =
+        floats(camera::worldToNdc(camera, double(scene.render.width) / scene.render.height));
+    metadata.shutter = scene.camera.shutter.length();
+    const std::string fps = fmt::format("render.{}", keyName(scene.render, scene.render.fps));
+    const bool known = metadata.shutter > 0 || !findPlace(scene.places, fps).empty();
+    if (known && scene.render.fps >= 1e-3 && scene.render.fps <= 1e6)
+        metadata.framesPerSecond = frameRate(scene.render.fps);
 }
-
-}  // namespace
 
 render::RenderSettings renderSettings(const RenderDescription& render) {
     render::RenderSettings settings;
@@ -147,8 +183,12 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
         !description.animation.empty() && shutter.length() == 0 && shutter.open != 0) {
         // A shutter of no length, beside the frame: the scene stands still at that moment.
         SceneDescription moment = atFrame(description, description.frame + shutter.open);
+        std::shared_ptr<const render::NextFrame> next;
+        if (asksForMotion(description)) next = buildNextFrame(moment, loaded);
         moment.animation.clear();
-        return buildScene(moment, std::move(loaded), notes);
+        render::Scene scene = buildScene(moment, std::move(loaded), notes);
+        scene.next = std::move(next);
+        return scene;
     }
     camera::Camera camera = buildCamera(description.camera);
     for (std::string& note : coarsenForCamera(description, camera, loaded))
@@ -157,6 +197,8 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
     camera.motion = movements.camera;
     BuiltSurfaces surfaces = buildSurfaces(description, loaded, movements);
     medium::Medium medium = buildMedium(description, loaded, movements, "");
+    std::shared_ptr<const render::NextFrame> next;
+    if (asksForMotion(description)) next = buildNextFrame(description, loaded);
     if (notes)
         for (std::string& note : motionNotes(description, loaded, medium, ""))
             notes->push_back(std::move(note));
@@ -165,7 +207,8 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
             camera,
             std::move(surfaces.set),
             std::move(surfaces.interiorMedia),
-            description.camera.shutter};
+            description.camera.shutter,
+            std::move(next)};
 }
 
 bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {

@@ -17,6 +17,10 @@
 #include "woodcock/scene/movements.h"
 #include "woodcock/surface/surface_set.h"
 
+namespace woodcock::image {
+struct RenderMetadata;
+}
+
 namespace woodcock::scene {
 
 /// The scene that a render draws, from a complete description (see completeScene) and what was
@@ -29,6 +33,13 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
 render::RenderSettings renderSettings(const RenderDescription& render);
 
 Affine3d worldFromCamera(const CameraPose& pose);
+
+/// The scene's camera, where it is complete; throws Error{Usage} where it is not.
+camera::Camera buildCamera(const CameraDescription& description);
+
+/// Says in the header of a picture where the camera of a complete scene stands, and how many frames
+/// a second has, where the scene says so or its shutter opens.
+void describeShot(const SceneDescription& scene, image::RenderMetadata& metadata);
 
 /// The rotation that takes an environment image's up, +y, and centre, -z, to where they are.
 Affine3d worldFromLight(const EnvironmentDescription& environment);

@@ -13,6 +13,7 @@
 #include "woodcock/grid/coarsen.h"
 #include "woodcock/grid/motion.h"
 #include "woodcock/grid/moved_ranges.h"
+#include "woodcock/scene/light_groups.h"
 
 namespace woodcock::scene {
 namespace {
@@ -92,7 +93,8 @@ std::vector<Part> parts(const Moving& moving, const HomogeneousBox& c) {
 
 /// Parts that emit nothing are left out.
 std::vector<medium::EmissionPart> emission(const Moving& moving,
-                                           const std::shared_ptr<const MovingTransform>& movement) {
+                                           const std::shared_ptr<const MovingTransform>& movement,
+                                           std::uint8_t group) {
     const VolumeDescription& volume = moving.volume;
     const LoadedVolume& loaded = moving.loaded;
     std::vector<medium::EmissionPart> all;
@@ -108,6 +110,7 @@ std::vector<medium::EmissionPart> emission(const Moving& moving,
         }
         part.scale = scale;
         part.movement = movement;
+        part.group = group;
         if (scale.maximum() > 0) all.emplace_back(std::move(part));
     };
     if (volume.emission) add(loaded.emission, volume.emission->scale);
@@ -211,7 +214,8 @@ medium::Medium buildMedium(const SceneDescription& description, const LoadedScen
             part.movement = movements.volumes[i];
             medium.parts.emplace_back(std::move(part));
         }
-        for (medium::EmissionPart& part : emission(moving, movements.volumes[i]))
+        const std::uint8_t group = groupNumber(lightGroups(description), volume.group);
+        for (medium::EmissionPart& part : emission(moving, movements.volumes[i], group))
             medium.emission.push_back(std::move(part));
     }
     return medium;

@@ -9,6 +9,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/choose_camera.h"
+#include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/load_surfaces.h"
 #include "woodcock/surface/material.h"
 
@@ -218,6 +219,7 @@ public:
         : description_(description),
           loaded_(loaded),
           movements_(movements),
+          groups_(lightGroups(description)),
           materials_(buildMaterials(description, loaded)) {}
 
     BuiltSurfaces build() {
@@ -244,26 +246,29 @@ private:
         object.shadowCatcher = surface.shadowCatcher;
         object.matte = surface.matte;
         object.cameraVisible = surface.cameraVisible;
-        addInstances(index, nature.emits, object.material);
+        if (nature.emits && object.material < description_.materials.size())
+            object.lightGroup = groupNumber(
+                groups_, groupOfMaterial(description_, description_.materials[object.material]));
+        addInstances(index, nature.emits, object);
         objects_.push_back(std::move(object));
     }
 
-    void addInstances(std::size_t index, bool emits, std::uint32_t material) {
+    void addInstances(std::size_t index, bool emits, const surface::SurfaceObject& like) {
         const SurfaceDescription& surface = description_.surfaces[index];
         const LoadedSurface& loaded = loaded_.surfaces[index];
         const auto& moves = movements_.surfaces[index];
         const auto shape = addShape(shapeOf(surface, loaded));
         const auto object = static_cast<std::uint32_t>(objects_.size());
         const std::vector<Emission> emission =
-            emits ? meanEmission(materials_, material, *loaded.mesh) : std::vector<Emission>();
+            emits ? meanEmission(materials_, like.material, *loaded.mesh) : std::vector<Emission>();
         for (std::size_t k = 0; k < loaded.instances.size(); ++k) {
             const Affine3d worldFromShape =
                 surface.worldFromObject * loaded.instances[k] * loaded.objectFromMesh;
             instances_.push_back(
                 {shape, object, worldFromShape, moves.empty() ? nullptr : moves[k]});
-            firstEmitter_.push_back(
-                emission.empty() ? surface::SurfaceObject::dark
-                                 : addEmitters(loaded.mesh, emission, worldFromShape, material));
+            firstEmitter_.push_back(emission.empty()
+                                        ? surface::SurfaceObject::dark
+                                        : addEmitters(loaded.mesh, emission, worldFromShape, like));
         }
     }
 
@@ -279,7 +284,7 @@ private:
 
     std::uint32_t addEmitters(const std::shared_ptr<const mesh::SurfaceMesh>& mesh,
                               const std::vector<Emission>& emission, const Affine3d& worldFromMesh,
-                              std::uint32_t material) {
+                              const surface::SurfaceObject& like) {
         const size_t first = built_.emitters.size();
         if (emission.size() > mostEmitters - first)
             throw inputError(
@@ -296,10 +301,11 @@ private:
             built_.emitters.push_back(
                 {{corner(0), corner(mirrored ? 2 : 1), corner(mirrored ? 1 : 2)},
                  emission[i].radiance,
-                 emission[i].bothSides});
+                 emission[i].bothSides,
+                 like.lightGroup});
         }
-        emissionVaries_ |= emissionVaries(materials_, material);
-        emissive_.push_back({static_cast<std::uint32_t>(first), mesh, material, mirrored});
+        emissionVaries_ |= emissionVaries(materials_, like.material);
+        emissive_.push_back({static_cast<std::uint32_t>(first), mesh, like.material, mirrored});
         return static_cast<std::uint32_t>(first);
     }
 
@@ -355,6 +361,7 @@ private:
             medium::EmissionPart::Description part;
             part.box = space;
             part.scale = interior.emission;
+            part.group = groupNumber(groups_, interior.group);
             medium.emission.emplace_back(std::move(part));
         }
     }
@@ -362,6 +369,7 @@ private:
     const SceneDescription& description_;
     const LoadedScene& loaded_;
     const Movements& movements_;
+    const std::vector<std::string> groups_;
     std::vector<surface::Material> materials_;
     std::vector<surface::Shape> shapes_;
     std::map<std::pair<std::size_t, const mesh::SurfaceMesh*>, std::uint32_t> known_;

@@ -164,6 +164,7 @@ struct VolumeDescription {
     /// none.
     std::optional<GridCoefficient> emission = {};
     std::optional<BlackbodyDescription> blackbody = {};
+    std::string group = {};                      ///< that its emission counts to; empty: none
     float g = 0;                                 ///< mean cosine of Henyey-Greenstein, in (-1, 1)
     std::optional<PhaseDescription> phase = {};  ///< in place of Henyey-Greenstein
     VelocityDescription velocity = {};
@@ -205,6 +206,7 @@ struct InterfaceDescription {
 struct EmissiveDescription {
     TextureDescription radiance{Rgb(1.0f)};
     bool bothSides = false;
+    std::string group = {};  ///< that its light counts to; empty: none
     bool operator==(const EmissiveDescription&) const = default;
 };
 struct MixDescription {
@@ -264,6 +266,7 @@ struct InteriorDescription {
     float g = 0;
     std::optional<PhaseDescription> phase = {};  ///< in place of Henyey-Greenstein with g
     Rgb emission{0.0f};                          ///< radiance per world unit
+    std::string group = {};                      ///< that its emission counts to; empty: none
     bool operator==(const InteriorDescription&) const = default;
 };
 
@@ -341,8 +344,9 @@ struct RenderDescription {
 
 struct OutputDescription {
     std::vector<std::filesystem::path> files;  ///< by extension: exr, png, jpg
-    std::vector<std::string> layers;           ///< depth, normal, transmittance, samples, error
+    std::vector<std::string> layers;           ///< see image::parseLayerName()
     bool half = false;                         ///< EXR colour in half instead of float
+    bool multipart = false;                    ///< EXR layers in parts of their own
     std::string display, view, look;           ///< OpenColorIO names; empty: the config's default
     double exposure = 0;                       ///< stops, before the display transform
     bool operator==(const OutputDescription&) const = default;

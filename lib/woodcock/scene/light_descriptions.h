@@ -6,6 +6,7 @@
 #include <concepts>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "woodcock/base/affine.h"
@@ -163,6 +164,7 @@ struct LightDescription {
     std::variant<SunDescription, PointDescription, SpotDescription, SphereDescription,
                  RectangleDescription, DiskDescription, EnvironmentDescription, SkyDescription>
         light;
+    std::string group = {};  ///< of lights: see lightGroups(); empty: none
     bool operator==(const LightDescription&) const = default;
 
     /// How bright it is, in its own unit; 0: it is dark.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/scene/load.h"
+#include "woodcock/scene/next_frame.h"
 
 #include <algorithm>
 #include <atomic>
@@ -441,7 +442,8 @@ LoadedVolume loadVolume(const SceneDescription& scene, size_t index, Loader& loa
     if (placeOf(volume.file).empty()) lookThrough(volume, loader, loaded);
     inPlace(placeOf(volume.velocity.grid), [&] {
         const grid::VelocityGrids grids = loader.velocityGrids(volume);
-        if (grids.empty() || !scene.needsVelocities(volume)) return;
+        const bool followed = volume.velocity.scale != 0 && asksForMotion(scene);
+        if (grids.empty() || !(scene.needsVelocities(volume) || followed)) return;
         loaded.velocity = loader.velocity(volume, grids);
         loaded.velocities = namesOf(grids);
         if (loaded.velocity) requireOverlap(file, grids, loaded);

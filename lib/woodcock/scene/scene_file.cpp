@@ -9,6 +9,7 @@
 #include "woodcock/scene/animation.h"
 #include "woodcock/scene/check_surfaces.h"
 #include "woodcock/scene/keys/sections.h"
+#include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/overrides.h"
 #include "woodcock/scene/quality.h"
 
@@ -131,6 +132,7 @@ void write(SceneWriter& out, const SurfaceDescription& surface) {
 void write(SceneWriter& out, const LightDescription& light) {
     out.heading("[[light]]");
     writeTagged(out, light.light);
+    writeKeys(out, light);
 }
 
 void write(SceneWriter& out, const CameraDescription& camera) {
@@ -235,6 +237,7 @@ SceneDescription parseSceneText(std::string_view text, const std::string& name,
     checkOrbit(scene);
     scene.lightChanges = std::move(lightChanges);
     checkLightChanges(scene);
+    checkLightGroups(scene);
     return scene;
 }
 

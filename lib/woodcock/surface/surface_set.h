@@ -22,6 +22,7 @@ struct SurfaceObject {
     double ior = 1;            ///< index of refraction of the medium inside
     std::uint32_t medium = 0;  ///< inside: 0 is Scene::medium, else interiorMedia[medium - 1]
     int priority = 0;
+    std::uint8_t lightGroup = 0;  ///< the number of that which its own light counts to; 0: none
     /// For compositing; each concerns camera rays only.
     bool holdout = false, shadowCatcher = false, matte = false;
     bool cameraVisible = true;

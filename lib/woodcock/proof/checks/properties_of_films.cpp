@@ -32,7 +32,7 @@ render::RenderSettings settings(const Lab& lab) {
     s.width = 20, s.height = 16;
     s.endSample = lab.pick(3, 40);
     s.seed = lab.seed("films");
-    s.depthLayers = true;
+    s.layers.depth = true;
     return s;
 }
 

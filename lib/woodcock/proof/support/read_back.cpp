@@ -20,11 +20,13 @@ float ReadBack::at(int px, int py, const std::string& channel) const {
     return values[pixel * channels.size() + static_cast<size_t>(found - channels.begin())];
 }
 
-ReadBack readBack(const std::filesystem::path& file) {
+ReadBack readBack(const std::filesystem::path& file, int part) {
     OIIO::ImageSpec asIs;
     asIs["oiio:UnassociatedAlpha"] = 1;
     const auto input = OIIO::ImageInput::open(file.string(), &asIs);
     if (!input) throw std::runtime_error(OIIO::geterror());
+    if (part > 0 && !input->seek_subimage(part, 0))
+        throw std::out_of_range("no part " + std::to_string(part) + " in " + file.string());
     const OIIO::ImageSpec& spec = input->spec();
     ReadBack image{spec.x,
                    spec.y,
@@ -42,7 +44,7 @@ ReadBack readBack(const std::filesystem::path& file) {
         image.attributes[attribute.name().string()] = attribute.get_string();
     image.values.resize(static_cast<size_t>(spec.image_pixels()) *
                         static_cast<size_t>(spec.nchannels));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
+    if (!input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
         throw std::runtime_error(input->geterror());
     if (spec.format == OIIO::TypeDesc::UINT8)
         for (float& v : image.values) v = std::round(v * 255);

@@ -22,7 +22,8 @@ struct ReadBack {
     float at(int x, int y, const std::string& channel) const;
 };
 
-ReadBack readBack(const std::filesystem::path& file);
+/// Of a file of several parts, the one of this number; throws std::out_of_range beyond the last.
+ReadBack readBack(const std::filesystem::path& file, int part = 0);
 
 /// Writes a float image, for tests of readers: TIFF, EXR, or whatever the extension says.
 void writeFloats(const std::filesystem::path& file, int width, int height, int channels,

@@ -58,8 +58,8 @@ render::RenderResult renderScene(const render::Scene& scene, const Picture& pict
     settings.endSample = picture.samples * (adaptiveSamples ? 2 : 1);
     settings.seed = picture.seed;
     settings.maxScatterings = picture.maxScatterings;
-    settings.depthLayers = picture.depthLayers;
-    settings.featureLayers = picture.featureLayers;
+    settings.layers.depth = picture.depthLayers;
+    settings.layers.features = picture.featureLayers;
     render::RenderResult result = render::render(scene, settings);
     if (const auto count = result.film.nonFiniteCount())
         throw std::runtime_error(fmt::format("{} samples are not finite", count));

@@ -2,6 +2,7 @@
 #include "woodcock/render/stages/camera_layers.h"
 
 #include "woodcock/medium/features.h"
+#include "woodcock/render/next_frame.h"
 #include "woodcock/render/stages/inner_loops.h"
 
 namespace woodcock::render {
@@ -13,8 +14,11 @@ template <int N>
 struct FirstMet {
     medium::DistanceQuery<N> query;  ///< of the last piece of the ray; part >= 0: in a medium there
     const medium::Medium* medium = nullptr;
-    double before = 0;  ///< length of the ray before that piece
+    double before = 0;            ///< length of the ray before that piece
+    std::size_t mediumIndex = 0;  ///< 0: Scene::medium, else of interiorMedia, from 1
     bool holdout = false, surface = false;
+    Vec3d position = {};  ///< of a surface, and its instance
+    std::size_t instance = 0;
 };
 
 template <int N>
@@ -49,6 +53,24 @@ void writeMedium(const FirstMet<N>& met, bool featureLayers, image::DepthSample&
         (medium::densityNormal(*met.medium, position, q.time) * weight).template as<float>();
 }
 
+template <int N>
+image::PlaceSample placeOf(const TracedScene& traced, const FirstMet<N>& met,
+                           const image::DepthSample& depth) {
+    const medium::DistanceQuery<N>& q = met.query;
+    const float weight = depth.weight;
+    if (!(weight > 0)) return {};
+    const Vec3d at = met.surface ? met.position : q.origin + q.direction * q.t;
+    image::PlaceSample place{.weightedPosition = at * weight};
+    if (const NextFrame* next = traced.scene.next.get()) {
+        const NextFrame::Way& way =
+            met.surface ? next->ofInstance(met.instance)
+                        : next->ofPart(met.mediumIndex, static_cast<std::size_t>(q.part));
+        const auto motion = next->motion(way, at, traced.options.width, traced.options.height);
+        place.weightedMotion = {motion[0] * weight, motion[1] * weight};
+    }
+    return place;
+}
+
 /// Follows the ray through boundaries to what it meets first. A surface is written at once.
 template <int N>
 void followThroughSurfaces(const TracedScene& traced, const PathState<N, true>& p,
@@ -63,6 +85,7 @@ void followThroughSurfaces(const TracedScene& traced, const PathState<N, true>& 
             {.origin = q.origin, .direction = q.direction, .time = q.time, .cameraRay = true});
         q.tMax = way.tMax();
         met.medium = traced.media[traced.mediumAround(p.mediumSet, way.inside())].medium;
+        met.mediumIndex = media.medium(way.inside());
         findEvents<N>(traced.options.approximations, *met.medium, {&q, 1}, c);
         if (q.part >= 0 || !hits) return;
         const surface::SurfaceHit& hit = way.hit();
@@ -71,6 +94,7 @@ void followThroughSurfaces(const TracedScene& traced, const PathState<N, true>& 
         if (met.holdout) return;
         if (!crossing.passes) {
             met.surface = true;
+            met.position = hit.position, met.instance = hit.instance;
             writeSurface(met, hit, crossing.bsdf, p.result->depth);
             return;
         }
@@ -83,7 +107,8 @@ void followThroughSurfaces(const TracedScene& traced, const PathState<N, true>& 
 }  // namespace
 
 template <int N, bool Surfaces>
-void sampleCameraLayers(const TracedScene& traced, const PathState<N, Surfaces>& p) {
+void sampleCameraLayers(const TracedScene& traced, const PathState<N, Surfaces>& p,
+                        image::PlaceSample* place) {
     FirstMet<N> met{.query = {.origin = p.origin,
                               .direction = p.direction,
                               .tMax = std::numeric_limits<double>::infinity(),
@@ -94,18 +119,24 @@ void sampleCameraLayers(const TracedScene& traced, const PathState<N, Surfaces>&
                               .throughput = Spectrum<N>(1.0f)}};
     if constexpr (Surfaces) {
         followThroughSurfaces(traced, p, met);
+        if (met.surface && place) *place = placeOf(traced, met, p.result->depth);
         if (met.holdout || met.surface) return;
     } else {
         medium::TrackingCounters c;
         met.medium = traced.media[traced.media.number(p.mediumSet, 0)].medium;
         findEvents<N>(traced.options.approximations, *met.medium, {&met.query, 1}, c);
     }
-    writeMedium(met, traced.options.featureLayers, p.result->depth);
+    writeMedium(met, traced.options.layers.features, p.result->depth);
+    if (place) *place = placeOf(traced, met, p.result->depth);
 }
 
-template void sampleCameraLayers(const TracedScene&, const PathState<1, false>&);
-template void sampleCameraLayers(const TracedScene&, const PathState<1, true>&);
-template void sampleCameraLayers(const TracedScene&, const PathState<3, false>&);
-template void sampleCameraLayers(const TracedScene&, const PathState<3, true>&);
+template void sampleCameraLayers(const TracedScene&, const PathState<1, false>&,
+                                 image::PlaceSample*);
+template void sampleCameraLayers(const TracedScene&, const PathState<1, true>&,
+                                 image::PlaceSample*);
+template void sampleCameraLayers(const TracedScene&, const PathState<3, false>&,
+                                 image::PlaceSample*);
+template void sampleCameraLayers(const TracedScene&, const PathState<3, true>&,
+                                 image::PlaceSample*);
 
 }  // namespace woodcock::render

@@ -40,8 +40,10 @@ void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
     weight *= share(lights, chosen->light);
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
-                     s.weight * static_cast<float>(weight), true))
+                     s.weight * static_cast<float>(weight), true)) {
         batch.shadows.back().emitter = s.emitter;
+        noteOrigin(batch, lights.group(chosen->light, s.emitter), 1);
+    }
 }
 
 template <int N, bool Surfaces>
@@ -62,8 +64,9 @@ void addLightHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
         bool lightSampled = false;
         if constexpr (Surfaces)
             lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;
-        addShadowRay(traced, batch, i, p.origin, p.direction, hit.distance,
-                     hit.radiance * static_cast<float>(weight), lightSampled);
+        if (addShadowRay(traced, batch, i, p.origin, p.direction, hit.distance,
+                         hit.radiance * static_cast<float>(weight), lightSampled))
+            noteOrigin(batch, lights.group(light), 0);
     }
 }
 

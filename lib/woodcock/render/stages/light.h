@@ -24,6 +24,27 @@ template <int N, bool Surfaces>
 bool addShadowRay(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i, Vec3d origin,
                   Vec3d direction, double tMax, Rgb light, bool mayPass);
 
+/// Notes for the shadow ray that was added last which part of the picture its light belongs to: a
+/// light group, and how often it is still to be scattered before it comes to the path's end.
+template <int N, bool Surfaces>
+void noteOrigin(Batch<N, Surfaces>& batch, image::LightGroup group, int eventsMore) {
+    if (!batch.layers.splitsLight()) return;
+    ShadowRay<Surfaces>& ray = batch.shadows.back();
+    ray.kind = kindOfLight(batch.paths[ray.path], eventsMore);
+    ray.group = group;
+}
+
+/// Adds light that has come to the path's end, and from there to the camera. `inFront`: on the
+/// camera's first flight.
+template <int N, bool Surfaces>
+void bring(Batch<N, Surfaces>& batch, PathState<N, Surfaces>& p, Rgb light, image::LightKind kind,
+           image::LightGroup group, bool inFront = false) {
+    (inFront ? p.result->film.radiance : p.radiance) += light;
+    // A shadow catcher's own light is not in the picture.
+    if (batch.layers.splitsLight() && (inFront || !(p.result->catcher.weight > 0)))
+        batch.layers.add(*p.result, kind, group, light);
+}
+
 /// The weight, by multiple importance sampling, of light that a path hits. pdf(): the density with
 /// which next-event estimation at the last event would have sampled it.
 template <int N, bool Surfaces, class F>

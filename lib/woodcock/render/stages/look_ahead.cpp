@@ -44,6 +44,7 @@ void addMediumEmission(const TracedScene& traced, Batch<N, Surfaces>& batch, std
         !addShadowRay(traced, batch, i, p.origin, p.direction, point->t, point->light, false))
         return;
     batch.shadows.back().withinFlight = true;
+    noteOrigin(batch, point->group, 0);
     if (seen(p)) p.result->film.glow = 1;
     // Points deep within dense media contribute little: beyond a depth of 9, roulette ends their
     // rays.
@@ -91,6 +92,7 @@ void addEquiangular(const TracedScene& traced, Batch<N, Surfaces>& batch, std::s
         return;
     ShadowRay<Surfaces>& ray = batch.shadows.back();
     ray.withinFlight = true;
+    noteOrigin(batch, lights.group(light, s.emitter), 1);
     ray.secondLeg = true, ray.secondMediumSet = onward.mediumSet;
     ray.origin = at.position, ray.direction = s.direction, ray.tMax = s.distance;
 }

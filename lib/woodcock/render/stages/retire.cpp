@@ -2,13 +2,15 @@
 #include "woodcock/render/stages/retire.h"
 
 #include <cmath>
+#include <span>
 
 namespace woodcock::render {
 
 namespace {
 
 /// Approximations::clamp.
-void clampRadiance(double clamp, image::FilmSample& sample, RenderCounters& counters) {
+void clampRadiance(double clamp, image::FilmSample& sample, std::span<Rgb> parts,
+                   RenderCounters& counters) {
     const auto most = static_cast<float>(clamp);
     const float brightest = sample.radiance.maximum();
     if (!(most > 0 && brightest > most)) return;
@@ -16,6 +18,7 @@ void clampRadiance(double clamp, image::FilmSample& sample, RenderCounters& coun
     if (!std::isfinite(brightest)) return;  // the film counts it
     sample.radiance *= most / brightest;
     sample.background *= most / brightest;
+    for (Rgb& part : parts) part *= most / brightest;
 }
 
 template <int N, bool Surfaces>
@@ -39,7 +42,8 @@ void retire(const TracedScene& traced, Batch<N, Surfaces>& batch) {
             continue;
         }
         handIn(p);
-        clampRadiance(traced.options.approximations.clamp, p.result->film, batch.counters);
+        clampRadiance(traced.options.approximations.clamp, p.result->film,
+                      batch.layers.partsOf(*p.result), batch.counters);
         if (&p != &batch.paths.back()) p = batch.paths.back();  // the order does not matter
         batch.paths.pop_back();
     }

@@ -52,7 +52,9 @@ void escape(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, S
         const Rgb arrived = toRgb(p.throughput) * radiance * tint(p) *
                             static_cast<float>(hitWeight(
                                 p, [&] { return batch.choice.pdf(light, p.from, p.direction); }));
-        p.radiance += arrived;
+        image::LightKind kind = kindOfLight(p, 0);
+        if (kind == image::LightKind::Emission) kind = image::LightKind::Background;
+        bring(batch, p, arrived, kind, traced.scene.lights.group(light));
         if (seen(p)) p.result->film.background += arrived;
     }
 }

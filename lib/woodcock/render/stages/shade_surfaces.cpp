@@ -48,7 +48,9 @@ void addEmission(const TracedScene& traced, Batch<N, true>& batch, Path<N>& p,
         return light->pdf(p.from.position, emitter, hit.position) *
                batch.choice.probability(traced.scene.lights.meshIndex(), p.from);
     };
-    p.radiance += toRgb(p.throughput) * tint(p) * radiance * static_cast<float>(hitWeight(p, pdf));
+    bring(batch, p,
+          toRgb(p.throughput) * tint(p) * radiance * static_cast<float>(hitWeight(p, pdf)),
+          kindOfLight(p, 0), traced.surfaces->object(hit).lightGroup);
 }
 
 /// Next-event estimation at a surface.
@@ -73,6 +75,7 @@ void lightSurface(const TracedScene& traced, Batch<N, true>& batch, std::size_t 
     if (!addShadowRay(traced, batch, i, hit.position, l.direction, l.distance,
                       f * l.weight * static_cast<float>(weight), true))
         return;
+    noteOrigin(batch, traced.scene.lights.group(chosen->light, l.emitter), 1);
     ShadowRay<true>& ray = batch.shadows.back();
     ray.emitter = l.emitter;
     if (dot(out, hit.normal) * dot(l.direction, hit.normal) < 0) ray.start.inside = crossing.beyond;
@@ -109,6 +112,7 @@ void bounce(const TracedScene& traced, Batch<N, true>& batch, std::size_t i,
     const Vec3d out = -p.direction;
     const EventNumbers u = drawNumbers(p);
     const bool caught = s.seen && p.result->catcher.weight > 0;
+    s.surfaceFirst |= s.seen;
     s.seen = false;
     s.way.goOnFromHit(crossing.near);
     p.mediumSet = traced.media.setAfter(p.scatterings);

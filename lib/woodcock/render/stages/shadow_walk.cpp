@@ -2,6 +2,7 @@
 #include "woodcock/render/stages/shadow_walk.h"
 
 #include "woodcock/render/stages/inner_loops.h"
+#include "woodcock/render/stages/light.h"
 
 namespace woodcock::render {
 
@@ -122,7 +123,7 @@ void arrive(Batch<N, Surfaces>& batch) {
         if (!(arrived.maximum() > 0)) continue;
         if (const ShadowRay<Surfaces>& ray = batch.shadows[i]; !ray.secondLeg) {
             PathState<N, Surfaces>& p = batch.paths[ray.path];
-            (ray.inFront ? p.result->film.radiance : p.radiance) += ray.colour * toRgb(arrived);
+            bring(batch, p, ray.colour * toRgb(arrived), ray.kind, ray.group, ray.inFront);
             continue;
         }
         ShadowRay<Surfaces> s = batch.shadows[i];

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/stages/spawn.h"
 
+#include <algorithm>
+
 #include "woodcock/render/stages/camera_layers.h"
 #include "woodcock/render/stages/event_numbers.h"
+#include "woodcock/render/stages/exact_depths.h"
 #include "woodcock/render/stages/light.h"
 
 namespace woodcock::render {
@@ -31,7 +34,9 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     ++batch.counters.paths;
     if constexpr (Surfaces)
         p.surfaces.way = BoundaryWalk(traced.startOf(p.origin, p.direction, p.time));
-    if (options.depthLayers || options.featureLayers) sampleCameraLayers(traced, p);
+    std::ranges::fill(batch.layers.partsOf(result), Rgb());
+    if (options.layers.depthSamples()) sampleCameraLayers(traced, p, batch.layers.placeOf(result));
+    if (options.layers.stops) batch.layers.stopsOf(result) = findExactDepths(traced, p);
     addLightHits(traced, batch, i, nullptr);
     if (traced.needs.emission) p.equiangular = u[3];
     if (traced.needs.localLights) {

@@ -111,9 +111,24 @@ const KeyTable<Environment>& keysOf() {
     return table;
 }
 
+template <>
+const KeyTable<LightDescription>& keysOf() {
+    static const KeyTable<LightDescription> table{
+        .id = "light",
+        .keys = {key(
+            {.name = "group", .doc = "the light group that it counts to; see \"Light groups\""},
+            &LightDescription::group, groupName())},
+        .outer = outerOfLight + "type = \"environment\"\n",
+        .path = "light[0]"};
+    return table;
+}
+
 LightDescription readLight(const TomlTable& table, const std::filesystem::path& base) {
     LightDescription light;
-    readTagged(table, "light type", light.light, base);
+    std::vector<std::string> ofAllTypes;
+    addNames(light, ofAllTypes);
+    readTagged(table, "light type", light.light, base, ofAllTypes);
+    readAllowed(table, light, base);
     return light;
 }
 

@@ -196,7 +196,10 @@ const KeyTable<Emissive>& keysOf() {
         .keys = {key({.name = "radiance", .doc = "what it emits", .always = true},
                      &Emissive::radiance, texture(notNegative)),
                  key({.name = "both_sides", .doc = "`false`: it emits on the outside alone"},
-                     &Emissive::bothSides, flag())},
+                     &Emissive::bothSides, flag()),
+                 key({.name = "group",
+                      .doc = "the light group that it counts to; see \"Light groups\""},
+                     &Emissive::group, groupName())},
         .outer = outerOfMaterial,
         .path = "material[0]"};
     return table;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/image/image_format.h"
-#include "woodcock/image/write_exr.h"
+#include "woodcock/image/layers.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
 
@@ -10,12 +10,18 @@ namespace {
 using O = OutputDescription;
 using Base = const std::filesystem::path&;
 
-std::filesystem::path readFile(const TomlValue& value, Base base) {
+/// What `action` finds wrong with a value is said with its place.
+template <class Action>
+void check(const TomlValue& value, Action action) {
     try {
-        image::imageFormat(value.text());
+        action();
     } catch (const Error& e) {
         throw inputError("{}: {}: {}", value.place(), value.name(), e.what());
     }
+}
+
+std::filesystem::path readFile(const TomlValue& value, Base base) {
+    check(value, [&] { image::imageFormat(value.text()); });
     return value.path(base);
 }
 
@@ -36,19 +42,21 @@ Value<std::vector<std::filesystem::path>> files() {
 }
 
 std::vector<std::string> readLayers(const TomlValue& value, Base) {
-    const std::vector<std::string> known = image::layerNames();
+    if (value.isText()) {
+        check(value, [&] { image::parseLayerNames({value.text()}); });
+        return {value.text()};
+    }
     std::vector<std::string> layers;
     for (const TomlValue& element : value.elements("a list of layers, such as [\"depth\"]")) {
-        const std::string& layer = known[element.choice("layer", known)];
-        if (std::find(layers.begin(), layers.end(), layer) != layers.end())
-            throw element.error("repeats the layer '{}'", layer);
-        layers.push_back(layer);
+        layers.push_back(element.text());
+        check(element, [&] { image::parseLayerName(layers.back()); });
     }
+    check(value, [&] { image::parseLayerNames(layers); });
     return layers;
 }
 
 Value<std::vector<std::string>> layers() {
-    return {"list",
+    return {"list, or a word",
             {"[\"depth\", \"error\"]"},
             readLayers,
             [](const std::vector<std::string>& all, const SceneWriter&) {
@@ -68,15 +76,15 @@ std::vector<Key<O>> outputKeys() {
              .fallback = "none"},
             &O::files, files()),
         key({.name = "layers",
-             .doc = "of the EXR: `\"depth\"` (channel `Z`: mean distance to what a camera ray "
-                    "meets, 1e10 where it meets nothing), `\"albedo\"` and `\"normal\"` (means "
-                    "over camera rays of what they meet first, see \"Layers for denoisers\"), "
-                    "`\"transmittance\"`, `\"samples\"`, `\"error\"` (standard error, see "
-                    "\"Errors\") and `\"variance\"` (its square)",
+             .doc = "of the EXR beside R, G, B and A: see \"Layers\"",
              .fallback = "none"},
             &O::layers, layers()),
-        key({.name = "half", .doc = "the colour of EXR files is in half precision"}, &O::half,
-            flag()),
+        key({.name = "half",
+             .doc = "the colour of EXR files, and layers that half precision does not harm, are in "
+                    "half precision"},
+            &O::half, flag()),
+        key({.name = "multipart", .doc = "each layer of EXR files is a part of its own"},
+            &O::multipart, flag()),
         key({.name = "display", .doc = "OpenColorIO name, for pictures", .fallback = own},
             &O::display, text()),
         key({.name = "view", .doc = "OpenColorIO name, for pictures", .fallback = own}, &O::view,

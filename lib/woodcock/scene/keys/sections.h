@@ -46,6 +46,8 @@ const KeyTable<TablePhase>& keysOf();
 Value<PhaseDescription> phaseFunction();
 
 template <>
+const KeyTable<LightDescription>& keysOf();  ///< those that all types have
+template <>
 const KeyTable<SunDescription>& keysOf();
 template <>
 const KeyTable<PointDescription>& keysOf();

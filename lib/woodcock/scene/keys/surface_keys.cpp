@@ -220,6 +220,10 @@ std::vector<Key<I>> interiorKeys() {
              .doc = "radiance per world unit. Within glass of index n it looks n^2 times darker "
                     "from outside"},
             &I::emission, colour(notNegative)),
+        key({.name = "group",
+             .doc = "the light group that `emission` counts to; see \"Light groups\"",
+             .beside = "emission = 1"},
+            &I::group, groupName()),
     };
 }
 
@@ -246,6 +250,8 @@ void checkInterior(const TomlTable& table, I& interior) {
     const auto colour = table.find("colour"), distance = table.find("distance");
     if (distance && !colour)
         throw distance->error("needs a colour beside it: what light becomes over that distance");
+    if (const auto group = table.find("group"); group && !table.has("emission"))
+        throw group->error("is for emission; give emission, or leave it out");
     if (table.keys().empty() ||
         ((table.has("g") || table.has("phase")) && table.keys().size() == 1))
         throw table.error(

@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "woodcock/base/printable.h"
+#include "woodcock/image/light_parts.h"
+
 namespace woodcock::scene {
 namespace {
 
@@ -65,6 +68,18 @@ Value<std::string> text() {
     return {"text",
             {"\"a \\\"b\\\"\"", "\"c\""},
             [](const TomlValue& v, Base) { return v.text(); },
+            [](const std::string& v, const SceneWriter&) { return tomlText(v); }};
+}
+
+Value<std::string> groupName() {
+    return {"text",
+            {"\"key\"", "\"fire-2\""},
+            [](const TomlValue& v, Base) {
+                const std::string name = v.text();
+                if (const std::string flaw = image::flawOfGroupName(name); !flaw.empty())
+                    throw v.error("is '{}', which {}", shown(name, 60), flaw);
+                return name;
+            },
             [](const std::string& v, const SceneWriter&) { return tomlText(v); }};
 }
 

@@ -21,6 +21,8 @@ Value<double> number(NumberRange range = {});
 Value<int> integer(int lower, int upper = largestCount);
 Value<bool> flag();
 Value<std::string> text();
+/// The name of a light group.
+Value<std::string> groupName();
 Value<std::filesystem::path> path();
 Value<Vec3d> vector();
 Value<Rgb> colour(NumberRange range);

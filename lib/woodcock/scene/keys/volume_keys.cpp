@@ -163,24 +163,27 @@ std::vector<Key<V>> coefficientKeys() {
                         &V::file, path()),
                     boxOfVolume()},
         sequenceKeys(), densityKeys(),
-        std::vector{absorption(),
-                    separateKey("sigma_s", "the same for scattering", &Separate::sigmaS),
-                    boxCoefficient("sigma_a", &Homogeneous::sigmaA),
-                    boxCoefficient("sigma_s", &Homogeneous::sigmaS),
-                    uncommentedForGrids(
-                        key({.name = "emission",
-                             .doc = "radiance per world unit of length. A colour multiplies the "
-                                    "density grid. The volume need not absorb",
-                             .comment = "x density, radiance per unit"},
-                            &V::emission, gridCoefficient()),
-                        "radiance per unit"),
-                    key({.name = "blackbody",
-                         .doc = "fire, see below",
-                         .type = "`{ temperature = \"name\", scale = 1, offset = 0, intensity = 1, "
-                                 "colour = 1 }`",
-                         .comment = "scale and offset make kelvins",
-                         .example = "{ scale = 700 }"},
-                        &V::blackbody, nested<BlackbodyDescription>())});
+        std::vector{
+            absorption(), separateKey("sigma_s", "the same for scattering", &Separate::sigmaS),
+            boxCoefficient("sigma_a", &Homogeneous::sigmaA),
+            boxCoefficient("sigma_s", &Homogeneous::sigmaS),
+            uncommentedForGrids(
+                key({.name = "emission",
+                     .doc = "radiance per world unit of length. A colour multiplies the "
+                            "density grid. The volume need not absorb",
+                     .comment = "x density, radiance per unit"},
+                    &V::emission, gridCoefficient()),
+                "radiance per unit"),
+            key({.name = "blackbody",
+                 .doc = "fire, see below",
+                 .type = "`{ temperature = \"name\", scale = 1, offset = 0, intensity = 1, "
+                         "colour = 1 }`",
+                 .comment = "scale and offset make kelvins",
+                 .example = "{ scale = 700 }"},
+                &V::blackbody, nested<BlackbodyDescription>()),
+            key({.name = "group",
+                 .doc = "the light group that its emission counts to; see \"Light groups\""},
+                &V::group, groupName())});
 }
 
 std::vector<Key<V>> velocityKeys() {
@@ -259,10 +262,9 @@ std::vector<Key<V>> volumeKeys() {
 }
 
 void checkBox(const TomlTable& table, V& volume, Homogeneous& box) {
-    for (const char* key :
-         {"density", "albedo_grid", "blackbody", "velocity", "velocity_scale", "velocity_unit",
-          "velocity_sampling", "storage", "background", "repair", "frame_start", "offset",
-          "outside", "missing"})
+    for (const char* key : {"density", "albedo_grid", "blackbody", "velocity", "velocity_scale",
+                            "velocity_unit", "velocity_sampling", "storage", "background", "repair",
+                            "frame_start", "offset", "outside", "missing"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
     if (const auto v = table.find("emission"); v && !volume.emission->grid.empty())
