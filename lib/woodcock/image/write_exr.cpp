@@ -87,6 +87,16 @@ std::vector<ChannelGroup> channelGroups(const Film& film, const ExrSettings& set
     return groups;
 }
 
+/// In float, whatever the colour is in: ids are bits.
+void addMattes(const MatteFilm& mattes, const Film& film, std::vector<ChannelGroup>& groups) {
+    for (std::size_t layer = 0; layer < mattes.layers().size(); ++layer)
+        groups.push_back(
+            {matteChannels(mattes.layers()[layer]), PixelType::Float,
+             [&mattes, &film, layer](int x, int y, float* to) {
+                 mattes.ranks(layer, x, y, film.at(x, y).samples, {to, 2 * matteRanks});
+             }});
+}
+
 ImageHeader header(const Film& film, const RenderMetadata& metadata, const ExrSettings& settings,
                    const std::vector<ChannelGroup>& groups) {
     ImageHeader h{"openexr", film.crop(), film.width(), film.height(), {}, {}};
@@ -152,9 +162,13 @@ double exrBytesPerPixel(const ExrSettings& settings) {
 }
 
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings, const FilmState* state) {
-    const std::vector<ChannelGroup> groups = channelGroups(film, settings);
-    const ImageHeader h = header(film, metadata, settings, groups);
+              const ExrSettings& settings, const FilmState* state, const MatteFilm* mattes) {
+    std::vector<ChannelGroup> groups = channelGroups(film, settings);
+    if (mattes) addMattes(*mattes, film, groups);
+    ImageHeader h = header(film, metadata, settings, groups);
+    if (mattes)
+        for (const MatteLayer& layer : mattes->layers())
+            for (auto& [name, text] : matteAttributes(layer)) h.attributes.emplace_back(name, text);
     const Film::Window crop = film.crop();
     std::vector<float> pixels(static_cast<std::size_t>(crop.width()) *
                               static_cast<std::size_t>(crop.height()) * h.channels.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "woodcock/medium/phase.h"
+#include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/roulette.h"
 
 namespace woodcock::render {
@@ -62,8 +63,10 @@ void addLightHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
         bool lightSampled = false;
         if constexpr (Surfaces)
             lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;
-        addShadowRay(traced, batch, i, p.origin, p.direction, hit.distance,
-                     hit.radiance * static_cast<float>(weight), lightSampled);
+        if (addShadowRay(traced, batch, i, p.origin, p.direction, hit.distance,
+                         hit.radiance * static_cast<float>(weight), lightSampled) &&
+            !share)
+            noteOnCameraRay(traced, batch, hit.distance, true);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "woodcock/render/stages/camera_stops.h"
+
 namespace woodcock::render {
 
 namespace {
@@ -40,6 +42,7 @@ void retire(const TracedScene& traced, Batch<N, Surfaces>& batch) {
         }
         handIn(p);
         clampRadiance(traced.options.approximations.clamp, p.result->film, batch.counters);
+        if (traced.options.stoppedLight) completeStops(*p.result);
         if (&p != &batch.paths.back()) p = batch.paths.back();  // the order does not matter
         batch.paths.pop_back();
     }

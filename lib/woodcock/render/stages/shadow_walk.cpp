@@ -122,7 +122,10 @@ void arrive(Batch<N, Surfaces>& batch) {
         if (!(arrived.maximum() > 0)) continue;
         if (const ShadowRay<Surfaces>& ray = batch.shadows[i]; !ray.secondLeg) {
             PathState<N, Surfaces>& p = batch.paths[ray.path];
-            (ray.inFront ? p.result->film.radiance : p.radiance) += ray.colour * toRgb(arrived);
+            const Rgb light = ray.colour * toRgb(arrived);
+            (ray.inFront ? p.result->film.radiance : p.radiance) += light;
+            if (ray.cameraDepth >= 0)
+                p.result->stopped->arrivals.push_back({ray.cameraDepth, light, ray.fromLamp});
             continue;
         }
         ShadowRay<Surfaces> s = batch.shadows[i];

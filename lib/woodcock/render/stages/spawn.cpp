@@ -31,6 +31,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     ++batch.counters.paths;
     if constexpr (Surfaces)
         p.surfaces.way = BoundaryWalk(traced.startOf(p.origin, p.direction, p.time));
+    if (options.stoppedLight) result.stopped = std::make_unique<image::StoppedLight>();
     if (options.depthLayers || options.featureLayers) sampleCameraLayers(traced, p);
     addLightHits(traced, batch, i, nullptr);
     if (traced.needs.emission) p.equiangular = u[3];

@@ -157,7 +157,13 @@ std::vector<Key<V>> sequenceKeys() {
 
 std::vector<Key<V>> coefficientKeys() {
     return joined(
-        std::vector{key({.name = "file",
+        std::vector{key({.name = "name",
+                         .doc = "for mattes, see \"Mattes\"",
+                         .fallback = "that of the file, without its extension and the frame's "
+                                     "number",
+                         .inDigest = false},
+                        &V::name, text()),
+                    key({.name = "file",
                          .doc = "an OpenVDB or NanoVDB file",
                          .fallback = "that or `box` must be given"},
                         &V::file, path()),
@@ -259,10 +265,9 @@ std::vector<Key<V>> volumeKeys() {
 }
 
 void checkBox(const TomlTable& table, V& volume, Homogeneous& box) {
-    for (const char* key :
-         {"density", "albedo_grid", "blackbody", "velocity", "velocity_scale", "velocity_unit",
-          "velocity_sampling", "storage", "background", "repair", "frame_start", "offset",
-          "outside", "missing"})
+    for (const char* key : {"density", "albedo_grid", "blackbody", "velocity", "velocity_scale",
+                            "velocity_unit", "velocity_sampling", "storage", "background", "repair",
+                            "frame_start", "offset", "outside", "missing"})
         if (const auto v = table.find(key))
             throw v->error("needs a file: a box holds constant coefficients and no grids");
     if (const auto v = table.find("emission"); v && !volume.emission->grid.empty())
