@@ -211,6 +211,35 @@ TEST(Deep, DepthIsAlongTheCamerasAxis) {
         }
 }
 
+TEST(Deep, DepthIsFromWhereAMovingCameraIs) {
+    const RenderResult r =
+        deepOf("[[surface]]\nbox = { min = [-50, -50, -1], max = [50, 50, 0] }\n" + sky +
+                   "[camera]\neye = { keys = [[0, [0, 0, 10]], [1, [0, 0, 12]]], interpolation = "
+                   "\"linear\" }\nlook_at = [0, 0, 0]\nfov = 90\nshutter = [0, 1]\n",
+               64);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            const auto samples = r.deep->samples(x, y, r.film);
+            double alpha = 0;
+            for (const DeepSample& s : samples) {
+                EXPECT_GE(s.near, 10 - 1e-5);
+                EXPECT_LE(s.far, 12 + 1e-5);
+                alpha += (1 - alpha) * s.alpha;
+            }
+            EXPECT_NEAR(alpha, 1, 1e-6);
+        }
+    expectFlattened(r);
+}
+
+// A medium that moves through the picture: its bins are chosen in the middle of the shutter.
+TEST(Deep, FlattenedMotionIsThePicture) {
+    expectFlattened(deepOf(
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_a = 0.5\nsigma_s = 0.5\n"
+        "transform = { translate = { keys = [[0, [-1, 0, -2]], [1, [1, 0, 2]]], interpolation = "
+        "\"linear\" } }\n" +
+        hidden + "[camera]\neye = [0, 0, 10]\nlook_at = [0, 0, 0]\nfov = 40\nshutter = [0, 1]\n"));
+}
+
 TEST(Deep, EndlessMediaAndCamerasInsideAreFinite) {
     const TempDir dir;
     GridSpec grid = lumps();

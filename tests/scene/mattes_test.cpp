@@ -38,6 +38,14 @@ TEST(MatteNames, LeftOpenAreChosenAndTold) {
                          "surface[0].name = \"sphere_2\""}));
 }
 
+TEST(MatteNames, OfSequencesLeaveThePatternOut) {
+    for (const char* file : {"shots/fire_####.vdb", "fire.%04d.vdb", "fire$F4.vdb",
+                             "shots.$F/fire_$F.vdb", "fire-<frame04>.vdb"})
+        EXPECT_EQ(layersOf(fmt::format("[[volume]]\nfile = \"{}\"\n", file))[0].names,
+                  std::vector<std::string>{"fire"})
+            << file;
+}
+
 TEST(MatteNames, TakenAreRefused) {
     const std::string twice =
         "[[volume]]\nname = \"a\"\nfile = \"b.vdb\"\n\n[[volume]]\nname = \"a\"\n"

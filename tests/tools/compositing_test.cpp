@@ -178,6 +178,48 @@ TEST_F(Compositing, OutputsThatCannotHoldThemAreRefused) {
                   "has to be an EXR file", 3);
 }
 
+TEST_F(Compositing, SumsThatAreNotKeptAreRefused) {
+    const Words keeping[] = {{"--samples", "0:8"},
+                             {"--tile", "0/2"},
+                             {"--mergeable"},
+                             {"--checkpoint", "60s"},
+                             {"--resume"}};
+    for (const Words& option : keeping)
+        for (const Words& asked : {Words{"--mattes", "object"}, Words{"--deep", file("d.exr")}}) {
+            Words all{"-o", file("a.exr")};
+            all.insert(all.end(), option.begin(), option.end());
+            all.insert(all.end(), asked.begin(), asked.end());
+            expectRefused(medium, all,
+                          option.front() +
+                              " keeps the sums of a picture, and those of mattes and "
+                              "deep pixels are not kept yet");
+        }
+}
+
+TEST_F(Compositing, EachFrameHasItsFiles) {
+    const Words asked{"-o",       file("a.##.exr"), "--deep",        file("d.##.exr"),
+                      "--mattes", "object",         "--mattes-file", file("m.##.exr"),
+                      "--set",    "render.spp=1",   "--frames",      "1-2"};
+    ASSERT_EQ(render(medium, asked).exitCode, 0);
+    for (const char* name : {"a", "d", "m"})
+        for (const char* frame : {"01", "02"})
+            EXPECT_TRUE(fs::exists(dir / fmt::format("{}.{}.exr", name, frame))) << name << frame;
+    fs::remove(dir / "d.02.exr");
+    Words again = asked;
+    again.push_back("--skip-existing");
+    ASSERT_EQ(render(medium, again).exitCode, 0);
+    EXPECT_TRUE(fs::exists(dir / "d.02.exr"));
+}
+
+TEST_F(Compositing, FilesOfFramesNeedAPlaceForTheNumber) {
+    expectRefused(medium, {"-o", file("a.##.exr"), "--deep", file("d.exr"), "--frames", "1-2"},
+                  "--deep");
+    expectRefused(medium,
+                  {"-o", file("a.##.exr"), "--mattes", "object", "--mattes-file", file("m.exr"),
+                   "--frames", "1-2"},
+                  "--mattes-file");
+}
+
 TEST_F(Compositing, BiasedQualitiesAreRefused) {
     expectRefused(medium, {"--deep", file("d.exr"), "--quality", "draft"},
                   "deep pixels need the true media on camera rays");
