@@ -24,7 +24,8 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
 pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 # Sums are kept in EXR files by OpenEXR itself: OpenImageIO writes files of several parts to names
-# alone, and reports no full disk. It brings OpenEXR along.
+# alone, and reports no full disk. Version 2.4 cannot say that the samples of deep pixels are in
+# order either. The hash of Cryptomatte is OpenEXR's too. OpenImageIO brings it along.
 find_package(OpenEXR 3.1 CONFIG QUIET REQUIRED)
 
 find_package(TBB 2021 REQUIRED COMPONENTS tbb)

@@ -46,7 +46,8 @@ const std::map<std::string, std::set<std::string>> roomsOfLibrary{
     {"embree3", {"surface"}},
     {"embree4", {"surface"}},
     {"OpenImageIO", {"image", "proof"}},
-    {"OpenColorIO", {"image"}}};
+    {"OpenColorIO", {"image"}},
+    {"OpenEXR", {"image"}}};
 /// What is installed, and what it is made of: it stands before the rooms, and may know them all.
 bool isPublicDoor(const fs::path& file) {
     return file == "error.h" || file == "woodcock.h" || file == "woodcock.cpp";

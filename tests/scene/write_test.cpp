@@ -130,7 +130,18 @@ SceneDescription fullScene() {
                     .timeLimit = 1.5,
                     .noise = 0.01,
                     .majorantScale = 2.5};
-    scene.output = {{"a.exr", "b.png"}, {"error", "depth"}, true, "d", "v\\w", "l\n", -0.5};
+    scene.output = {.files = {"a.exr", "b.png"},
+                    .layers = {"error", "depth"},
+                    .mattes = {"material"},
+                    .mattesFile = "m.exr",
+                    .deep = "deep.exr",
+                    .deepError = 0.02,
+                    .half = true,
+                    .multipart = true,
+                    .display = "d",
+                    .view = "v\\w",
+                    .look = "l\n",
+                    .exposure = -0.5};
     return scene;
 }
 

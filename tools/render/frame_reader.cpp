@@ -59,11 +59,18 @@ std::vector<int> FramePlan::failed() const {
     return frames;
 }
 
+std::vector<std::filesystem::path> imagesOf(const scene::OutputDescription& output) {
+    std::vector<std::filesystem::path> files = output.files;
+    for (const std::filesystem::path& file : {output.mattesFile, output.deep})
+        if (!file.empty()) files.push_back(file);
+    return files;
+}
+
 FramePlan planFrames(const std::vector<int>& frames, FrameReader& reader, bool skipExisting) {
     FramePlan plan;
     for (const int frame : frames) {
         try {
-            const std::vector<std::filesystem::path> written = reader.at(frame).output.files;
+            const std::vector<std::filesystem::path> written = imagesOf(reader.at(frame).output);
             const bool skip = skipExisting && allExist(written);
             (skip ? plan.skipped : plan.drawn).push_back(frame);
         } catch (const Error& error) {

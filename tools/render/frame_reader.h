@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <optional>
@@ -13,6 +14,9 @@
 #include "woodcock/scene/load.h"
 
 namespace woodcock::tool {
+
+/// All files that a picture goes into.
+std::vector<std::filesystem::path> imagesOf(const scene::OutputDescription& output);
 
 /// What a frame is drawn from.
 struct LoadedFrame {

@@ -9,6 +9,7 @@
 #include "tools/common/output_folders.h"
 #include "tools/common/scene_input.h"
 #include "woodcock/base/nearest_name.h"
+#include "woodcock/image/cryptomatte.h"
 #include "woodcock/image/layers.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/quality.h"
@@ -30,6 +31,24 @@ void addOutput(CLI::App& command, RenderOptions& o) {
                     joinNames(image::layerNames()))
             ->delimiter(',')
             ->type_name("LAYER,..."),
+        addList(command, "--mattes", o.mattes,
+                "Cryptomatte in EXR files, by " + joinNames(image::matteKinds()))
+            ->delimiter(',')
+            ->type_name("KIND,..."),
+        command
+            .add_option("--mattes-file", o.mattesFile,
+                        "Write the mattes into an EXR file of their own")
+            ->type_name("FILE"),
+        command
+            .add_option("--deep", o.deep,
+                        "Write deep pixels into this EXR file: the picture by depth, for merging "
+                        "with other pictures")
+            ->type_name("FILE"),
+        addParsed(
+            command, "--deep-error", o.deepError,
+            [](const std::string& text) { return parseNumber(text, 1e-4, 0.5); },
+            "How far the transmittance of deep pixels may be off at any depth (0.01)")
+            ->type_name("NUMBER"),
         command.add_flag("--half", o.half,
                          "Write the colour of EXR files, and layers that it does not harm, in half "
                          "precision"),
@@ -211,6 +230,12 @@ void exclude(bool first, bool second, const char* names) {
     if (first && second) throw usageError("{} contradict each other; give one of them", names);
 }
 
+void refuseRepeated(const char* option, const std::vector<std::string>& words) {
+    for (auto word = words.begin(); word != words.end(); ++word)
+        if (std::find(words.begin(), word, *word) != word)
+            throw usageError("{} names '{}' twice", option, *word);
+}
+
 }  // namespace
 
 void RenderOptions::addTo(CLI::App& command) {
@@ -283,6 +308,7 @@ void RenderOptions::check() const {
                 "--frames: --write-scene saves one scene for all frames; leave it out");
     }
     scene::inPlace("--layers", [&] { image::parseLayerNames(layers); });
+    refuseRepeated("--mattes", mattes);
     if ((checkpoint || resume) && !rendersImages())
         throw usageError(
             "{} is for a render, but --write-scene only saves the scene where no -o names an image",
@@ -299,6 +325,7 @@ void RenderOptions::checkFor(const std::vector<std::filesystem::path>& files) co
     const bool picture = !std::all_of(files.begin(), files.end(), isExrFile);
     constexpr const char* pictures = "PNG, JPEG, TIFF and WebP";
     demandFile(!layers.empty(), "--layers", "EXR", exr);
+    demandFile(!mattes.empty() && mattesFile.empty(), "--mattes", "EXR", exr);
     demandFile(half, "--half", "EXR", exr);
     demandFile(mergeable, "--mergeable", "EXR", exr);
     demandFile(multipart, "--multipart", "EXR", exr);

@@ -46,7 +46,9 @@ struct RenderOptions {
     std::optional<std::string> display, view, look;
     std::optional<double> exposure;
     std::filesystem::path ocio;
-    std::vector<std::string> layers;
+    std::vector<std::string> layers, mattes;
+    std::filesystem::path mattesFile, deep;
+    std::optional<double> deepError;
     bool half = false, multipart = false, mkdir = false;
 
     ReportOptions reports;

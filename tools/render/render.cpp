@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -46,6 +47,7 @@
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/light_groups.h"
+#include "woodcock/scene/mattes.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
@@ -75,6 +77,16 @@ scene::SceneDescription describeScene(const RenderOptions& options, std::optiona
                       [](const auto& place) { return place.first.starts_with("output.files"); });
     }
     if (!options.layers.empty()) output.layers = options.layers;
+    if (!options.mattes.empty()) output.mattes = options.mattes;
+    const auto replaceFile = [&](std::filesystem::path& file, const std::filesystem::path& option,
+                                 const char* name) {
+        if (option.empty()) return;
+        file = option;
+        scene.places["output." + scene::keyName(output, file)] = name;
+    };
+    replaceFile(output.mattesFile, options.mattesFile, "--mattes-file");
+    replaceFile(output.deep, options.deep, "--deep");
+    output.deepError = options.deepError.value_or(output.deepError);
     output.half |= options.half;
     output.multipart |= options.multipart;
     const auto replaceName = [&](std::string& name, const auto& option) {
@@ -103,7 +115,7 @@ bool isStdout(const std::filesystem::path& file) { return file == "-"; }
 /// `scene` is that of a frame, or of no sequence.
 void checkFiles(const scene::SceneDescription& scene, const RenderOptions& options) {
     std::vector<std::filesystem::path> written;
-    if (options.rendersImages()) written = scene.output.files;
+    if (options.rendersImages()) written = imagesOf(scene.output);
     for (const std::filesystem::path& file : {options.stats, options.writeScene})
         if (!isStdout(file)) written.push_back(file);
     if (options.keepsCheckpoint()) written.push_back(checkpointFile(scene.output.files));
@@ -137,6 +149,30 @@ void prepareCheckpoint(const std::vector<std::filesystem::path>& files,
     scene::inPlace(option, [&] { checkWritable(file); });
 }
 
+/// Those of a scene file are known words.
+std::vector<image::MatteLayer> mattesOf(const scene::SceneDescription& scene,
+                                        std::vector<std::string>* notes = nullptr) {
+    return scene::matteLayers(scene, scene.output.mattes, notes);
+}
+
+/// Where `file`, a member of scene.output, was named.
+std::string placeOfLayerFile(const scene::SceneDescription& scene,
+                             const std::filesystem::path& file) {
+    return scene::findPlace(scene.places, "output." + scene::keyName(scene.output, file));
+}
+
+/// Prepares a file for layers: an EXR of its own.
+void prepareLayerFile(const scene::SceneDescription& scene, const std::filesystem::path& file,
+                      bool mkdir) {
+    if (file.empty()) return;
+    const std::string place = placeOfLayerFile(scene, file);
+    scene::inPlace(place, [&] {
+        if (image::imageFormat(file) != image::ImageFormat::Exr)
+            throw usageError("'{}' has to be an EXR file (.exr)", file.string());
+    });
+    prepareOutput(file, mkdir, place);
+}
+
 image::Outputs prepareOutputs(const scene::SceneDescription& scene, const RenderOptions& options) {
     if (options.frames.empty() || !namesFrame(options.stats.string()))
         prepareOutput(options.stats, options.mkdir, "--stats");
@@ -153,6 +189,14 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
             scene::findPlace(scene.places, fmt::format("output.files[{}]", i));
         scene::inPlace(place, [&] { image::imageFormat(settings.files[i]); });
         prepareOutput(settings.files[i], options.mkdir, place);
+    }
+    if (options.rendersImages()) {
+        prepareLayerFile(scene, scene.output.mattesFile, options.mkdir);
+        prepareLayerFile(scene, scene.output.deep, options.mkdir);
+        settings.matteFile = scene.output.mattesFile;
+        settings.deepFile = scene.output.deep;
+        settings.matteLayers = scene.output.mattes.size();
+        refuseOverwriting(imagesOf(scene.output), settings.colour.files());
     }
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
@@ -177,7 +221,8 @@ double filmBytesPerPixel(const render::RenderSettings& settings,
                                               .places = settings.layers.places,
                                               .stops = settings.layers.stops,
                                               .parts = settings.layers.parts})) +
-           double(sizeof(std::uint32_t)) + (settings.adaptive ? 5 * double(sizeof(double)) : 0);
+           image::MatteFilm::bytesPerPixel(settings.mattes) + double(sizeof(std::uint32_t)) +
+           (settings.adaptive ? 5 * double(sizeof(double)) : 0);
 }
 
 /// Throws where the image's sums cannot be held, or not written in the end: `writing` are the bytes
@@ -224,6 +269,45 @@ image::Film::Window pictureOf(const scene::RenderDescription& render,
     return {p.x0, p.y0, p.x1, p.y1};
 }
 
+/// The option by which sums are kept.
+const char* keepingOption(const RenderOptions& options) {
+    if (options.resume) return "--resume";
+    if (options.checkpoint) return "--checkpoint";
+    if (options.tile) return "--tile";
+    return options.samples ? "--samples" : "--mergeable";
+}
+
+/// Refuses mattes and deep pixels that could not be right, or would go nowhere.
+void checkCompositing(const scene::SceneDescription& scene, const RenderOptions& options) {
+    const scene::OutputDescription& output = scene.output;
+    if (output.mattes.empty() && !output.mattesFile.empty())
+        throw usageError("{} is for mattes, and none are asked for; give --mattes object",
+                         output.mattesFile.string());
+    if (output.deep.empty() && options.deepError)
+        throw usageError("--deep-error is for deep pixels; give --deep FILE.exr, too");
+    const bool exr = std::any_of(output.files.begin(), output.files.end(), [](const auto& file) {
+        return image::imageFormat(file) == image::ImageFormat::Exr;
+    });
+    if (!output.mattes.empty() && output.mattesFile.empty() && !exr)
+        throw usageError(
+            "mattes need an EXR file, and no output is one; give --mattes-file, or -o "
+            "of an .exr");
+    if (output.mattes.empty() && output.deep.empty()) return;
+    if (options.keepsSums() || options.keepsCheckpoint())
+        throw usageError(
+            "{} keeps the sums of a picture, and those of mattes and deep pixels are not kept yet. "
+            "Render these in one piece, without {}",
+            keepingOption(options), keepingOption(options));
+    if (options.choosesQuality())
+        throw usageError(
+            "--quality auto may choose what mattes and deep pixels cannot have; give --quality "
+            "final");
+    const bool deep = !output.deep.empty();
+    if (const std::string flaw = render::compositingFlaw(scene.render.approximations, deep);
+        !flaw.empty())
+        throw usageError("{}", flaw);
+}
+
 render::RenderSettings renderSettings(const scene::SceneDescription& scene,
                                       const RenderOptions& options) {
     const scene::RenderDescription& render = scene.render;
@@ -245,6 +329,8 @@ render::RenderSettings renderSettings(const scene::SceneDescription& scene,
     settings.endSample = samples.end;
     settings.threads = options.threads.value_or(0);
     settings.layers = image::needsOf(layersOf(scene), scene::lightGroups(scene));
+    settings.mattes = mattesOf(scene);
+    if (!scene.output.deep.empty()) settings.deepError = scene.output.deepError;
     constexpr double encoded = 32;  // of a pixel in an image file with all layers, about
     checkMemory(settings, scene, encoded, static_cast<double>(memoryLimit()));
     return settings;
@@ -286,6 +372,9 @@ void reportResult(const render::RenderResult& result, const render::RenderSettin
                      result.counters.paths, settings.approximations.clamp);
     if (const std::uint64_t count = result.film.nonFiniteCount())
         spdlog::warn("{} samples were not finite and are left out", count);
+    if (result.deep)
+        spdlog::info("deep pixels: {:.3g} bins of depth in the mean pixel",
+                     result.deep->meanBins());
     const std::uint64_t missing = result.film.pixelsWithoutSamples();
     if (missing > 0 && result.film.mostSamples() > 0)
         spdlog::warn("{} of {} pixels have no sample yet; they are black, with alpha 0{}", missing,
@@ -317,6 +406,7 @@ public:
         catchInterrupts();  // not while a scene that comes through a pipe is waited for
         checkWhatIsAsked();
         settings_ = renderSettings(description_, options_);
+        if (options_.rendersImages()) tellMatteNames();
         if (isSequence())
             renderFrames();
         else
@@ -327,7 +417,7 @@ private:
     using Clock = std::chrono::steady_clock;
     using Json = nlohmann::ordered_json;
 
-    const std::vector<std::filesystem::path>& files() const { return description_.output.files; }
+    std::vector<std::filesystem::path> files() const { return imagesOf(description_.output); }
 
     /// Or a scene is saved that stands for one.
     bool isSequence() const {
@@ -354,12 +444,17 @@ private:
         if (files().empty() && options_.rendersImages() && !options_.estimate)
             throw usageError("there is no output; name a file with -o, such as -o smoke.exr");
         if (options_.rendersImages()) {
-            options_.checkFor(files());
-            for (std::size_t i = 0; i < files().size(); ++i)
+            const scene::OutputDescription& output = description_.output;
+            options_.checkFor(output.files);
+            checkCompositing(description_, options_);
+            for (std::size_t i = 0; i < output.files.size(); ++i)
                 checkFrameOutput(
-                    files()[i],
+                    output.files[i],
                     scene::findPlace(description_.places, fmt::format("output.files[{}]", i)),
                     options_.frames);
+            for (const std::filesystem::path* file : {&output.mattesFile, &output.deep})
+                if (!file->empty())
+                    checkFrameOutput(*file, placeOfLayerFile(description_, *file), options_.frames);
         }
         if (!isSequence()) checkFiles(description_, options_);
         if (hasSceneFiles() && options_.choosesQuality())
@@ -413,9 +508,10 @@ private:
 
     bool writesPictureOrScene() const {
         return !options_.writeScene.empty() ||
-               std::any_of(files().begin(), files().end(), [](const auto& file) {
-                   return image::imageFormat(file) != image::ImageFormat::Exr;
-               });
+               std::any_of(description_.output.files.begin(), description_.output.files.end(),
+                           [](const auto& file) {
+                               return image::imageFormat(file) != image::ImageFormat::Exr;
+                           });
     }
 
     /// What a small render tells: of a complete scene, which may be another frame of this one.
@@ -444,6 +540,15 @@ private:
         writeTextFile(file, scene::writeScene(description_, file.parent_path()));
         if (!isStdout(file))
             spdlog::info("wrote {}: {}", file.string(), describeChoices(open, description_));
+    }
+
+    /// Names that the scene leaves open.
+    void tellMatteNames() const {
+        std::vector<std::string> notes;
+        mattesOf(description_, &notes);
+        std::sort(notes.begin(), notes.end());
+        notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+        if (!notes.empty()) spdlog::info("chosen, for mattes:\n{}", fmt::join(notes, "\n"));
     }
 
     /// For --quality auto.
@@ -702,9 +807,10 @@ private:
             if (options_.keepsSums())
                 sums.emplace(result, settings_, pictureOf(description_.render, options_),
                              render::endingOf(result.reason), facts);
-            const std::string note =
-                outputs.write(result.film, metadataOf(result, facts.at("scene")),
-                              sums ? &sums->filmState() : nullptr);
+            const std::string note = outputs.write(
+                result.film, metadataOf(result, facts.at("scene")),
+                {result.mattes ? &*result.mattes : nullptr, result.deep ? &*result.deep : nullptr},
+                sums ? &sums->filmState() : nullptr);
             for (const std::filesystem::path& file : files())
                 spdlog::info("wrote {}", file.string());
             if (!note.empty()) spdlog::info("{}", note);

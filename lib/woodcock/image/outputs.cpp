@@ -7,6 +7,8 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/image_format.h"
+#include "woodcock/image/write_cryptomatte.h"
+#include "woodcock/image/write_deep.h"
 #include "woodcock/image/write_display.h"
 
 namespace woodcock::image {
@@ -21,6 +23,20 @@ Outputs::Outputs(OutputSettings settings) : settings_(std::move(settings)) {
         if (display && !transform_)
             transform_ = settings_.colour.displayTransform(settings_.display);
     }
+    const auto checkLayers = [&](const std::filesystem::path& file, const char* what) {
+        if (file.empty()) return;
+        if (imageFormat(file) != ImageFormat::Exr)
+            throw usageError("{} need an EXR file; '{}' is none", what, file.string());
+        if (std::find(files.begin(), files.end(), file) != files.end())
+            throw usageError("'{}' is to hold both the picture and {}; give two names",
+                             file.string(), what);
+        checkWritable(file);
+    };
+    checkLayers(settings_.deepFile, "deep pixels");
+    checkLayers(settings_.matteFile, "mattes");
+    if (!settings_.deepFile.empty() && settings_.deepFile == settings_.matteFile)
+        throw usageError("'{}' is to hold both deep pixels and mattes; give two names",
+                         settings_.deepFile.string());
 }
 
 ExrSettings Outputs::exrSettings() const {
@@ -30,26 +46,43 @@ ExrSettings Outputs::exrSettings() const {
 
 double Outputs::bytesPerPixel() const {
     constexpr double displayBytes = 4 * 4 + 3 * 4 + 2 * 4;  // floats, without alpha, and the file's
-    double most = 0;
+    const double matteBytes =
+        2.0 * sizeof(float) * 2 * matteRanks * static_cast<double>(settings_.matteLayers);
+    double most = settings_.matteFile.empty() ? 0 : matteBytes;
     for (const std::filesystem::path& file : settings_.files)
-        most =
-            std::max(most, imageFormat(file) == ImageFormat::Exr ? exrBytesPerPixel(exrSettings())
-                                                                 : displayBytes);
+        most = std::max(most, imageFormat(file) == ImageFormat::Exr
+                                  ? exrBytesPerPixel(exrSettings()) + matteBytes
+                                  : displayBytes);
     return most;
 }
 
+/// Returns the share of pixels of which alpha was raised; see writeDisplay().
+double Outputs::write(const std::filesystem::path& file, const Film& film,
+                      const RenderMetadata& metadata, const CompositingFilms& more,
+                      const FilmState* state) const {
+    if (file == settings_.deepFile) {
+        writeDeep(file, *more.deep, film, metadata, settings_.colour.chromaticities());
+    } else if (file == settings_.matteFile) {
+        writeCryptomatte(file, *more.mattes, film, metadata);
+    } else if (imageFormat(file) == ImageFormat::Exr) {
+        writeExr(file, film, metadata, exrSettings(), state,
+                 settings_.matteFile.empty() ? more.mattes : nullptr);
+    } else {
+        return writeDisplay(file, film, *transform_,
+                            {settings_.withAlpha, settings_.glows, settings_.display.exposure});
+    }
+    return 0;
+}
+
 std::string Outputs::write(const Film& film, const RenderMetadata& metadata,
-                           const FilmState* state) const {
+                           const CompositingFilms& more, const FilmState* state) const {
     std::string failures, note;
-    for (const std::filesystem::path& file : settings_.files) {
+    std::vector<std::filesystem::path> files = settings_.files;
+    if (more.mattes && !settings_.matteFile.empty()) files.push_back(settings_.matteFile);
+    if (more.deep && !settings_.deepFile.empty()) files.push_back(settings_.deepFile);
+    for (const std::filesystem::path& file : files) {
         try {
-            if (imageFormat(file) == ImageFormat::Exr) {
-                writeExr(file, film, metadata, exrSettings(), state);
-                continue;
-            }
-            const double raised =
-                writeDisplay(file, film, *transform_,
-                             {settings_.withAlpha, settings_.glows, settings_.display.exposure});
+            const double raised = write(file, film, metadata, more, state);
             if (raised > 0 && note.empty())
                 note = fmt::format(
                     "{}: {:.2g} % of the pixels emit more light than their alpha covers, as fire "

@@ -6,14 +6,25 @@
 #include <string>
 #include <vector>
 
+#include "woodcock/image/deep_film.h"
 #include "woodcock/image/display.h"
 #include "woodcock/image/film.h"
+#include "woodcock/image/matte_film.h"
 #include "woodcock/image/write_exr.h"
 
 namespace woodcock::image {
 
+/// What compositing asks for beside a film, of the same samples; null: nothing.
+struct CompositingFilms {
+    const MatteFilm* mattes = nullptr;
+    const DeepFilm* deep = nullptr;
+};
+
 struct OutputSettings {
     std::vector<std::filesystem::path> files = {};  ///< each in the format of its extension
+    std::filesystem::path matteFile = {};           ///< of mattes alone; empty: they go to the EXRs
+    std::filesystem::path deepFile = {};            ///< empty: none
+    std::size_t matteLayers = 0;                    ///< how many the EXR files get
     bool half = false;                              ///< EXR colour in half instead of float
     LayerList layers = {};                          ///< of the EXR files
     bool multipart = false;                         ///< their layers are parts of their own
@@ -39,7 +50,7 @@ public:
     /// Writes every file. If some fail, it writes the others and then throws Error{Failure} that
     /// names those. Returns a note for the user; may be empty. With `state`, EXR files keep that.
     std::string write(const Film& film, const RenderMetadata& metadata,
-                      const FilmState* state = nullptr) const;
+                      const CompositingFilms& more = {}, const FilmState* state = nullptr) const;
 
     /// Writes an EXR of the same kind. Throws Error{Failure}.
     void writeCheckpoint(const std::filesystem::path& file, const Film& film,
@@ -49,6 +60,9 @@ public:
 
 private:
     ExrSettings exrSettings() const;
+    double write(const std::filesystem::path& file, const Film& film,
+                 const RenderMetadata& metadata, const CompositingFilms& more,
+                 const FilmState* state) const;
 
     OutputSettings settings_;
     std::optional<DisplayTransform> transform_;  ///< where a file needs it

@@ -48,6 +48,17 @@ std::vector<ChannelGroup> channelGroups(const ExrSettings& settings) {
     return groups;
 }
 
+/// In float, whatever the colour is in: ids are bits.
+void addMattes(const MatteFilm& mattes, bool multipart, std::vector<ChannelGroup>& groups) {
+    for (std::size_t layer = 0; layer < mattes.layers().size(); ++layer)
+        groups.push_back({multipart ? mattes.layers()[layer].name : "",
+                          matteChannels(mattes.layers()[layer]), false,
+                          [&mattes, layer](const Film& film, int x, int y, float* to) {
+                              mattes.ranks(layer, x, y, film.at(x, y).samples,
+                                           {to, 2 * matteRanks});
+                          }});
+}
+
 ImageHeader headerOfAnyPart(const Film& film, const ExrSettings& settings) {
     ImageHeader h{"openexr", film.crop(), film.width(), film.height(), {}, {}};
     h.attributes.emplace_back("compression", "zip");
@@ -132,8 +143,9 @@ double exrBytesPerPixel(const ExrSettings& settings) {
 }
 
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings, const FilmState* state) {
-    const std::vector<ChannelGroup> groups = channelGroups(settings);
+              const ExrSettings& settings, const FilmState* state, const MatteFilm* mattes) {
+    std::vector<ChannelGroup> groups = channelGroups(settings);
+    if (mattes) addMattes(*mattes, settings.multipart, groups);
     std::vector<ExrPart> parts;
     for (auto first = groups.begin(); first != groups.end();) {
         const auto end = std::find_if(first, groups.end(), [&](const ChannelGroup& group) {
@@ -142,6 +154,11 @@ void writeExr(const std::filesystem::path& file, const Film& film, const RenderM
         ImageHeader header = headerOfAnyPart(film, settings);
         describeShot(header, metadata, settings);
         if (first == groups.begin()) describeRender(header, film, metadata);
+        if (mattes)
+            for (const MatteLayer& layer : mattes->layers())
+                if (!settings.multipart || first->part == layer.name)
+                    for (auto& [name, text] : matteAttributes(layer))
+                        header.attributes.emplace_back(name, text);
         for (auto group = first; group != end; ++group)
             for (const std::string& name : group->names)
                 header.channels.push_back({name, group->half ? PixelType::Half : PixelType::Float});

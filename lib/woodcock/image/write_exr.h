@@ -13,6 +13,7 @@
 #include "woodcock/image/film.h"
 #include "woodcock/image/film_state.h"
 #include "woodcock/image/layers.h"
+#include "woodcock/image/matte_film.h"
 
 namespace woodcock::image {
 
@@ -45,9 +46,11 @@ struct ExrSettings {
 double exrBytesPerPixel(const ExrSettings& settings);
 
 /// Writes the film's means, premultiplied by alpha, with the crop as data window; with `state`,
-/// also that. Whole or not at all; throws Error{Failure}.
+/// also that; with `mattes`, of the same samples, their layers of Cryptomatte. Whole or not at all;
+/// throws Error{Failure}.
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings, const FilmState* state = nullptr);
+              const ExrSettings& settings, const FilmState* state = nullptr,
+              const MatteFilm* mattes = nullptr);
 
 /// Writes the image `from`, of flat pixels in any format that is read, as an EXR of floats. It has
 /// the same channels, and these attributes in place of its own. Whole or not at all. Throws

@@ -164,8 +164,18 @@ private:
     bool waiting_ = false, ended_ = false;
 };
 
-/// Handles the collision at which `process` is; true when the query is decided.
+/// Notes what the collision at which `process` is has left.
 template <int N>
+void note(const DistanceQuery<N>& q, const CollisionProcess& process, const Roulette& roulette,
+          bool scatters) {
+    Spectrum<N> left = scatters ? Spectrum<N>() : q.throughput;
+    roulette.lift(left);
+    q.collisions->push_back({process.t(), process.index(), left.mean()});
+}
+
+/// Handles the collision at which `process` is; true when the query is decided.
+/// Noted: for q.collisions.
+template <int N, bool Noted>
 bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) {
     const auto s =
         sampleAt(q, process.part(), process.ray(), process.t(), process.range(), process.tight());
@@ -173,8 +183,10 @@ bool settle(DistanceQuery<N>& q, CollisionProcess& process, Roulette& roulette) 
                                      q.random.uniform(), q.throughput);
     if (!(q.throughput.maximum() > 0) || roulette.kills(q.throughput.maximum())) {
         q.throughput = {};
+        if constexpr (Noted) note(q, process, roulette, true);
         return true;
     }
+    if constexpr (Noted) note(q, process, roulette, scatters);
     if (scatters) {
         q.t = process.t(), q.part = process.index();
         return true;
@@ -188,7 +200,7 @@ Vec3d inverseOf(Vec3d v) { return {1 / v.x, 1 / v.y, 1 / v.z}; }
 /// Overlapping media are independent Poisson processes that superpose (Kingman 1993, sec. 2.2).
 /// Each part finds its next collision among its own cells, and the nearest one happens. No part
 /// looks further than the nearest collision found so far.
-template <int N>
+template <int N, bool Noted>
 void trackParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
                 std::vector<CollisionProcess>& processes, TrackingCounters& counters) {
     processes.clear();
@@ -205,7 +217,7 @@ void trackParts(const Medium& medium, DistanceQuery<N>& q, Roulette& roulette,
         for (CollisionProcess& process : processes)
             if (process.advance(limit, counters) && process.t() < limit)
                 nearest = &process, limit = process.t();
-        if (!nearest || settle(q, *nearest, roulette)) return;
+        if (!nearest || settle<N, Noted>(q, *nearest, roulette)) return;
     }
 }
 
@@ -233,9 +245,9 @@ Spectrum<N> relativeExtinction(const MediumPart& part, const Spectrum<N>& albedo
 
 /// Multiplies q.contribution by an estimate of one part's transmittance; false once roulette ends
 /// it. Varies: part.extinctionVaries(); then f's lower bound is not one of sigma_t. (Such parts
-/// have fields.)
-template <int N, bool Varies>
-bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roulette,
+/// have fields.) Noted: for q.depthAlong, as part number `index`.
+template <int N, bool Varies, bool Noted>
+bool trackPart(const MediumPart& part, int index, TransmittanceQuery<N>& q, Roulette& roulette,
                TrackingCounters& counters) {
     const grid::IndexRay ray = part.indexRay(q.origin, q.direction, q.time);
     const Spectrum<N> extinction = channels<N>(part.extinction());
@@ -256,6 +268,36 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         const float weight = arrived().maximum();
         return roulette.kills(weight) || !(weight > 0);
     };
+    // 1 - the share of q.contribution that is left, where the control's integral is this.
+    const auto opacityAt = [&](double controlHere) {
+        return Spectrum<N>::map([&](int c) {
+            const float left = q.contribution[c] > 0 ? ratio[c] / q.contribution[c] : 0.0f;
+            return (1 - left) - left * std::expm1(static_cast<float>(-controlHere) * extinction[c]);
+        });
+    };
+    const auto note = [&](double t, double controlHere) {
+        if constexpr (Noted)
+            q.depthAlong->push_back({t, index, Rgb::map([&](int rgb) {
+                                         const int c = N == 1 ? 0 : rgb;
+                                         if (!(q.contribution[c] > 0)) return 0.0f;
+                                         const float left = ratio[c] / q.contribution[c];
+                                         return static_cast<float>(controlHere * extinction[c] -
+                                                                   std::log(double{left}));
+                                     })});
+    };
+    // Of a segment without end, a piece that lets nothing through.
+    const auto noteEnd = [&] {
+        if constexpr (Noted) {
+            double end = s.t1;
+            if (!std::isfinite(end)) {
+                float smallest = std::numeric_limits<float>::infinity();
+                for (int c = 0; c < N; ++c)
+                    if (extinction[c] > 0) smallest = std::min(smallest, extinction[c]);
+                end = s.t0 + vanished / (double{smallest} * s.range.min);
+            }
+            note(end, control + (end - s.t0) * s.range.min);
+        }
+    };
     const auto next = [&] {
         if constexpr (N > 1)
             walk.setLive(part, liveChannels<N>(Spectrum<N>::map([&](int c) {
@@ -272,9 +314,11 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         };
         double rate = rateNow();
         double t = s.t0;
+        note(t, control);
         while (depth < (s.t1 - t) * rate) {
             ++counters.collisions;
             t += depth / rate;
+            note(t, control + (t - s.t0) * least());
             Spectrum<N> f = density<N>(part, ray.at(t), q.time, walk.tight(), q.random.bits());
             if constexpr (Varies)
                 f *= relativeExtinction<N>(part, albedoAt<N>(part, q.origin + q.direction * t,
@@ -282,9 +326,10 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
             for (int c = 0; c < N; ++c)
                 ratio[c] *=
                     std::max(0.0f, 1 - (f[c] - least()) * extinction[c] / static_cast<float>(rate));
+            const double controlled = (t - s.t0) * least();
+            note(t, control + controlled);
             if (spent()) return false;
             depth = -std::log(q.random.uniformOpenLow());
-            const double controlled = (t - s.t0) * least();
             if constexpr (N > 1) walk.setLive(part, liveChannels<N>(arrived()));
             const bool cut = walk.collided(part, ray, t, s);
             if (cut) control += controlled;
@@ -292,19 +337,29 @@ bool trackPart(const MediumPart& part, TransmittanceQuery<N>& q, Roulette& roule
         }
         if (rate > 0) depth -= (s.t1 - t) * rate;
         if (least() > 0) {
+            noteEnd();
             control += (s.t1 - s.t0) * least();
             if (spent()) return false;
         }
     }
-    if (q.opacityToo)
-        q.opacity = Spectrum<N>::map([&](int c) {
-            const float left = q.contribution[c] > 0 ? ratio[c] / q.contribution[c] : 0.0f;
-            const auto here =
-                (1 - left) - left * std::expm1(static_cast<float>(-control) * extinction[c]);
-            return q.opacity[c] + (1 - q.opacity[c]) * here;
-        });
+    if (q.opacityToo) {
+        const Spectrum<N> here = opacityAt(control);
+        q.opacity =
+            Spectrum<N>::map([&](int c) { return q.opacity[c] + (1 - q.opacity[c]) * here[c]; });
+    }
     q.contribution = arrived();
     return true;
+}
+
+template <int N>
+bool trackPart(const MediumPart& part, int index, TransmittanceQuery<N>& q, Roulette& roulette,
+               TrackingCounters& counters) {
+    if (q.depthAlong)
+        return part.extinctionVaries()
+                   ? trackPart<N, true, true>(part, index, q, roulette, counters)
+                   : trackPart<N, false, true>(part, index, q, roulette, counters);
+    return part.extinctionVaries() ? trackPart<N, true, false>(part, index, q, roulette, counters)
+                                   : trackPart<N, false, false>(part, index, q, roulette, counters);
 }
 
 }  // namespace
@@ -316,7 +371,10 @@ void trackDistance(const Medium& medium, std::span<DistanceQuery<N>> queries,
     for (DistanceQuery<N>& q : queries) {
         q.part = -1, q.t = q.tMax;
         Roulette roulette(q.roulette, q.random);
-        trackParts(medium, q, roulette, processes, counters);
+        if (q.collisions)
+            trackParts<N, true>(medium, q, roulette, processes, counters);
+        else
+            trackParts<N, false>(medium, q, roulette, processes, counters);
         roulette.lift(q.throughput);
     }
 }
@@ -329,13 +387,12 @@ void trackTransmittance(const Medium& medium, std::span<TransmittanceQuery<N>> q
         bool alive = !roulette.kills(q.contribution.maximum());
         const bool several = medium.parts.size() > 1;
         const Vec3d inverse = several ? inverseOf(q.direction) : Vec3d{};
-        for (std::size_t i = 0; alive && i < medium.parts.size(); ++i) {
+        // Noted optical depths are those of all parts, also where one lets nothing through.
+        for (std::size_t i = 0; (alive || q.depthAlong) && i < medium.parts.size(); ++i) {
             if (several && !medium.parts[i].mayMeet(q.origin, inverse, q.tMax))
                 q.random.bits();  // keeps the stream as trackPart() would leave it
             else
-                alive = medium.parts[i].extinctionVaries()
-                            ? trackPart<N, true>(medium.parts[i], q, roulette, counters)
-                            : trackPart<N, false>(medium.parts[i], q, roulette, counters);
+                alive &= trackPart<N>(medium.parts[i], static_cast<int>(i), q, roulette, counters);
         }
         if (alive)
             roulette.lift(q.contribution);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "woodcock/base/random.h"
 #include "woodcock/base/spectrum.h"
@@ -20,6 +21,25 @@ struct TrackingCounters {
     std::uint64_t segments = 0, collisions = 0;  ///< collisions include null ones
 };
 
+// How the light of a ray falls along its way, for queries that ask for it. It changes nothing else.
+
+/// A tentative collision of a flight: what is left of the ray's light behind it, as a mean over the
+/// channels; roulette is thought of. In order of t. Beyond the last one nothing changes.
+struct FlightCollision {
+    double t;
+    int part;  ///< of the medium, that has stopped what is gone
+    float left;
+};
+
+/// Optical depth of one part alone over [0, t] of a ray. The nodes of a part are in order of t.
+/// Between two of them it grows evenly; two nodes at one t are a jump. Before the first node it is
+/// 0, and behind the last it stays.
+struct DepthNode {
+    double t;
+    int part;
+    Rgb depth;  ///< infinite where nothing gets through
+};
+
 /// Where does a path that goes on from `origin` scatter next?
 template <int N>
 struct DistanceQuery {
@@ -30,6 +50,7 @@ struct DistanceQuery {
     RandomStream random;
     float roulette = 0;          ///< throughput below which Russian roulette is played; 0: never
     bool absorptionToo = false;  ///< absorption is an event too, not a weight
+    std::vector<FlightCollision>* collisions = nullptr;  ///< where to note them; null: nowhere
     // In and out:
     Spectrum<N> throughput;  ///< multiplied by the weight of what happened; all zero: path ended
     // Out:
@@ -56,6 +77,7 @@ struct TransmittanceQuery {
     // In and out: multiplied by an unbiased estimate of the transmittance.
     Spectrum<N> contribution;
     bool opacityToo = false;
+    std::vector<DepthNode>* depthAlong = nullptr;  ///< where to note it; null: nowhere
     // Out, where it is asked for: 1 - transmittance, with all digits where it is small.
     Spectrum<N> opacity{};
 };

@@ -41,6 +41,9 @@ struct Batch {
     std::vector<medium::DistanceQuery<N>> sortedWalks;
     std::vector<medium::TransmittanceQuery<N>> sortedShadows, absorbed;
     std::vector<ShadowPiece> pieces;
+    // Of camera rays, by path, where their stopped light is asked for:
+    std::vector<std::vector<medium::FlightCollision>> collisions;
+    std::vector<std::vector<medium::DepthNode>> depths;
 
     void clear() {
         paths.clear(), walks.clear(), shadows.clear(), shadowQueries.clear();

@@ -113,7 +113,11 @@ struct ShadowRay {
     image::LightKind kind = {};
     image::LightGroup group = 0;
     std::uint32_t emitter = light::LightSample::none;  ///< the triangle that it goes to
-    Vec3d origin = {}, direction = {};                 ///< of the second leg
+    /// Planar depth on the camera's ray from which its light comes, where that is asked for and no
+    /// event of the path is there; else negative.
+    float cameraDepth = -1;
+    bool fromLamp = false;              ///< there
+    Vec3d origin = {}, direction = {};  ///< of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, NestedMedia::RayStart, Nothing> start = {};
 };

@@ -2,6 +2,7 @@
 #include "woodcock/render/path_tracer.h"
 
 #include "woodcock/render/batch.h"
+#include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/light.h"
 #include "woodcock/render/stages/look_ahead.h"
 #include "woodcock/render/stages/retire.h"
@@ -87,6 +88,7 @@ private:
         const bool scattered = walk.part >= 0;
         if (seen(p) && end != FlightEnd::AtSurface)
             p.result->film.alpha = scattered ? 1 : opacityOf(p);
+        if (scattered && isToBeNoted(traced_, p)) noteFirstScattering(traced_, p, walk.t);
         switch (end) {
             case FlightEnd::Lost:
                 p.alive = false;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "woodcock/image/film.h"
+#include "woodcock/image/stopped_light.h"
 #include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
@@ -27,6 +28,7 @@ struct PathResult {
     image::DepthSample depth;  ///< only where layers ask for it
     image::CatcherSample
         catcher;  ///< where the camera sees a shadow catcher; its radiance is not in `film`
+    std::unique_ptr<image::StoppedLight> stopped;  ///< only with stoppedLight
 };
 
 /// What layers ask of paths beside a PathResult; empty where they do not.
@@ -48,6 +50,7 @@ public:
         std::optional<int> maxBounces;
         Approximations approximations;
         image::LayerNeeds layers = {};
+        bool stoppedLight = false;  ///< of tracked rays only; it changes nothing else
         const ApproximateMedia* approximateMedia =
             nullptr;  ///< made from `approximations`; null: no sets
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct Scene {
     /// Needs that are run although the scene does not have them, to measure their cost. See
     /// forceNeed() in trade/needs_cost.h.
     Needs forcedNeeds = {};
+
+    /// What each part of a medium belongs to, as StoppedLight::Stop::owner: of `medium`, then of
+    /// `interiorMedia`. A surface is owner number firstSurface + its object.
+    std::vector<std::vector<std::uint32_t>> partOwners = {};
+    std::uint32_t firstSurface = 0;
 
     /// World box of all finite media and surfaces.
     Box3d bounds() const;

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "woodcock/base/error.h"
+#include "woodcock/render/deep_bins.h"
 #include "woodcock/render/path_tracer.h"
 #include "woodcock/render/repeated_call.h"
 #include "woodcock/render/sample_plan.h"
@@ -53,6 +54,10 @@ void validate(const RenderSettings& s, const image::Film::Window& crop) {
             "adaptive sampling cannot render samples {}:{} only: the first samples decide how many "
             "each pixel gets; begin at 0",
             s.firstSample, s.endSample);
+    const bool deep = s.deepError > 0;
+    if (deep || !s.mattes.empty())
+        if (const std::string flaw = compositingFlaw(s.approximations, deep); !flaw.empty())
+            throw usageError("{}", flaw);
 }
 
 void prepare(const Scene& scene, const Approximations& approximations) {
@@ -63,6 +68,32 @@ void prepare(const Scene& scene, const Approximations& approximations) {
     for (const ApproximateMedia::Set& set : ApproximateMedia(scene, approximations).sets)
         for (const medium::Medium& medium : set)
             medium::prepareMarch(medium, marchSettings(approximations));
+}
+
+std::optional<image::MatteFilm> mattesOf(const RenderSettings& settings, image::Film::Window crop) {
+    if (settings.mattes.empty()) return std::nullopt;
+    return image::MatteFilm(crop, settings.mattes);
+}
+
+std::optional<image::DeepFilm> deepOf(const Scene& scene, const Needs& needs,
+                                      const RenderSettings& settings, image::Film::Window crop) {
+    if (!(settings.deepError > 0)) return std::nullopt;
+    const DeepBins bins(scene, needs, settings.width, settings.height, settings.deepError);
+    const auto width = static_cast<std::size_t>(crop.width());
+    std::vector<std::vector<float>> edges(width * static_cast<std::size_t>(crop.height()));
+    const auto find = [&](int y) {
+        for (int x = crop.x0; x < crop.x1; ++x)
+            edges[static_cast<std::size_t>(y - crop.y0) * width +
+                  static_cast<std::size_t>(x - crop.x0)] = bins.edges(x, y);
+    };
+    const int threads = settings.threads > 0 ? settings.threads : tbb::task_arena::automatic;
+    tbb::task_arena(threads).execute([&] { tbb::parallel_for(crop.y0, crop.y1, find); });
+    return image::DeepFilm(crop, settings.deepError, edges);
+}
+
+/// Whether a film takes the sample: what it drops is not in mattes and deep pixels either.
+bool isFinite(const image::FilmSample& sample) {
+    return sample.radiance.isFinite() && std::isfinite(sample.alpha);
 }
 
 /// Samples [first, end) of each pixel, or as much work, as far as they are not drawn yet.
@@ -91,6 +122,8 @@ public:
                               .stops = settings.layers.stops,
                               .parts = settings.layers.parts}),
                  std::vector<std::uint32_t>(), settings.firstSample},
+          mattes_(mattesOf(settings, crop)),
+          deep_(deepOf(scene, needs_, settings, crop)),
           tiles_(scatteredTiles(crop, tileSize)),
           work_(tiles_.size(), settings.endSample - settings.firstSample),
           checkpoints_(std::move(checkpoints)) {
@@ -114,7 +147,7 @@ public:
         state_.endSample = std::max(state_.endSample, endedAt_);
         state_.seconds = seconds();
         if (onProgress) onProgress(progress());
-        return {std::move(state_), needs_, reason_};
+        return {std::move(state_), needs_, reason_, std::move(mattes_), std::move(deep_)};
     }
 
 private:
@@ -323,12 +356,18 @@ private:
                 film.add(x, y, results[i].depth);
             if (layers.stops) film.add(x, y, stops[i]);
             if (results[i].catcher.weight > 0) film.add(x, y, results[i].catcher);
+            if (results[i].stopped && isFinite(results[i].film)) addStopped(jobs[i], results[i]);
             state_.drawn[pixelOf(x, y)] = sample + 1;
         }
         const std::lock_guard lock(countersMutex_);
         state_.counters += counters;
         work_.finish(tile, secondsSince(tileStart));
         return true;
+    }
+
+    void addStopped(const PathJob& job, const PathResult& result) {
+        if (mattes_) mattes_->add(job.x, job.y, *result.stopped);
+        if (deep_) deep_->add(job.x, job.y, *result.stopped);
     }
 
     PathTracer::Options tracerOptions() const {
@@ -339,12 +378,14 @@ private:
                 .maxBounces = settings_.maxBounces,
                 .approximations = settings_.approximations,
                 .layers = settings_.layers,
+                .stoppedLight = mattes_ || deep_,
                 .approximateMedia = &approximateMedia_};
     }
 
     static constexpr int fewestSamplesForNoise =
         8;  // with fewer samples the estimate of the error is too noisy
 
+    const Clock::time_point start_ = Clock::now();
     const Scene& scene_;
     const RenderSettings settings_;
     const image::Film::Window crop_;
@@ -356,8 +397,9 @@ private:
     /// changes the rest has it alone.
     std::shared_mutex stateMutex_;
     RenderState state_;
+    std::optional<image::MatteFilm> mattes_;
+    std::optional<image::DeepFilm> deep_;
     const std::vector<image::Film::Window> tiles_;
-    const Clock::time_point start_ = Clock::now();
     double secondsBefore_ = 0;  // an interruption
     double lookSeconds_ = 0, sinceLook_ = 0;
     StopReason reason_ = StopReason::Complete;
@@ -372,12 +414,31 @@ private:
 
 }  // namespace
 
+std::string compositingFlaw(const Approximations& approximations, bool deep) {
+    const char* const what = deep ? "deep pixels" : "mattes";
+    if (approximations.marchStep > 0)
+        return fmt::format(
+            "{} need tracked rays, and march_step marches them: what stops a ray where is not "
+            "known of marched ones. Set march_step = 0",
+            what);
+    if (!deep) return "";
+    if (approximations.similarityAfter == 0)
+        return "deep pixels need the true media on camera rays, and similarity_after = 0 (as the "
+               "quality draft has it) replaces them. Set similarity_after = 1 or more, or another "
+               "quality";
+    if (approximations.clamp > 0)
+        return "deep pixels need each path's whole radiance, and clamp cuts it. Set clamp = 0";
+    return "";
+}
+
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress,
                     Checkpoints checkpoints) {
     const image::Film::Window crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     validate(settings, crop);
+    if (checkpoints.from && (!settings.mattes.empty() || settings.deepError > 0))
+        throw usageError("a checkpoint does not hold mattes or deep pixels: begin anew");
     prepare(scene, settings.approximations);
     return Session(scene, settings, crop, std::move(checkpoints)).run(onProgress);
 }

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "woodcock/image/deep_film.h"
 #include "woodcock/image/film.h"
+#include "woodcock/image/matte_film.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/sample_plan.h"
@@ -32,6 +34,9 @@ struct RenderSettings {
     double timeLimit = 0;
     double noise = 0;  ///< stop once Film::noise() is below it; 0: never
     image::LayerNeeds layers = {};
+    // By tracked camera rays; see compositingFlaw().
+    std::vector<image::MatteLayer> mattes = {};  ///< coverage by name
+    double deepError = 0;  ///< deep pixels with at most this error: see DeepBins; 0: none
 };
 
 struct RenderProgress {
@@ -62,6 +67,8 @@ struct RenderState {
 struct RenderResult : RenderState {
     Needs needs;
     StopReason reason = StopReason::Complete;
+    std::optional<image::MatteFilm> mattes = {};  ///< where they were asked for
+    std::optional<image::DeepFilm> deep = {};
 };
 
 /// How a render is kept from being lost.
@@ -75,6 +82,9 @@ struct Checkpoints {
     std::function<void(const RenderState&)> write = {};
 };
 
+/// Why there can be no mattes or deep pixels with these approximations; empty: there can.
+std::string compositingFlaw(const Approximations& approximations, bool deep);
+
 /// Renders `scene`. The same scene, seed and sample range give the same film, bit for bit, whatever
 /// the number of threads. It renders in passes over the whole crop, so that a stop leaves an even
 /// picture. With `adaptive`, each pixel gets its share of a pass; the shares depend on the crop.
@@ -86,8 +96,9 @@ struct Checkpoints {
 /// A render that goes on from a checkpoint gives the film of one that was never interrupted, bit
 /// for bit; only what a time limit ends depends on the machine. The limit includes the time before.
 /// Throws Error{Usage} on an empty crop, image or sample range, on an adaptive render of a range
-/// that does not begin at 0, and on a checkpoint of another size, with other sums or with more
-/// samples than are asked for.
+/// that does not begin at 0, on mattes or deep pixels that compositingFlaw() is against, and on a
+/// checkpoint of another size, with other sums or with more samples than are asked for. Checkpoints
+/// do not hold mattes or deep pixels, so a render with these cannot go on from one.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress = {},
                     Checkpoints checkpoints = {});

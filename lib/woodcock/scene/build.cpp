@@ -202,13 +202,19 @@ render::Scene buildScene(const SceneDescription& description, LoadedScene loaded
     if (notes)
         for (std::string& note : motionNotes(description, loaded, medium, ""))
             notes->push_back(std::move(note));
-    return {std::move(medium),
-            buildLights(description, std::move(loaded.lights), movements, surfaces),
-            camera,
-            std::move(surfaces.set),
-            std::move(surfaces.interiorMedia),
-            description.camera.shutter,
-            std::move(next)};
+    std::vector<std::vector<std::uint32_t>> owners(1);
+    for (const size_t volume : volumesOfParts(description, loaded, ""))
+        owners[0].push_back(static_cast<std::uint32_t>(volume));
+    std::move(surfaces.partOwners.begin(), surfaces.partOwners.end(), std::back_inserter(owners));
+    return {.medium = std::move(medium),
+            .lights = buildLights(description, std::move(loaded.lights), movements, surfaces),
+            .camera = camera,
+            .surfaces = std::move(surfaces.set),
+            .interiorMedia = std::move(surfaces.interiorMedia),
+            .shutter = description.camera.shutter,
+            .next = std::move(next),
+            .partOwners = std::move(owners),
+            .firstSurface = static_cast<std::uint32_t>(description.volumes.size())};
 }
 
 bool anyVolumeOrSurfaceGlows(const SceneDescription& scene) {

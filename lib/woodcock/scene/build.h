@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -85,8 +86,9 @@ medium::PhaseFunction buildPhase(float g, const std::optional<PhaseDescription>&
                                  const std::optional<medium::PhaseTable>& table);
 
 struct BuiltSurfaces {
-    std::shared_ptr<const surface::SurfaceSet> set;  ///< null: none
-    std::vector<medium::Medium> interiorMedia;       ///< as of Scene
+    std::shared_ptr<const surface::SurfaceSet> set;      ///< null: none
+    std::vector<medium::Medium> interiorMedia;           ///< as of Scene
+    std::vector<std::vector<std::uint32_t>> partOwners;  ///< of each, as of Scene
     std::vector<light::MeshLight::Triangle> emitters;
     light::MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
 };

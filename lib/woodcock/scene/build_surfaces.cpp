@@ -332,15 +332,24 @@ private:
     std::uint32_t addInterior(size_t index) {
         const SurfaceDescription& surface = description_.surfaces[index];
         medium::Medium medium;
-        if (!surface.name.empty())
+        std::vector<std::uint32_t> owners;
+        if (!surface.name.empty()) {
             medium = buildMedium(description_, loaded_, movements_, surface.name);
+            for (const size_t volume : volumesOfParts(description_, loaded_, surface.name))
+                owners.push_back(static_cast<std::uint32_t>(volume));
+        }
         if (surface.interior) fill(medium, *surface.interior, index);
+        // What is not a volume's is the surface's own.
+        owners.resize(medium.parts.size(),
+                      static_cast<std::uint32_t>(description_.volumes.size() + index));
         if (!medium.parts.empty() || !medium.emission.empty()) {
             built_.interiorMedia.push_back(std::move(medium));
+            built_.partOwners.push_back(std::move(owners));
             return static_cast<std::uint32_t>(built_.interiorMedia.size());
         }
         if (vacuum_ == 0) {
             built_.interiorMedia.emplace_back();
+            built_.partOwners.emplace_back();
             vacuum_ = static_cast<std::uint32_t>(built_.interiorMedia.size());
         }
         return vacuum_;

@@ -156,6 +156,7 @@ struct VelocityDescription {
 };
 
 struct VolumeDescription {
+    std::string name = {};       ///< for mattes and messages; may be empty
     std::filesystem::path file;  ///< empty for a HomogeneousBox
     FileSequence sequence = {};
     bool black = false;  ///< no key says it: this frame has no file, and nothing is drawn
@@ -345,6 +346,10 @@ struct RenderDescription {
 struct OutputDescription {
     std::vector<std::filesystem::path> files;  ///< by extension: exr, png, jpg
     std::vector<std::string> layers;           ///< see image::parseLayerName()
+    std::vector<std::string> mattes;           ///< of image::matteKinds()
+    std::filesystem::path mattesFile;          ///< an EXR for them alone; empty: they go to all
+    std::filesystem::path deep;                ///< an EXR of deep pixels; empty: none
+    double deepError = 0.01;                   ///< see render::DeepBins
     bool half = false;                         ///< EXR colour in half instead of float
     bool multipart = false;                    ///< EXR layers in parts of their own
     std::string display, view, look;           ///< OpenColorIO names; empty: the config's default

@@ -57,7 +57,10 @@ void fillOthers(SceneDescription& scene, int frame) {
                                           [&](const auto& volume) { return &volume.file == file; });
         if (!ofVolume) *file = withFrame(file->string(), frame);
     }
-    for (std::filesystem::path& file : scene.output.files) file = withFrame(file.string(), frame);
+    OutputDescription& output = scene.output;
+    for (std::filesystem::path& file : output.files) file = withFrame(file.string(), frame);
+    for (std::filesystem::path* file : {&output.mattesFile, &output.deep})
+        *file = withFrame(file->string(), frame);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "woodcock/medium/phase.h"
+#include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/roulette.h"
 
 namespace woodcock::render {
@@ -65,8 +66,10 @@ void addLightHits(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
         if constexpr (Surfaces)
             lightSampled = p.surfaces.lightSampled == SurfaceState::LightSampled::AtLastEvent;
         if (addShadowRay(traced, batch, i, p.origin, p.direction, hit.distance,
-                         hit.radiance * static_cast<float>(weight), lightSampled))
+                         hit.radiance * static_cast<float>(weight), lightSampled)) {
             noteOrigin(batch, lights.group(light), 0);
+            if (!share) noteOnCameraRay(traced, batch, hit.distance, true);
+        }
     }
 }
 

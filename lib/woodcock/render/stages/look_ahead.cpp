@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "woodcock/medium/phase.h"
+#include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/light.h"
 
 namespace woodcock::render {
@@ -45,6 +46,7 @@ void addMediumEmission(const TracedScene& traced, Batch<N, Surfaces>& batch, std
         return;
     batch.shadows.back().withinFlight = true;
     noteOrigin(batch, point->group, 0);
+    noteOnCameraRay(traced, batch, point->t);
     if (seen(p)) p.result->film.glow = 1;
     // Points deep within dense media contribute little: beyond a depth of 9, roulette ends their
     // rays.
@@ -95,6 +97,7 @@ void addEquiangular(const TracedScene& traced, Batch<N, Surfaces>& batch, std::s
     noteOrigin(batch, lights.group(light, s.emitter), 1);
     ray.secondLeg = true, ray.secondMediumSet = onward.mediumSet;
     ray.origin = at.position, ray.direction = s.direction, ray.tMax = s.distance;
+    noteOnCameraRay(traced, batch, t);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "woodcock/render/stages/camera_stops.h"
+
 namespace woodcock::render {
 
 namespace {
@@ -44,6 +46,7 @@ void retire(const TracedScene& traced, Batch<N, Surfaces>& batch) {
         handIn(p);
         clampRadiance(traced.options.approximations.clamp, p.result->film,
                       batch.layers.partsOf(*p.result), batch.counters);
+        if (traced.options.stoppedLight) completeStops(*p.result);
         if (&p != &batch.paths.back()) p = batch.paths.back();  // the order does not matter
         batch.paths.pop_back();
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/stages/shade_surfaces.h"
 
+#include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/light.h"
 #include "woodcock/render/stages/roulette.h"
 
@@ -160,6 +161,7 @@ void meetSurface(const TracedScene& traced, Batch<N, true>& batch, std::size_t i
         return;
     }
     if (s.seen) {
+        if (isToBeNoted(traced, p)) noteFirstSurface(traced, p);
         p.result->film.alpha = 1;
         if (object.matte) {
             p.alive = false;

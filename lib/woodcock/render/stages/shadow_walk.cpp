@@ -123,7 +123,10 @@ void arrive(Batch<N, Surfaces>& batch) {
         if (!(arrived.maximum() > 0)) continue;
         if (const ShadowRay<Surfaces>& ray = batch.shadows[i]; !ray.secondLeg) {
             PathState<N, Surfaces>& p = batch.paths[ray.path];
-            bring(batch, p, ray.colour * toRgb(arrived), ray.kind, ray.group, ray.inFront);
+            const Rgb light = ray.colour * toRgb(arrived);
+            bring(batch, p, light, ray.kind, ray.group, ray.inFront);
+            if (ray.cameraDepth >= 0)
+                p.result->stopped->arrivals.push_back({ray.cameraDepth, light, ray.fromLamp});
             continue;
         }
         ShadowRay<Surfaces> s = batch.shadows[i];

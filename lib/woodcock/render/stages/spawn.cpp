@@ -34,6 +34,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     ++batch.counters.paths;
     if constexpr (Surfaces)
         p.surfaces.way = BoundaryWalk(traced.startOf(p.origin, p.direction, p.time));
+    if (options.stoppedLight) result.stopped = std::make_unique<image::StoppedLight>();
     std::ranges::fill(batch.layers.partsOf(result), Rgb());
     if (options.layers.depthSamples()) sampleCameraLayers(traced, p, batch.layers.placeOf(result));
     if (options.layers.stops) batch.layers.stopsOf(result) = findExactDepths(traced, p);

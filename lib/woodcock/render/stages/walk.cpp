@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/stages/walk.h"
 
+#include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/inner_loops.h"
 #include "woodcock/render/stages/roulette.h"
 
@@ -14,14 +15,18 @@ void absorbAlong(const TracedScene& traced, Batch<N, Surfaces>& batch, const Med
                  std::span<medium::DistanceQuery<N>> walks, std::span<const MediumRuns::Item> items,
                  medium::TrackingCounters& c) {
     batch.absorbed.clear();
-    for (std::size_t k = 0; k < walks.size(); ++k)
-        batch.absorbed.push_back({.origin = walks[k].origin,
-                                  .direction = walks[k].direction,
-                                  .tMax = walks[k].tMax,
-                                  .time = walks[k].time,
-                                  .random = walks[k].random,
-                                  .contribution = walks[k].throughput,
-                                  .opacityToo = seen(batch.paths[items[k].query])});
+    for (std::size_t k = 0; k < walks.size(); ++k) {
+        const std::size_t path = items[k].query;
+        batch.absorbed.push_back(
+            {.origin = walks[k].origin,
+             .direction = walks[k].direction,
+             .tMax = walks[k].tMax,
+             .time = walks[k].time,
+             .random = walks[k].random,
+             .contribution = walks[k].throughput,
+             .opacityToo = seen(batch.paths[path]),
+             .depthAlong = walks[k].collisions ? &batch.depths[path] : nullptr});
+    }
     findTransmittances<N>(traced.options.approximations, *medium.medium, batch.absorbed, c);
     for (std::size_t k = 0; k < walks.size(); ++k) {
         const medium::TransmittanceQuery<N>& q = batch.absorbed[k];
@@ -45,6 +50,7 @@ void walk(const TracedScene& traced, Batch<N, Surfaces>& batch) {
         q.origin = flight.origin, q.direction = flight.direction;
         q.tMax = flight.tMax, q.time = flight.time, q.u = p.flight;
         q.random = p.random, q.roulette = pathRoulette, q.throughput = p.throughput;
+        q.collisions = collisionsToNote(traced, batch, i);
         if (!flight.medium->medium->parts.empty()) batch.runs.add(p.medium, i);
     }
     medium::TrackingCounters c;
@@ -58,6 +64,8 @@ void walk(const TracedScene& traced, Batch<N, Surfaces>& batch) {
                            else
                                absorbAlong(traced, batch, medium, walks, items, c);
                        });
+    if (traced.options.stoppedLight)
+        for (std::size_t i = 0; i < batch.paths.size(); ++i) noteStops(traced, batch, i);
     batch.counters.distanceSegments += c.segments;
     batch.counters.distanceCollisions += c.collisions;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "woodcock/image/cryptomatte.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/layers.h"
 #include "woodcock/scene/keys/sections.h"
@@ -25,6 +26,19 @@ std::filesystem::path readFile(const TomlValue& value, Base base) {
     return value.path(base);
 }
 
+Value<std::filesystem::path> exrFile() {
+    return {
+        "file name",
+        {"\"layers/more.exr\""},
+        [](const TomlValue& v, Base base) {
+            std::filesystem::path file = readFile(v, base);
+            if (image::imageFormat(file) != image::ImageFormat::Exr)
+                throw v.error("is '{}'; it has to be an EXR file (.exr)", v.text());
+            return file;
+        },
+        [](const std::filesystem::path& file, const SceneWriter& out) { return out.quoted(file); }};
+}
+
 Value<std::vector<std::filesystem::path>> files() {
     return {"list",
             {"[\"a.exr\", \"folder/b.png\"]"},
@@ -39,6 +53,12 @@ Value<std::vector<std::filesystem::path>> files() {
                 for (const auto& file : all) items.push_back(out.quoted(file));
                 return fmt::format("[{}]", fmt::join(items, ", "));
             }};
+}
+
+std::string writeWords(const std::vector<std::string>& words, const SceneWriter&) {
+    std::vector<std::string> items;
+    for (const std::string& word : words) items.push_back(tomlText(word));
+    return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 std::vector<std::string> readLayers(const TomlValue& value, Base) {
@@ -59,11 +79,27 @@ Value<std::vector<std::string>> layers() {
     return {"list, or a word",
             {"[\"depth\", \"error\"]"},
             readLayers,
-            [](const std::vector<std::string>& all, const SceneWriter&) {
-                std::vector<std::string> items;
-                for (const std::string& layer : all) items.push_back(tomlText(layer));
-                return fmt::format("[{}]", fmt::join(items, ", "));
-            }};
+            writeWords};
+}
+
+/// Some of the `known` words, none twice; `what` names one, as "layer".
+Value<std::vector<std::string>> words(const std::string& what,
+                                      const std::vector<std::string>& known,
+                                      const std::string& example) {
+    return {"list",
+            {example},
+            [=](const TomlValue& value, Base) {
+                std::vector<std::string> all;
+                for (const TomlValue& element :
+                     value.elements(fmt::format("a list of {}s, such as {}", what, example))) {
+                    const std::string& word = known[element.choice(what, known)];
+                    if (std::find(all.begin(), all.end(), word) != all.end())
+                        throw element.error("repeats the {} '{}'", what, word);
+                    all.push_back(word);
+                }
+                return all;
+            },
+            writeWords};
 }
 
 std::vector<Key<O>> outputKeys() {
@@ -79,6 +115,23 @@ std::vector<Key<O>> outputKeys() {
              .doc = "of the EXR beside R, G, B and A: see \"Layers\"",
              .fallback = "none"},
             &O::layers, layers()),
+        key({.name = "mattes",
+             .doc = "Cryptomatte in the EXR files: coverage by `\"object\"`, by `\"material\"`, or "
+                    "both; see \"Mattes\"",
+             .fallback = "none"},
+            &O::mattes, words("matte", image::matteKinds(), "[\"object\", \"material\"]")),
+        key({.name = "mattes_file",
+             .doc = "an EXR file for the mattes alone. The other EXR files then hold none",
+             .fallback = "none"},
+            &O::mattesFile, exrFile()),
+        key({.name = "deep",
+             .doc = "an EXR file for deep pixels, see \"Deep pixels\"",
+             .fallback = "none"},
+            &O::deep, exrFile()),
+        key({.name = "deep_error",
+             .doc = "how far the transmittance of deep pixels may be off at any depth; and the "
+                    "depth of surfaces, relatively"},
+            &O::deepError, number({1e-4, 0.5})),
         key({.name = "half",
              .doc = "the colour of EXR files, and layers that half precision does not harm, are in "
                     "half precision"},

@@ -157,7 +157,13 @@ std::vector<Key<V>> sequenceKeys() {
 
 std::vector<Key<V>> coefficientKeys() {
     return joined(
-        std::vector{key({.name = "file",
+        std::vector{key({.name = "name",
+                         .doc = "for mattes, see \"Mattes\"",
+                         .fallback = "that of the file, without its extension and the frame's "
+                                     "number",
+                         .inDigest = false},
+                        &V::name, text()),
+                    key({.name = "file",
                          .doc = "an OpenVDB or NanoVDB file",
                          .fallback = "that or `box` must be given"},
                         &V::file, path()),
