@@ -42,7 +42,7 @@ Samples trace(const Scene& scene, double clamp) {
     RenderCounters counters;
     EXPECT_TRUE(tracer->trace(
         jobs, results, [] { return false; }, counters));
-    return {results, counters.clamped};
+    return {std::move(results), counters.clamped};
 }
 
 TEST(Clamp, ScalesWhatIsBrighterAndLeavesTheRest) {

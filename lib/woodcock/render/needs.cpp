@@ -26,7 +26,6 @@ Needs findNeeds(const Scene& scene) {
     n.motion |= scene.camera.motion || scene.lights.moves() ||
                 (scene.surfaces && scene.surfaces->geometry.moves());
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
-    n.motion |= scene.shutter.length() > 0 && moves(scene);
     const double reach = bounds.empty() ? 0 : length(bounds.size());
     for (int i : scene.lights.local()) {
         const Vec3d p = *scene.lights.traits(i).position;

@@ -118,7 +118,7 @@ const KeyTable<LightDescription>& keysOf() {
         .keys = {key(
             {.name = "group", .doc = "the light group that it counts to; see \"Light groups\""},
             &LightDescription::group, groupName())},
-        .outer = outerOfLight + "type = \"environment\"\n",
+        .outer = std::string(outerOfLight) + "type = \"environment\"\n",
         .path = "light[0]"};
     return table;
 }
