@@ -60,7 +60,7 @@ protected:
 };
 
 TEST_F(FilmStates, ComeBackToTheLastBit) {
-    for (const Film::Kept kept : {everything, Film::Kept{false, false, false}}) {
+    for (const Film::Kept& kept : {everything, Film::Kept{false, false, false}}) {
         const Film film = randomFilm(kept);
         expectSameBits(film, read(write(film)));
     }
@@ -86,7 +86,7 @@ TEST_F(FilmStates, LieBehindThePicture) {
     Film film(50, 31, crop);
     film.add(5, 5, FilmSample{Rgb(1, 2, 3), 0.5f});
     ExrSettings settings;
-    settings.layers.depth = true;
+    settings.layers = layersFromNames({"depth"});
     writeExr(dir / "plain.exr", film, {}, settings);
     const FilmState state{{}, 50, 31, crop, std::as_const(film).planes()};
     writeExr(dir / "kept.exr", film, {}, settings, &state);

@@ -120,7 +120,9 @@ TEST_F(Compositing, MattesAreDecodedByTheSpecificationAlone) {
     const ReadBack image = readBack(dir / "a.exr");
     EXPECT_EQ(image.types.at("R"), "half");
     for (const auto& [channel, type] : image.types)
-        if (channel.starts_with("Crypto")) EXPECT_EQ(type, "float") << channel;
+        if (channel.starts_with("Crypto")) {
+            EXPECT_EQ(type, "float") << channel;
+        }
     const CryptomatteDecoder objects(image, "CryptoObject"), materials(image, "CryptoMaterial");
     EXPECT_EQ(objects.prefix(), "cryptomatte/3ae39a5/");
     EXPECT_EQ(objects.ids().size(), 2u);
