@@ -22,6 +22,7 @@ render::RenderResult renderTrial(const render::Scene& scene,
     small.firstSample = 0, small.endSample = samples;
     small.adaptive = false, small.timeLimit = 0, small.noise = 0;
     small.depthLayers = small.featureLayers = false;
+    small.mattes.clear(), small.deepError = 0;
     return render::render(scene, small,
                           [](const render::RenderProgress&) { return !interrupted(); });
 }
