@@ -21,7 +21,7 @@ render::RenderResult renderTrial(const render::Scene& scene,
     small.crop.reset();
     small.firstSample = 0, small.endSample = samples;
     small.adaptive = false, small.timeLimit = 0, small.noise = 0;
-    small.layers = {};
+    small.layers = {}, small.mattes.clear(), small.deepError = 0;
     return render::render(scene, small,
                           [](const render::RenderProgress&) { return !interrupted(); });
 }
