@@ -173,7 +173,7 @@ TEST(Mattes, FieldsShareAlongTheirWay) {
     const std::string twice =
         "[[volume]]\nfile = \"ramp_0012.vdb\"\nscale = 0.5\nalbedo = 0\n"
         "[[volume]]\nfile = \"ramp_0012.vdb\"\nscale = 1.5\nalbedo = 0\n";
-    const Matted m = matted(twice + light + camera, 64, false, dir.path());
+    const Matted m = matted(twice + light + camera, 2048, false, dir.path());
     expectTotalsAreAlpha(m);
     EXPECT_GT(m.mean("ramp"), 0.2);
     EXPECT_NEAR(m.mean("ramp_2") / m.mean("ramp"), 3, 0.03);

@@ -75,7 +75,8 @@ TEST(NextFrame, SmokeGoesOnAsItsVelocitiesSay) {
     proof::GridSpec density, velocity;
     density.name = "density";
     velocity.name = "vel", velocity.type = proof::VdbType::Vec3s, velocity.gridClass = "unknown";
-    density.box = velocity.box = {{-8, -8, -8}, {7, 7, 7}};
+    density.box = {{-8, -8, -8}, {7, 7, 7}};
+    velocity.box = {{-10, -10, -10}, {9, 9, 9}};  // beyond the smoke's soft edge, too
     density.value = [](Vec3i) { return 1.0; };
     velocity.colour = [](Vec3i) { return Vec3d{12, 24, 0}; };  // per second
     proof::writeVdb(dir / "smoke.vdb", {density, velocity});
