@@ -216,8 +216,8 @@ defect "a pixel's first sample is not summed" 'Film.*' "" \
 
 defect "what is drawn already is drawn again" 'Resume.*' "" \
     lib/woodcock/render/session.cpp \
-    'state_.drawn[pixelOf(job.x, job.y)] = job.sample + 1;' \
-    'state_.drawn[pixelOf(job.x, job.y)] = job.sample;'
+    'state_.drawn[pixelOf(x, y)] = sample + 1;' \
+    'state_.drawn[pixelOf(x, y)] = sample;'
 
 defect "kept sums are floats" 'FilmStates.*:Resume.*' "" \
     lib/woodcock/image/film_state.cpp \

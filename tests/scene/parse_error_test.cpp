@@ -40,7 +40,7 @@ TEST(ParseErrors, NameTheNearestKnownKey) {
     EXPECT_EQ(
         volumeMistake("albdo = 1"),
         "scene.toml:3:1: unknown key 'albdo' in [[volume]]; did you mean 'albedo'? known "
-        "keys: file, box, frame_start, offset, outside, missing, density, scale, albedo, "
+        "keys: name, file, box, frame_start, offset, outside, missing, density, scale, albedo, "
         "albedo_grid, sigma_a, sigma_s, emission, blackbody, group, g, phase, transform, matrix, "
         "velocity, velocity_scale, velocity_unit, velocity_sampling, inside, storage, "
         "background, repair");
