@@ -11,8 +11,7 @@ namespace woodcock::image {
 namespace {
 
 constexpr std::uint32_t magic = 20000630, version = 2;
-constexpr std::uint32_t tiledFlag = 0x200, longNamesFlag = 0x400, deepFlag = 0x800,
-                        partsFlag = 0x1000;
+constexpr std::uint32_t tiled = 0x200, longNames = 0x400, deepParts = 0x800, severalParts = 0x1000;
 
 /// Reads on in a file, whose numbers are little-endian, as those of the processors here.
 class Reader {
@@ -88,7 +87,7 @@ Layout layoutOf(std::span<const unsigned char> file) {
     Reader reader(file);
     if (reader.number<std::uint32_t>() != magic) throw failure("a part is no OpenEXR file");
     const auto flags = reader.number<std::uint32_t>();
-    if ((flags & 0xff) != version || flags & (tiledFlag | deepFlag | partsFlag))
+    if ((flags & 0xff) != version || flags & (tiled | deepParts | severalParts))
         throw failure("a part of an OpenEXR file is not flat, of lines and alone");
     const std::size_t begin = reader.position();
     while (reader.text() > 0) {
@@ -107,11 +106,11 @@ Layout layoutOf(std::span<const unsigned char> file) {
 
 std::vector<unsigned char> joinExrParts(std::span<const ExrPart> parts) {
     std::vector<Layout> layouts;
-    std::uint32_t flags = version | partsFlag;
+    std::uint32_t flags = version | severalParts;
     std::size_t size = 64;
     for (const ExrPart& part : parts) {
         layouts.push_back(layoutOf(part.file));
-        flags |= layouts.back().flags & longNamesFlag;
+        flags |= layouts.back().flags & longNames;
         size += part.file.size() + 128 + part.name.size() + 4 * layouts.back().chunks.size();
     }
     Writer writer(size);

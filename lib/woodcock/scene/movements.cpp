@@ -119,7 +119,7 @@ Affine3d poseOf(const FlatDescription& flat) {
 }
 
 template <class Light>
-Vec3d placeOf(const Light& light) {
+Vec3d positionOf(const Light& light) {
     if constexpr (std::is_base_of_v<FlatDescription, Light>)
         return light.worldFromLight.translation;
     else
@@ -196,7 +196,7 @@ std::shared_ptr<const MovingTransform> lightMovement(const SceneDescription& des
                         placeOfMotion(description, table), table);
             return shot.follow(
                 [&](const SceneDescription& scene) { return wayBetween(light, lightIn(scene)); },
-                placeOf(light));
+                positionOf(light));
         }
     };
     return std::visit(follow, description.lights[index].light);
