@@ -36,7 +36,8 @@ Matrix44d worldToCamera(const Camera& camera) {
     for (int row = 0; row < 4; ++row) {
         const Vec3d v = row < 3 ? m.column[static_cast<std::size_t>(row)] : m.translation;
         double* to = &matrix[4 * static_cast<std::size_t>(row)];
-        to[0] = v.x, to[1] = v.y, to[2] = -v.z, to[3] = row < 3 ? 0 : 1;
+        to[0] = 0 + v.x, to[1] = 0 + v.y, to[2] = 0 - v.z;  // 0, not -0
+        to[3] = row < 3 ? 0 : 1;
     }
     return matrix;
 }
