@@ -86,15 +86,15 @@ TEST_F(Checkpoints, SurviveKill) {
 class CheckpointSignals : public Checkpoints, public testing::WithParamInterface<int> {};
 
 TEST_P(CheckpointSignals, WriteAndEnd) {
-    const Words range{"--spp", "1500", "--adaptive"};
+    const Words range{"--spp", "8000", "--adaptive"};
     EXPECT_EQ(render(range, "whole.exr").exitCode, 0);
-    RunningProgram program(words({"--spp", "1500", "--adaptive", "--progress", "json", "--threads",
+    RunningProgram program(words({"--spp", "8000", "--adaptive", "--progress", "json", "--threads",
                                   "1", "--checkpoint", "1h"}));
     awaitSamples(program);
     program.signal(GetParam());
     expectSaid(program.wait(), 130, {"a.checkpoint.exr", "--resume goes on from it"});
     EXPECT_TRUE(fs::exists(dir / "a.exr"));  // what was rendered so far
-    EXPECT_EQ(render({"--spp", "1500", "--adaptive", "--resume"}).exitCode, 0);
+    EXPECT_EQ(render({"--spp", "8000", "--adaptive", "--resume"}).exitCode, 0);
     expectSame("whole.exr", "a.exr");
 }
 
