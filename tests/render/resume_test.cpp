@@ -73,7 +73,7 @@ protected:
         const RenderResult whole = render::render(scene, s);
         int interruptions = 0;
         const RenderResult pieces = inPieces(s, &interruptions);
-        EXPECT_GE(interruptions, 2);
+        EXPECT_GE(interruptions, 1);
         expectSameBits(whole.film, pieces.film);
         EXPECT_EQ(whole.reason, pieces.reason);
         EXPECT_EQ(whole.endSample, pieces.endSample);
