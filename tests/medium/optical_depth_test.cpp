@@ -67,5 +67,59 @@ TEST(ExactOpticalDepth, FarOriginsAndExtremeVoxels) {
     }
 }
 
+TEST(FindTransmittance, FindsWhereTheMeanOverChannelsFallsSoFar) {
+    const auto meanOf = [](Rgb depth) {
+        return (std::exp(-double{depth[0]}) + std::exp(-double{depth[1]}) +
+                std::exp(-double{depth[2]})) /
+               3;
+    };
+    int found = 0, missed = 0;
+    for (const PlainMedium& plain :
+         {greyMedium(), hazyMedium(), chromaticMedium(), tintedGlass()}) {
+        const Medium medium = plain.medium();
+        for (const TestRay& ray : testRays(medium, 40, 5)) {
+            DepthAlong along{.medium = medium, .origin = ray.origin, .direction = ray.direction};
+            for (const double target : {0.99, 0.5}) {
+                const auto depthTo = [&](double t) {
+                    return exactOpticalDepth(medium, ray.origin, ray.direction, 0, t);
+                };
+                if (findTransmittance(along, ray.tMax, target)) {
+                    EXPECT_NEAR(meanOf(depthTo(along.t)), target, 3e-6);
+                    EXPECT_LE(along.t, ray.tMax);
+                    ++found;
+                } else {
+                    EXPECT_GT(meanOf(depthTo(ray.tMax)), target * (1 - 1e-6));
+                    ++missed;
+                }
+            }
+        }
+    }
+    EXPECT_GT(found, 50);
+    EXPECT_GT(missed, 5);
+}
+
+/// Deeper than a double's exponential reaches, and without an end.
+TEST(FindTransmittance, OfMediaThatAreDeepOrEndless) {
+    const auto box = [](float sigma, double side) {
+        MediumPart::Description part;
+        part.box = {{0, -1, -1}, {side, 1, 1}};
+        part.absorption = Rgb(sigma), part.scattering = Rgb(0.0f);
+        Medium medium;
+        medium.parts.emplace_back(std::move(part));
+        return medium;
+    };
+    for (const float sigma : {1e-6f, 1.0f, 1e6f}) {
+        const Medium medium = box(sigma, 1e9);
+        DepthAlong along{.medium = medium, .origin = {-3, 0, 0}, .direction = {1, 0, 0}};
+        ASSERT_TRUE(findTransmittance(along, infinity, 0.5)) << sigma;
+        EXPECT_NEAR(along.t, 3 + std::log(2.0) / sigma, 1e-6 * along.t) << sigma;
+    }
+    const Medium thin = box(1e-12f, 1);
+    DepthAlong along{.medium = thin, .origin = {-3, 0, 0}, .direction = {1, 0, 0}};
+    EXPECT_FALSE(findTransmittance(along, infinity, 0.5));
+    DepthAlong beside{.medium = thin, .origin = {-3, 5, 0}, .direction = {1, 0, 0}};
+    EXPECT_FALSE(findTransmittance(beside, infinity, 0.99));
+}
+
 }  // namespace
 }  // namespace woodcock::test

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "woodcock/medium/look_up.h"
@@ -91,48 +93,66 @@ void moveTo(DepthAlong& along, const DepthAlong& further) {
     along.t = further.t, along.depth = further.depth;
 }
 
-/// Where all that the ray meets ends; infinity in a medium without bounds.
-double endOf(const DepthAlong& along, double tMax) {
-    double end = along.t;
+/// From where to where a ray may meet anything; to infinity in a medium without bounds.
+std::pair<double, double> reachOf(const DepthAlong& along, double tMax) {
+    double begin = tMax, end = along.t;
     for (const MediumPart& part : along.medium.parts) {
         double t0 = along.t, t1 = tMax;
-        if (part.unbounded())
-            end = tMax;
-        else if (grid::clip({along.origin, along.direction}, part.worldBounds(), t0, t1))
-            end = std::max(end, t1);
+        if (!part.unbounded() &&
+            !grid::clip({along.origin, along.direction}, part.worldBounds(), t0, t1))
+            continue;
+        begin = std::min(begin, t0), end = std::max(end, t1);
     }
-    return end;
+    return {begin, end};
+}
+
+/// Between a point before the sought one and `end` behind it, at which `missing` is what lacks to
+/// the sought logarithm of the transmittance; it is negative there. By false position, with the
+/// Illinois algorithm's halving of an end that stays (Dowell and Jarratt 1971).
+void close(DepthAlong& along, double end, double missingAtEnd,
+           const std::function<double(Vec3d)>& missing) {
+    constexpr double precision = 1e-7, least = 0.02;
+    double before = missing(along.depth), behind = missingAtEnd;
+    bool wasBefore = false, wasBehind = false;
+    while (end - along.t > precision * end) {
+        const double share = std::clamp(before / (before - behind), least, 1 - least);
+        const DepthAlong there = movedTo(along, along.t + share * (end - along.t));
+        const double left = missing(there.depth);
+        if (left > 0 || left > -precision) moveTo(along, there);
+        if (std::abs(left) < precision) return;
+        if (left > 0) {
+            if (wasBefore) behind /= 2;
+            before = left;
+        } else {
+            if (wasBehind) before /= 2;
+            behind = left, end = there.t;
+        }
+        wasBefore = left > 0, wasBehind = !wasBefore;
+    }
 }
 
 }  // namespace
 
 bool findTransmittance(DepthAlong& along, double tMax, double transmittance) {
-    constexpr double precision = 1e-7, farthest = 1e30;
-    if (transmittanceAt(along.depth) <= transmittance) return true;
-    double end = endOf(along, tMax);
-    if (!(end > along.t)) return false;
-    // Where there is no end, ever longer pieces.
-    for (double step = 1; !std::isfinite(end); step *= 2) {
-        const DepthAlong there = movedTo(along, along.t + step);
-        if (transmittanceAt(there.depth) <= transmittance)
-            end = there.t;
-        else if (moveTo(along, there); along.t > farthest)
-            return false;
+    constexpr double farthest = 1e30, firstPiece = 1.0 / 32;
+    const auto missing = [&](Vec3d depth) {
+        return std::log(transmittanceAt(depth) / transmittance);
+    };
+    if (missing(along.depth) <= 0) return true;
+    const auto [begin, end] = reachOf(along, tMax);
+    if (!(end > begin)) return false;
+    along.t = begin;
+    // Pieces that grow: most rays that lose so much do so soon, and a medium may have no end.
+    double step = std::isfinite(end) ? (end - begin) * firstPiece : 1;
+    for (; along.t < end && along.t < farthest; step *= 2) {
+        const DepthAlong there = movedTo(along, std::min(along.t + step, end));
+        if (const double left = missing(there.depth); left <= 0) {
+            close(along, there.t, left, missing);
+            return true;
+        }
+        moveTo(along, there);
     }
-    const DepthAlong last = movedTo(along, end);
-    if (transmittanceAt(last.depth) > transmittance) {
-        moveTo(along, last);
-        return false;
-    }
-    while (end - along.t > precision * end) {
-        const double middle = (along.t + end) / 2;
-        const DepthAlong there = movedTo(along, middle);
-        if (transmittanceAt(there.depth) > transmittance)
-            moveTo(along, there);
-        else
-            end = middle;
-    }
-    return true;
+    return false;
 }
 
 }  // namespace woodcock::medium

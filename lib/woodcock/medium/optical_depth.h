@@ -29,8 +29,8 @@ struct DepthAlong {
 
 /// Goes on from a point to where the transmittance, mean over channels, falls to a value, at most
 /// to `tMax`, which may be infinite. Returns whether it falls so far; where it does not, the point
-/// goes to tMax, or to where nothing follows. By bisection of exactOpticalDepth(), to 1e-7 of the
-/// distance.
+/// goes to tMax, or to where nothing follows. By exactOpticalDepth(), piece after piece and by false
+/// position in the last one: to 1e-7 of the transmittance or of the distance.
 bool findTransmittance(DepthAlong& along, double tMax, double transmittance);
 
 }  // namespace woodcock::medium
