@@ -69,9 +69,8 @@ std::vector<Box3d> Geometry::Impl::boxesAtSteps(std::uint32_t i) const {
     return boxes;
 }
 
-void Geometry::Impl::move(std::uint32_t i, float time, Placement& placement) const {
-    const Affine3d there = instances[i].motion->at(double{time}) * instances[i].worldFromObject;
-    placement.moved = Placement::Moved{there, localOfWorldAt(i, there)};
+Affine3d Geometry::Impl::worldFromObjectAt(std::uint32_t i, float time) const {
+    return instances[i].motion->at(double{time}) * instances[i].worldFromObject;
 }
 
 void Geometry::Impl::prepareShape(const Shape& shape) {
@@ -125,7 +124,7 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
 
 Box3d Geometry::Impl::boxAt(std::uint32_t i, const Affine3d& worldFromObject) const {
     const PreparedShape& shape = shapeOf(i);
-    const Placement at{&worldFromObject, nullptr, {}};
+    const Placement at(worldFromObject);
     if (shape.kind == PreparedShape::Kind::Sphere) {
         const Columns& c = worldFromObject.column;
         const Vec3d half{length(Vec3d{c[0].x, c[1].x, c[2].x}),

@@ -106,7 +106,7 @@ void Geometry::coincidentSurfaces(const SurfaceHit& hit,
                          hit.time, [&](std::uint32_t box) {
                              const std::uint32_t i = impl.finite[box];
                              if (!impl.shapeOf(i).mesh) return add(i, 0);
-                             const Placement at = impl.placed(i, hit.time);
+                             const Impl::Placement at = impl.placed(i, hit.time);
                              const Vec3d p = impl.local(i, at, {hit.position, {}}).origin;
                              const Columns& m = at.localOfWorld();
                              const double stretch = length(m[0]) + length(m[1]) + length(m[2]);
@@ -123,7 +123,7 @@ SurfaceHit Geometry::inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& o
     SurfaceHit own = hit;
     own.instance = other.instance, own.object = other.object, own.primitive = other.primitive;
     const Impl& impl = *impl_;
-    const Placement at = impl.placed(other.instance, hit.time);
+    const Impl::Placement at = impl.placed(other.instance, hit.time);
     const Vec3d p = impl.local(other.instance, at, {hit.position, {}}).origin;
     switch (impl.shapeOf(other.instance).kind) {
         case PreparedShape::Kind::Mesh: {

@@ -42,24 +42,30 @@ struct NearestSurface {
     MeshPoint point;  ///< of meshes
 };
 
-/// Where an instance is at a time.
-struct Placement {
-    struct Moved {
-        Affine3d worldFromObject;
-        Columns localOfWorld;
-    };
-    const Affine3d* stillWorldFromObject;
-    const Columns* stillLocalOfWorld;
-    std::optional<Moved> moved;
-
-    const Affine3d& worldFromObject() const {
-        return moved ? moved->worldFromObject : *stillWorldFromObject;
-    }
-    /// Directions to its shape's frame.
-    const Columns& localOfWorld() const { return moved ? moved->localOfWorld : *stillLocalOfWorld; }
-};
-
 struct Geometry::Impl {
+    /// Where an instance is at a time. One that stands still is read from where it is kept.
+    class Placement {
+    public:
+        explicit Placement(const Affine3d& worldFromObject, const Columns* localOfWorld = nullptr)
+            : worldFromObject_(&worldFromObject), localOfWorld_(localOfWorld) {}
+        Placement(const Impl& geometry, std::uint32_t instance, float time);
+        Placement(const Placement&) = delete;
+        Placement& operator=(const Placement&) = delete;
+
+        const Affine3d& worldFromObject() const { return *worldFromObject_; }
+        /// Directions to its shape's frame.
+        const Columns& localOfWorld() const { return *localOfWorld_; }
+
+    private:
+        struct Moved {
+            Affine3d worldFromObject;
+            Columns localOfWorld;
+        };
+        const Affine3d* worldFromObject_;
+        const Columns* localOfWorld_;
+        std::optional<Moved> moved_;
+    };
+
     std::vector<Shape> shapes;
     std::vector<ShapeInstance> instances;
     std::optional<EmbreeDevice> device;   ///< only where something is of finite size
@@ -81,12 +87,9 @@ struct Geometry::Impl {
     std::vector<Box3d> boxesAtSteps(std::uint32_t i) const;
 
     const PreparedShape& shapeOf(std::uint32_t i) const { return prepared[instances[i].shape]; }
-    Placement placed(std::uint32_t i, float time) const {
-        Placement placement{&instances[i].worldFromObject, &localOfWorld[i], {}};
-        if (instances[i].motion) move(i, time, placement);
-        return placement;
-    }
-    void move(std::uint32_t i, float time, Placement& placement) const;
+    Placement placed(std::uint32_t i, float time) const { return {*this, i, time}; }
+    /// Of an instance that moves.
+    Affine3d worldFromObjectAt(std::uint32_t i, float time) const;
     Vec3d centre(std::uint32_t i, const Placement& at) const {
         return at.worldFromObject().point(shapeOf(i).frame.centre);
     }
@@ -129,5 +132,15 @@ struct Geometry::Impl {
     std::optional<CoincidentSurface> passesThrough(const SurfaceHit& hit, std::uint32_t i,
                                                    std::uint32_t primitive) const;
 };
+
+inline Geometry::Impl::Placement::Placement(const Impl& geometry, std::uint32_t instance,
+                                            float time)
+    : Placement(geometry.instances[instance].worldFromObject, &geometry.localOfWorld[instance]) {
+    if (!geometry.instances[instance].motion) [[likely]]
+        return;
+    const Affine3d there = geometry.worldFromObjectAt(instance, time);
+    const Moved& m = moved_.emplace(Moved{there, geometry.localOfWorldAt(instance, there)});
+    worldFromObject_ = &m.worldFromObject, localOfWorld_ = &m.localOfWorld;
+}
 
 }  // namespace woodcock::surface
