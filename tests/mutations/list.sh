@@ -86,6 +86,14 @@ defect "control of cut cells dropped" 'Transmittance.*:RefinedWalk.*' "" \
     $tracking \
     'if (cut) control += controlled;' 'if (cut) control += 0 * controlled;'
 
+defect "corrections of a sun's depth half as large" 'DepthGrid.*' "grids of depths" \
+    lib/woodcock/medium/corrected_transmittance.cpp \
+    'static_cast<float>(1 / std::min' 'static_cast<float>(0.5 / std::min'
+
+defect "a sun's depth taken for that beyond a boundary" 'SurfaceLayers*' "pictures by grids" \
+    $stages/shadow_walk.cpp \
+    'batch.pieces.size() == pieces + 1' 'batch.pieces.size() > pieces'
+
 defect "roulette without division" 'Distance.*:Transmittance.*' "deep slabs" \
     lib/woodcock/medium/roulette.h \
     'weight *= threshold_ / lowest_' 'weight *= 1.0f'

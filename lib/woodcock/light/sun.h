@@ -21,7 +21,10 @@ public:
     Rgb radiance(Vec3d direction) const;  ///< of the disc; 0 for delta
 
     LightTraits traits() const {
-        return {.name = "a sun", .distant = !delta(), .visible = visible_};
+        LightTraits traits{.name = "a sun", .distant = !delta(), .visible = visible_};
+        constexpr double widest = 0.0174524064372835;  // the sine of a degree
+        if (sinHalf_ <= widest) traits.parallel = towards_;
+        return traits;
     }
     LightSample sample(Vec3d from, double u0, double u1) const;
     double pdf(Vec3d from, Vec3d direction) const;  ///< 0 outside the disc and for delta

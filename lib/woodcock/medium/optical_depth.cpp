@@ -2,74 +2,58 @@
 #include "woodcock/medium/optical_depth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
-#include <vector>
 
-#include "woodcock/medium/look_up.h"
+#include "woodcock/medium/density_pieces.h"
+#include "woodcock/medium/tracking.h"
 
 namespace woodcock::medium {
 
 Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, double t0, double t1,
                       float time) {
     Vec3d depth;
-    std::vector<double> planes;
     for (const MediumPart& part : medium.parts) {
-        const grid::IndexRay ray = part.indexRay(origin + direction * t0, direction);
-        PartWalk walk(part, ray, t1 - t0);
-        grid::Segment s;
-        while (walk.next(s)) {
-            const auto add = [&](double length, auto&& valueOf) {
-                for (int c = 0; c < 3; ++c) {
-                    const double sigma = valueOf(c) * double{part.extinction()[c]};
-                    if (sigma > 0) depth[c] += length * sigma;  // lengths may be infinite
-                }
-            };
-            if (s.range.min == s.range.max) {
-                add(s.t1 - s.t0, [&](int) { return double{s.range.min}; });
-                continue;
-            }
-            if (!walk.insideSupport(s)) {
-                add(s.t1 - s.t0, [&](int c) { return double{part.field()->background(c)}; });
-                continue;
-            }
-            const grid::Field& field = *part.field();
-            if (part.moved()) {
-                const double length = s.t1 - s.t0;
-                const auto points = static_cast<int>(
-                    std::ceil(std::max(1.0, 8 * length * woodcock::length(ray.direction))));
-                for (int i = 0; i < points; ++i) {
-                    const Rgb f = densityAt<3>(part, ray.at(s.t0 + length * (i + 0.5) / points),
-                                               time, InFull{});
-                    add(length / points, [&](int c) { return double{f[c]}; });
-                }
-                continue;
-            }
-            const double shift = field.lookup() == grid::Lookup::Nearest ? 0.5 : 0;
-            planes = {s.t0, s.t1};
-            for (int i = 0; i < 3; ++i) {
-                if (ray.direction[i] == 0) continue;
-                const double a = ray.at(s.t0)[i] + shift, b = ray.at(s.t1)[i] + shift;
-                for (double x = std::ceil(std::min(a, b)); x <= std::floor(std::max(a, b)); ++x) {
-                    const double t = (x - shift - ray.origin[i]) / ray.direction[i];
-                    if (t > s.t0 && t < s.t1) planes.push_back(t);
-                }
-            }
-            std::sort(planes.begin(), planes.end());
-            for (std::size_t i = 0; i + 1 < planes.size(); ++i) {
-                const double middle = (planes[i] + planes[i + 1]) / 2;
-                const double half = (planes[i + 1] - planes[i]) / 2;
-                for (double node : {-0.57735026918962576, 0.57735026918962576})
-                    add(half, [&](int c) {
-                        return double{field.trilinear(ray.at(middle + half * node),
-                                                      field.channels() == 1 ? 0 : c)};
-                    });
-            }
-        }
+        const grid::IndexRay ray = part.indexRay(origin + direction * t0, direction, time);
+        walkDensity(part, ray, t1 - t0, time, [&](const auto& piece, double a, double b) {
+            for (int c = 0; c < 3; ++c)
+                if (part.extinction()[c] > 0)
+                    depth[c] += piece.integral(a, b, c) * double{part.extinction()[c]};
+            return true;
+        });
     }
     return {static_cast<float>(depth.x), static_cast<float>(depth.y), static_cast<float>(depth.z)};
 }
+
+template <int N>
+Spectrum<N> exactTransmittance(const Medium& medium, Vec3d origin, Vec3d direction,
+                               TrackingCounters& counters) {
+    constexpr double vanished = 104;  // exp() of minus this is zero as a float
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    std::array<double, N> depth{};
+    for (const MediumPart& part : medium.parts) {
+        const auto add = [&](const auto& piece, double a, double b) {
+            ++counters.segments;
+            double least = std::numeric_limits<double>::infinity();
+            for (int c = 0; c < N; ++c) {
+                double& d = depth[static_cast<std::size_t>(c)];
+                if (part.extinction()[c] > 0)
+                    d += piece.integral(a, b, c) * double{part.extinction()[c]};
+                least = std::min(least, d);
+            }
+            return least < vanished;
+        };
+        if (!walkDensity(part, part.indexRay(origin, direction), endless, 0, add)) return {};
+    }
+    return Spectrum<N>::map(
+        [&](int c) { return static_cast<float>(std::exp(-depth[static_cast<std::size_t>(c)])); });
+}
+
+template Spectrum<1> exactTransmittance(const Medium&, Vec3d, Vec3d, TrackingCounters&);
+template Spectrum<3> exactTransmittance(const Medium&, Vec3d, Vec3d, TrackingCounters&);
 
 namespace {
 

@@ -116,7 +116,9 @@ struct ShadowRay {
     /// Planar depth on the camera's ray from which its light comes, where that is asked for and no
     /// event of the path is there; else negative.
     float cameraDepth = -1;
-    bool fromLamp = false;              ///< there
+    bool fromLamp = false;  ///< there
+    /// Of the light that it goes to, where the scene has surfaces; null: it is tracked.
+    const medium::DepthGrid* sunDepth = nullptr;
     Vec3d origin = {}, direction = {};  ///< of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, NestedMedia::RayStart, Nothing> start = {};

@@ -13,6 +13,7 @@
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/scene.h"
+#include "woodcock/render/sun_depths.h"
 
 namespace woodcock::render {
 
@@ -52,7 +53,8 @@ public:
         image::LayerNeeds layers = {};
         bool stoppedLight = false;  ///< of tracked rays only; it changes nothing else
         const ApproximateMedia* approximateMedia =
-            nullptr;  ///< made from `approximations`; null: no sets
+            nullptr;                           ///< made from `approximations`; null: no sets
+        const SunDepths* sunDepths = nullptr;  ///< null: shadow rays to suns are tracked
     };
 
     virtual ~PathTracer() = default;

@@ -113,6 +113,7 @@ public:
           crop_(crop),
           needs_(findNeeds(scene)),
           approximateMedia_(scene, settings.approximations),
+          sunDepths_(scene, settings.approximations, approximateMedia_),
           tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
           state_{image::Film(settings.width, settings.height, crop,
                              {.surfaces = needs_.surfaces,
@@ -379,7 +380,8 @@ private:
                 .approximations = settings_.approximations,
                 .layers = settings_.layers,
                 .stoppedLight = mattes_ || deep_,
-                .approximateMedia = &approximateMedia_};
+                .approximateMedia = &approximateMedia_,
+                .sunDepths = &sunDepths_};
     }
 
     static constexpr int fewestSamplesForNoise =
@@ -391,6 +393,7 @@ private:
     const image::Film::Window crop_;
     const Needs needs_;
     const ApproximateMedia approximateMedia_;
+    const SunDepths sunDepths_;
     /// One for each thread that renders, made when it first does.
     tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;
     /// Whoever adds finished tiles shares it, as tiles have their own pixels; whoever copies it or

@@ -54,6 +54,10 @@ struct TracedScene {
         else
             return media[media.number(mediumSet, 0)];
     }
+    /// The grid of a light's optical depth in a set of media; null: there is none.
+    const medium::DepthGrid* sunDepth(std::uint8_t mediumSet, int light) const {
+        return options.sunDepths ? options.sunDepths->find(mediumSet, light) : nullptr;
+    }
     /// Whether a path that has scattered so often may do so again.
     bool mayScatter(std::int64_t scatterings) const {
         return !options.maxScatterings || scatterings < *options.maxScatterings;

@@ -170,8 +170,8 @@ RgbEstimate turnedAside(const Lab& lab, const std::string& name, const Volume& v
         {{part}},
         light::LightSet({light::Sun(in, Rgb(1.0f), 0, false)}),
         camera::Camera::orthographic(v.centre() + out * size, v.centre(), up, size)};
-    constexpr int seeds = 128;
-    Picture picture{12, 12, 1, hashOf(lab.seed(name), 0)};
+    constexpr int seeds = 32;
+    Picture picture{24, 24, 1, hashOf(lab.seed(name), 0)};
     const RgbEstimate first = meanOverSeeds(scene, picture, seeds);
     double samples = 1;
     for (const Estimate& e : first) {

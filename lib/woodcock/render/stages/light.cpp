@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "woodcock/medium/corrected_transmittance.h"
 #include "woodcock/medium/phase.h"
+#include "woodcock/medium/tracking.h"
 #include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/roulette.h"
 
@@ -24,6 +26,25 @@ double phaseDensity(const PathState<N, Surfaces>& p, double cosine, Rgb& light) 
     return p.from.phase->value(cosine);
 }
 
+/// Adds the light of a sun whose optical depth is in a grid, where no surface can be in its way.
+template <int N, bool Surfaces>
+void addSunlight(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, Surfaces>& p,
+                 const medium::DepthGrid& depths, Vec3d direction, Rgb light,
+                 image::LightGroup group) {
+    const float brightest = light.maximum();
+    const Spectrum<N> contribution = p.throughput * brightest;
+    if (!(contribution.maximum() > 0)) return;
+    ++batch.counters.shadowRays;
+    RandomStream random(p.random.bits());  // as a shadow ray has
+    medium::TrackingCounters c;
+    const Spectrum<N> passes = medium::correctedTransmittance<N>(
+        *traced.media[traced.media.number(p.mediumSet, 0)].medium, depths, p.from.position,
+        direction, contribution * (1 / traced.typicalRadiance), random, c);
+    batch.counters.shadowSegments += c.segments;
+    bring(batch, p, light * (1 / brightest) * toRgb(contribution * passes), kindOfLight(p, 1),
+          group);
+}
+
 }  // namespace
 
 template <int N, bool Surfaces>
@@ -40,9 +61,17 @@ void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
     double weight = phase / chosen->probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
     weight *= share(lights, chosen->light);
+    const medium::DepthGrid* const depths = traced.sunDepth(p.mediumSet, chosen->light);
+    if (!Surfaces && depths) {
+        const Rgb light = s.weight * tint(p) * static_cast<float>(weight);
+        addSunlight(traced, batch, p, *depths, s.direction, light,
+                    lights.group(chosen->light, s.emitter));
+        return;
+    }
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
                      s.weight * static_cast<float>(weight), true)) {
         batch.shadows.back().emitter = s.emitter;
+        if constexpr (Surfaces) batch.shadows.back().sunDepth = depths;
         noteOrigin(batch, lights.group(chosen->light, s.emitter), 1);
     }
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/stages/shadow_walk.h"
 
+#include <cmath>
+
+#include "woodcock/medium/corrected_transmittance.h"
 #include "woodcock/render/stages/inner_loops.h"
 #include "woodcock/render/stages/light.h"
 
@@ -84,6 +87,26 @@ void followThroughSurfaces(const TracedScene& traced, Batch<N, true>& batch, std
     q.contribution *= passed.mean();
 }
 
+/// Brings the light of a sun whose optical depth is in a grid, where the ray meets no boundary: its
+/// only piece, the last that was added, goes through the outer medium to infinity. Nothing is left
+/// of it then.
+template <int N>
+void arriveByGrid(const TracedScene& traced, Batch<N, true>& batch, std::size_t i,
+                  medium::TrackingCounters& c) {
+    const ShadowRay<true>& shadow = batch.shadows[i];
+    medium::TransmittanceQuery<N>& q = batch.shadowQueries[i];
+    const ShadowPiece piece = batch.pieces.back();
+    if (std::isfinite(piece.length) || piece.medium != traced.media.number(shadow.mediumSet, 0))
+        return;
+    const Spectrum<N> passes = medium::correctedTransmittance<N>(
+        *traced.media[piece.medium].medium, *shadow.sunDepth, piece.origin, q.direction,
+        q.contribution * (1 / traced.typicalRadiance), q.random, c);
+    bring(batch, batch.paths[shadow.path], shadow.colour * toRgb(q.contribution * passes),
+          shadow.kind, shadow.group, shadow.inFront);
+    q.contribution = {};
+    batch.pieces.pop_back();
+}
+
 /// What stops a ray is found before its media are tracked, for most rays that are stopped are so by
 /// surfaces. Then the first pieces of all rays are tracked by runs of one medium, then the second
 /// pieces of those that go on, and so forth.
@@ -91,7 +114,12 @@ template <int N>
 void passSurfacesAndMedia(const TracedScene& traced, Batch<N, true>& batch,
                           medium::TrackingCounters& c) {
     batch.pieces.clear();
-    for (std::size_t i = 0; i < batch.shadows.size(); ++i) followThroughSurfaces(traced, batch, i);
+    for (std::size_t i = 0; i < batch.shadows.size(); ++i) {
+        const std::size_t pieces = batch.pieces.size();
+        followThroughSurfaces(traced, batch, i);
+        if (batch.shadows[i].sunDepth && batch.pieces.size() == pieces + 1)
+            arriveByGrid(traced, batch, i, c);
+    }
     for (std::size_t left = batch.pieces.size(); left > 0;) {
         batch.runs.clear();
         std::size_t later = 0;

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/depth_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "woodcock/medium/look_up.h"
+
+namespace woodcock::medium {
+
+namespace {
+
+/// How many pieces, each as a voxel, the shortest edge of a homogeneous box is cut into.
+constexpr double boxNodes = 32;
+
+/// How many voxels lie from node to node. Of 1, 2 and 3, 2 measured best: the noise of pictures is
+/// within 2 % of that at 1, and the lattice is made in a quarter of the time.
+constexpr double voxelsToNode = 2;
+/// And at most.
+constexpr double coarsest = 16;
+/// What is deeper is stored as this, so that interpolation stays finite.
+constexpr double deepest = 1e30;
+
+/// The shortest edge of a voxel, in world units; of a medium without fields a part of its shortest
+/// edge.
+double finestDetail(const Medium& medium) {
+    double finest = std::numeric_limits<double>::infinity();
+    for (const MediumPart& part : medium.parts) {
+        const auto& axes = part.description().worldFromIndex.column;
+        for (int i = 0; i < 3; ++i) {
+            const double edge = length(axes[static_cast<std::size_t>(i)]);
+            finest =
+                std::min(finest, part.field() ? edge : edge * part.support().size()[i] / boxNodes);
+        }
+    }
+    return finest;
+}
+
+bool bounded(const Medium& medium) {
+    if (moves(medium) || medium.worldBounds().empty()) return false;
+    return std::ranges::none_of(medium.parts, [](const MediumPart& part) {
+        return part.unbounded() || part.extinctionVaries() || part.moved();
+    });
+}
+
+/// The colour of which the extinctions of all parts are multiples, its largest channel 1; nothing
+/// where they are not.
+std::optional<Rgb> commonColour(const Medium& medium) {
+    std::optional<Rgb> colour;
+    for (const MediumPart& part : medium.parts) {
+        if (part.field() && part.field()->channels() > 1) return {};
+        const float most = part.extinction().maximum();
+        if (!(most > 0)) continue;
+        const Rgb own = part.extinction() * (1 / most);
+        if (colour && *colour != own) return {};
+        colour = own;
+    }
+    return colour.value_or(Rgb(1.0f));
+}
+
+}  // namespace
+
+std::unique_ptr<const DepthGrid> DepthGrid::make(const Medium& medium, Vec3d towards,
+                                                 std::size_t mostBytes) {
+    if (!bounded(medium)) return nullptr;
+    const double finest = finestDetail(medium);
+    std::unique_ptr<DepthGrid> grid(new DepthGrid(medium, towards));
+    grid->layOut(finest, mostBytes);
+    if (!(grid->spacing() <= coarsest * finest)) return nullptr;
+    return grid;
+}
+
+DepthGrid::DepthGrid(const Medium& medium, Vec3d towards) : medium_(&medium), towards_(towards) {
+    orthonormalBasis(towards, across_[0], across_[1]);
+    const std::optional<Rgb> colour = commonColour(medium);
+    channels_ = colour ? 1 : 3;
+    if (colour) colour_ = *colour;
+}
+
+void DepthGrid::layOut(double finest, std::size_t mostBytes) {
+    const Box3d world = medium_->worldBounds();
+    Box3d box;  // in light space
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d p = world.corner(i) - world.lower;
+        box.add(Vec3d{dot(p, across_[0]), dot(p, across_[1]), dot(p, towards_)});
+    }
+    const Vec3d size = box.size();
+    // A flat medium has more lines than its volume says.
+    const auto cells = [&](int axis) { return std::ceil(size[axis] * (1 + 1e-9) / spacing_); };
+    const auto columns = [&](int axis) {
+        return std::max(1.0, std::ceil(cells(axis) / columnCells));
+    };
+    const auto bytes = [&] {
+        return columns(0) * columns(1) * columnNodes * columnNodes * (cells(2) + 1) * channels_ *
+               sizeof(float);
+    };
+    constexpr double coarser = 1.1;
+    spacing_ = voxelsToNode * finest;
+    while (bytes() > static_cast<double>(mostBytes) && spacing_ <= coarsest * finest)
+        spacing_ *= coarser;
+    if (!(spacing_ <= coarsest * finest)) return;
+    for (int i = 0; i < 2; ++i) columnCount_[i] = static_cast<int>(columns(i));
+    length_ = static_cast<int>(std::max(1.0, cells(2))) + 1;
+    perSpacing_ = 1 / spacing_;
+    base_ =
+        world.lower + across_[0] * box.lower.x + across_[1] * box.lower.y + towards_ * box.lower.z;
+    columns_ = std::make_unique<std::atomic<float*>[]>(static_cast<std::size_t>(columnCount_[0]) *
+                                                       static_cast<std::size_t>(columnCount_[1]));
+}
+
+DepthGrid::~DepthGrid() {
+    for (int i = 0; i < columnCount_[0] * columnCount_[1]; ++i)
+        delete[] columns_[static_cast<std::size_t>(i)].load();
+}
+
+DepthGrid::Place DepthGrid::find(Vec3d world) const {
+    const Vec3d p = (world - base_) * perSpacing_;
+    const auto place = [](double x, int cells, int& cell) {
+        const double inside = std::clamp(x, 0.0, static_cast<double>(cells));
+        cell = std::min(static_cast<int>(inside), cells - 1);
+        return static_cast<float>(inside - cell);
+    };
+    int i, j, k;
+    const float u = place(dot(p, across_[0]), columnCount_[0] * columnCells, i);
+    const float v = place(dot(p, across_[1]), columnCount_[1] * columnCells, j);
+    const float w = place(dot(p, towards_), length_ - 1, k);
+    const int line = j % columnCells * columnNodes + i % columnCells;
+    return {column(static_cast<std::size_t>(j / columnCells * columnCount_[0] + i / columnCells)) +
+                static_cast<std::size_t>(line) * lineFloats() +
+                static_cast<std::size_t>(k * channels_),
+            u, v, w};
+}
+
+DepthGrid::Depth DepthGrid::read(const Place& place, int channel) const {
+    const auto lerp = [](float t, float a, float b) { return a + t * (b - a); };
+    const float* n00 = place.node + channel;
+    const float *n10 = n00 + lineFloats(), *n01 = n00 + columnNodes * lineFloats(),
+                *n11 = n01 + lineFloats();
+    const int on = channels_;  // to the next node along
+    return {
+        lerp(place.v, lerp(place.u, lerp(place.w, n00[0], n00[on]), lerp(place.w, n10[0], n10[on])),
+             lerp(place.u, lerp(place.w, n01[0], n01[on]), lerp(place.w, n11[0], n11[on]))),
+        // Depths fall towards the sun.
+        std::min(std::min(n00[on], n10[on]), std::min(n01[on], n11[on])),
+        std::max(std::max(n00[0], n10[0]), std::max(n01[0], n11[0]))};
+}
+
+const float* DepthGrid::makeColumn(std::size_t index) const {
+    const std::lock_guard lock(making_[index % making_.size()]);
+    if (const float* made = columns_[index].load(std::memory_order_acquire)) return made;
+    const std::size_t floats = lineFloats() * columnNodes * columnNodes;
+    auto nodes = std::make_unique<float[]>(floats);
+    const auto across = static_cast<std::size_t>(columnCount_[0]);
+    const auto first = static_cast<double>(index % across * columnCells);
+    const auto second = static_cast<double>(index / across * columnCells);
+    for (int j = 0; j < columnNodes; ++j)
+        for (int i = 0; i < columnNodes; ++i)
+            fillLine(base_ + across_[0] * ((first + i) * spacing_) +
+                         across_[1] * ((second + j) * spacing_),
+                     &nodes[static_cast<std::size_t>(j * columnNodes + i) * lineFloats()]);
+    bytesMade_ += floats * sizeof(float);
+    columns_[index].store(nodes.get(), std::memory_order_release);
+    return nodes.release();
+}
+
+/// The nodes of one line: first the depth of each step, then their sums from the far end. A step
+/// is integrated by two points, which is quick and good enough for what is corrected.
+void DepthGrid::fillLine(Vec3d start, float* nodes) const {
+    constexpr double gauss = 0.57735026918962576;
+    const int steps = length_ - 1;
+    std::vector<double> depth(static_cast<std::size_t>(length_ * channels_));
+    for (const MediumPart& part : medium_->parts) {
+        const grid::IndexRay ray = part.indexRay(start, towards_);
+        const Rgb sigma = channels_ == 1 ? Rgb(part.extinction().maximum()) : part.extinction();
+        PartWalk walk(part, ray, steps * spacing_);
+        for (grid::Segment s; walk.next(s);) {
+            if (!(s.range.max > 0)) continue;
+            // Rounding may put a segment a little beyond the ends of the line.
+            int k = std::clamp(static_cast<int>(s.t0 * perSpacing_), 0, steps - 1);
+            for (double a = s.t0; a < s.t1; ++k) {
+                const double b = k + 1 < steps ? std::clamp((k + 1) * spacing_, a, s.t1) : s.t1;
+                const double middle = (a + b) / 2, half = (b - a) / 2;
+                for (int c = 0; c < channels_; ++c) {
+                    double f = 2 * double{s.range.max};
+                    if (s.range.min != s.range.max) {
+                        const grid::Field& field = *part.field();
+                        const int channel = field.channels() == 1 ? 0 : c;
+                        f = double{field.trilinear(ray.at(middle - gauss * half), channel)} +
+                            double{field.trilinear(ray.at(middle + gauss * half), channel)};
+                    }
+                    depth[static_cast<std::size_t>(k * channels_ + c)] +=
+                        half * f * double{sigma[c]};
+                }
+                a = b;
+            }
+        }
+    }
+    for (int c = 0; c < channels_; ++c) {
+        double sum = 0;
+        for (int k = steps; k >= 0; --k) {
+            const auto i = static_cast<std::size_t>(k * channels_ + c);
+            sum += depth[i];
+            nodes[i] = static_cast<float>(std::min(sum, deepest));
+        }
+    }
+}
+
+}  // namespace woodcock::medium

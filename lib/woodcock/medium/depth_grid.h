@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+
+#include "woodcock/medium/medium.h"
+
+namespace woodcock::medium {
+
+/// The optical depth of a medium from any point to infinity in one direction, the same for all
+/// points: towards a sun. It is stored at the nodes of a lattice in light space, whose third axis
+/// points towards the sun, and interpolated between them. From node to node along that axis it is
+/// integrated by two points. So it is near the truth and no more: a control variate, see
+/// correctedTransmittance().
+///
+/// The lattice is made where it is first read, by columns along the direction. What it holds does
+/// not depend on who reads it when. It may be read by many threads.
+class DepthGrid {
+public:
+    /// `towards`: unit vector in world space. `mostBytes`: of the whole lattice, whose nodes are
+    /// two of the medium's finest voxels apart where that fits. Null where the medium has no end,
+    /// moves, or has an extinction that varies against its density; and where so much memory is too
+    /// little to show what the medium is like. The medium must outlive the grid.
+    static std::unique_ptr<const DepthGrid> make(const Medium& medium, Vec3d towards,
+                                                 std::size_t mostBytes);
+    ~DepthGrid();
+    DepthGrid(const DepthGrid&) = delete;
+    DepthGrid& operator=(const DepthGrid&) = delete;
+
+    /// Distance of neighbouring nodes, in world units.
+    double spacing() const { return spacing_; }
+    std::size_t bytesMade() const { return bytesMade_; }  ///< of columns so far
+
+    /// Optical depths around a point: interpolated, and the least and the most at the eight nodes.
+    struct Depth {
+        float depth, least, most;
+    };
+    /// Of each channel.
+    template <int N>
+    std::array<Depth, N> at(Vec3d world) const {
+        std::array<Depth, N> depths;
+        const Place place = find(world);
+        if (channels_ == 1) {
+            const Depth grey = read(place, 0);
+            for (int c = 0; c < N; ++c)
+                depths[static_cast<std::size_t>(c)] = {
+                    colour_[c] * grey.depth, colour_[c] * grey.least, colour_[c] * grey.most};
+        } else {
+            for (int c = 0; c < N; ++c) depths[static_cast<std::size_t>(c)] = read(place, c);
+        }
+        return depths;
+    }
+
+private:
+    DepthGrid(const Medium& medium, Vec3d towards);
+    void layOut(double finest, std::size_t mostBytes);
+
+    static constexpr int columnCells = 8;  ///< across a column
+    static constexpr int columnNodes = columnCells + 1;
+
+    /// The cell around a point: its first node, and where in the cell the point is.
+    struct Place {
+        const float* node;
+        float u, v, w;
+    };
+    Place find(Vec3d world) const;
+    Depth read(const Place& place, int channel) const;
+
+    const float* column(std::size_t index) const {
+        const float* made = columns_[index].load(std::memory_order_acquire);
+        return made ? made : makeColumn(index);
+    }
+    std::size_t lineFloats() const { return static_cast<std::size_t>(length_ * channels_); }
+    const float* makeColumn(std::size_t index) const;
+    void fillLine(Vec3d start, float* nodes) const;
+
+    const Medium* medium_;
+    Vec3d towards_, across_[2];
+    Vec3d base_;  ///< world position of the first node
+    double spacing_ = 1, perSpacing_ = 1;
+    int columnCount_[2] = {0, 0};
+    int length_ = 0;  ///< nodes along
+    // With one channel, the depth of channel c is colour_[c] times the number that is stored.
+    int channels_ = 1;
+    Rgb colour_{1.0f};
+    std::unique_ptr<std::atomic<float*>[]> columns_;
+    mutable std::array<std::mutex, 64> making_;
+    mutable std::atomic<std::size_t> bytesMade_{0};
+};
+
+}  // namespace woodcock::medium

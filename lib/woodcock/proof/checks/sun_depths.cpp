@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grids of the optical depth to suns: whatever they hold, the mean is right.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "woodcock/base/random.h"
+#include "woodcock/base/statistics.h"
+#include "woodcock/medium/corrected_transmittance.h"
+#include "woodcock/medium/tracking.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/support/plain_medium.h"
+#include "woodcock/render/path_tracer.h"
+
+namespace woodcock::proof {
+
+namespace {
+
+/// Two overlapping parts of rough grids, unlike in colour.
+PlainMedium clouds(double density, Vec3d shift) {
+    const Affine3d placed = Affine3d::translate(shift) * Affine3d::rotate(1, 25);
+    return PlainMedium({{.grid = mixedGrid(2),
+                         .worldFromIndex = placed * Affine3d::scale({0.5, 0.4, 0.5}),
+                         .absorption = Rgb(static_cast<float>(0.1 * density)),
+                         .scattering = Rgb(static_cast<float>(0.2 * density))},
+                        {.grid = mixedGrid(5),
+                         .worldFromIndex = placed * Affine3d::rotate(0, 50),
+                         .absorption = Rgb{0.01f, 0.05f, 0.2f} * static_cast<float>(density),
+                         .scattering = Rgb(0.05f) * static_cast<float>(density)}});
+}
+
+/// What a grid is made of that is to be wrong.
+struct Wrong {
+    const char* what;
+    double density;
+    Vec3d shift;
+};
+constexpr Wrong kinds[]{{"right", 1, {}},
+                        {"of half the density", 0.5, {}},
+                        {"of thrice the density", 3, {}},
+                        {"moved by some voxels", 1, {1.3, -0.9, 2.1}}};
+
+/// The transmittance from points within, by brute force.
+void transmittances(Lab& lab) {
+    const PlainMedium plain = clouds(1, {});
+    const medium::Medium right = plain.medium();
+    const Vec3d towards = normalize(Vec3d{0.4, 0.8, -0.3});
+    const Box3d box = right.worldBounds();
+    RandomStream places(lab.seed("places"));
+    for (const Wrong& wrong : kinds) {
+        const medium::Medium other = clouds(wrong.density, wrong.shift).medium();
+        const auto grid = medium::DepthGrid::make(other, towards, 1 << 24);
+        Moments excess[3];  // over what is expected, of all places
+        double expected[3]{};
+        constexpr int count = 40;
+        for (int place = 0; place < count; ++place) {
+            const Vec3d from = box.lower + box.size() * Vec3d{places.uniform(), places.uniform(),
+                                                              places.uniform()};
+            const Vec3d exact = plain.transmittance(from, towards, 2 * length(box.size()));
+            RandomStream random(lab.seed(fmt::format("{} {}", wrong.what, place)));
+            medium::TrackingCounters counters;
+            for (int i = 0; i < lab.pick(500, 20000); ++i) {
+                const Rgb t = medium::correctedTransmittance<3>(right, *grid, from, towards,
+                                                                Rgb(0.1f), random, counters);
+                for (int c = 0; c < 3; ++c) excess[c].add(double{t[c]} - exact[c]);
+            }
+            for (int c = 0; c < 3; ++c) expected[c] += exact[c] / count;
+        }
+        for (int c = 0; c < 3; ++c) {
+            Case one =
+                caseOf(fmt::format("transmittance by a grid that is {}, channel {}", wrong.what, c),
+                       expected[c], {expected[c] + excess[c].mean(), excess[c].standardError()},
+                       {lab.pick(2e-2, 3e-3), 0});
+            one.allowance = 1e-6;
+            one.note = "brute force";
+            lab.add(one);
+        }
+    }
+}
+
+/// Fog under a delta sun and a disc; with surfaces above a floor and around a glass ball.
+std::string foggyScene(double density, double shift, bool surfaces) {
+    const char* const solid =
+        "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.4\n"
+        "[[surface]]\nmaterial = \"glass\"\n"
+        "sphere = { centre = [0.4, 0.5, 0.5], radius = 0.4 }\n"
+        "[[surface]]\nplane = {}\ntransform = { translate = [0, -1, 0] }\n";
+    return fmt::format(
+        "[[volume]]\nbox = {{ min = [{1}, -1, -1], max = [{2}, 1.2, 1] }}\n"
+        "sigma_a = [{3}, {4}, {5}]\nsigma_s = {6}\ng = 0.5\n"
+        "[[volume]]\nbox = {{ min = [-0.5, -0.2, -2], max = [0.4, 0.9, 0.3] }}\n"
+        "transform = {{ translate = [{0}, 0, 0], rotate = [0, 30, 10] }}\nsigma_s = {6}\n"
+        "[[light]]\ntype = \"sun\"\ndirection = [0.5, -1, -0.3]\nirradiance = [2, 1, 1]\n"
+        "[[light]]\ntype = \"sun\"\ndirection = [-0.2, -1, 0.3]\nirradiance = [0.5, 1, 2]\n"
+        "angular_diameter = 0.5\n"
+        "[camera]\neye = [0, 0.5, 5]\nlook_at = [0, 0, 0]\nfov = 30\n{7}",
+        shift, -1 + shift, 1 + shift, 0.2 * density, 0.5 * density, density, 1.5 * density,
+        surfaces ? solid : "");
+}
+
+/// Mean radiance of a small picture by so many seeds.
+std::array<Moments, 3> pictures(const render::Scene& scene, const render::SunDepths* depths,
+                                std::uint64_t firstSeed, int seeds) {
+    constexpr int side = 6;
+    std::vector<render::PathJob> jobs;
+    for (int pixel = 0; pixel < side * side; ++pixel)
+        for (std::uint32_t sample = 0; sample < 4; ++sample)
+            jobs.push_back({pixel % side, pixel / side, sample});
+    std::vector<render::PathResult> results(jobs.size());
+    std::array<Moments, 3> means;
+    render::PathTracer::Options options;
+    options.width = options.height = side, options.sunDepths = depths;
+    for (int i = 0; i < seeds; ++i) {
+        options.seed = hashOf(firstSeed, i);
+        const auto tracer = render::PathTracer::make(scene, render::findNeeds(scene), options);
+        render::RenderCounters counters;
+        tracer->trace(
+            jobs, results, [] { return false; }, counters);
+        for (int c = 0; c < 3; ++c) {
+            double sum = 0;
+            for (const render::PathResult& result : results) sum += double{result.film.radiance[c]};
+            means[static_cast<std::size_t>(c)].add(sum / static_cast<double>(results.size()));
+        }
+    }
+    return means;
+}
+
+/// Pictures by right and by wrong grids against shadow rays that are tracked.
+void comparePictures(Lab& lab) {
+    for (const bool surfaces : {false, true}) {
+        const render::Scene scene = sceneIn(lab, foggyScene(1, 0, surfaces));
+        const int seeds = lab.pick(800, 12000);
+        const auto tracked = pictures(scene, nullptr, lab.seed("tracked"), seeds);
+        for (const Wrong& wrong : kinds) {
+            const render::Scene other =
+                sceneIn(lab, foggyScene(wrong.density, wrong.shift.x / 4, surfaces));
+            const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
+            const std::string name = fmt::format("picture {} by a grid that is {}",
+                                                 surfaces ? "with surfaces" : "of fog", wrong.what);
+            const auto means = pictures(scene, &depths, lab.seed(name), seeds);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double error =
+                    std::hypot(means[c].standardError(), tracked[c].standardError());
+                Case one = caseOf(fmt::format("{}, channel {}", name, c), tracked[c].mean(),
+                                  {means[c].mean(), error}, {lab.pick(6e-2, 1.5e-2), 0});
+                one.note = "by tracked shadow rays";
+                lab.add(one);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<Check> sunDepths() {
+    return {{Kind::Sampling, "transmittance by grids of depths", transmittances},
+            {Kind::Sampling, "pictures by grids of depths", comparePictures}};
+}
+
+}  // namespace woodcock::proof

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/medium/depth_grid.h"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include "tests/medium/media.h"
+#include "woodcock/base/random.h"
+#include "woodcock/medium/optical_depth.h"
+#include "woodcock/medium/tracking.h"
+
+namespace woodcock::test {
+
+using namespace proof;
+
+using namespace medium;
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t plenty = 1 << 26;
+const Vec3d towards = normalize(Vec3d{0.3, 0.8, -0.5});
+
+std::vector<Vec3d> pointsIn(const Medium& medium, int count) {
+    const Box3d box = medium.worldBounds();
+    RandomStream random(11);
+    std::vector<Vec3d> points;
+    for (int i = 0; i < count; ++i)
+        points.push_back(box.lower +
+                         box.size() * Vec3d{random.uniform(), random.uniform(), random.uniform()});
+    return points;
+}
+
+TEST(DepthGrid, OfABoxIsExactInside) {
+    const Medium fog =
+        PlainMedium({{.grid = {}, .box = {{-1, -1, -1}, {1, 1, 1}}, .scattering = Rgb(0.7f)}})
+            .medium();
+    const auto grid = DepthGrid::make(fog, {0, 1, 0}, plenty);
+    for (const Vec3d p : {Vec3d{0.1, 0.2, 0.3}, {-0.7, -0.8, 0.5}, {0.4, 0.9, 0.61}}) {
+        const auto d = grid->at<1>(p)[0];
+        EXPECT_NEAR(d.depth, 0.7 * (1 - p.y), 1e-6);
+        EXPECT_LE(d.least, d.depth);
+        EXPECT_GE(d.most, d.depth);
+    }
+    EXPECT_EQ(grid->at<1>({0, 1.2, 0})[0].depth, 0);           // beyond the medium
+    EXPECT_NEAR(grid->at<1>({0, -5, 0})[0].depth, 1.4, 1e-6);  // before it
+}
+
+/// Where density rises and falls evenly between nodes, the depth is made of parabolas. Chords
+/// between exact nodes miss them by at most h^2 / 8 times their second derivative.
+TEST(DepthGrid, IsExactAtItsNodes) {
+    PlainGrid grid;
+    for (int x = 0; x < 4; ++x)
+        for (int y = 0; y < 4; ++y)
+            for (int z = 0; z < 4; ++z)
+                grid.setLeaf({x * 8, y * 8, z * 8}, [](Vec3i v, int) {
+                    return static_cast<float>(v.x <= 15 ? v.x + 1 : 31 - v.x);
+                });
+    const float sigma = 0.01f;
+    const Medium medium = PlainMedium({{.grid = grid, .scattering = Rgb(sigma)}}).medium();
+    const auto depths = DepthGrid::make(medium, {1, 0, 0}, plenty);
+    ASSERT_EQ(depths->spacing(), 2);  // from -1 on
+    const double most = depths->spacing() * depths->spacing() / 8 * double{sigma};
+    double largest = 0;
+    for (double x = -0.9; x < 31; x += 0.37) {
+        const Vec3d p{x, 13.4, 16.1};
+        const double missed =
+            std::abs(double{depths->at<1>(p)[0].depth} -
+                     double{exactOpticalDepth(medium, p, {1, 0, 0}, 0, infinity)[0]});
+        EXPECT_LE(missed, most + 1e-5) << x;
+        largest = std::max(largest, missed);
+    }
+    EXPECT_GT(largest, 0.8 * most);
+}
+
+TEST(DepthGrid, ColoursThatDifferHaveDepthsOfTheirOwn) {
+    const Medium grey =
+        PlainMedium({{.grid = mixedGrid(1), .scattering = {0.1f, 0.2f, 0.4f}}}).medium();
+    const auto one = DepthGrid::make(grey, towards, plenty);
+    for (const Vec3d p : pointsIn(grey, 30)) {
+        const auto d = one->at<3>(p);
+        EXPECT_FLOAT_EQ(d[0].depth, d[2].depth / 4);
+        EXPECT_FLOAT_EQ(d[1].least, d[2].least / 2);
+    }
+    const Medium two = PlainMedium({{.grid = mixedGrid(1), .scattering = {0.1f, 0.2f, 0.4f}},
+                                    {.grid = mixedGrid(3), .scattering = {0.4f, 0.2f, 0.1f}}})
+                           .medium();
+    const auto three = DepthGrid::make(two, towards, plenty);
+    int differ = 0;
+    for (const Vec3d p : pointsIn(two, 200)) {
+        const auto d = three->at<3>(p);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_GE(d[static_cast<std::size_t>(c)].most, d[static_cast<std::size_t>(c)].least);
+        differ += std::abs(d[0].depth * 4 - d[2].depth) > 0.01f;
+    }
+    EXPECT_GT(differ, 20);
+}
+
+TEST(DepthGrid, IsTheSameForAnyNumberOfReaders) {
+    const Medium medium = greyMedium().medium();
+    const std::vector<Vec3d> points = pointsIn(medium, 2000);
+    const auto alone = DepthGrid::make(medium, towards, plenty);
+    const auto shared = DepthGrid::make(medium, towards, plenty);
+    std::vector<float> depths(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(),
+                      [&](std::size_t i) { depths[i] = shared->at<1>(points[i])[0].depth; });
+    for (std::size_t i = points.size(); i-- > 0;)
+        EXPECT_EQ(alone->at<1>(points[i])[0].depth, depths[i]);
+    EXPECT_EQ(alone->bytesMade(), shared->bytesMade());
+}
+
+/// Where memory is scarce it is coarser; columns that nobody reads take none.
+TEST(DepthGrid, KeepsToItsMemory) {
+    const Medium medium = greyMedium().medium();
+    const auto fine = DepthGrid::make(medium, towards, plenty);
+    const auto untouched = DepthGrid::make(medium, towards, plenty);
+    const std::vector<Vec3d> points = pointsIn(medium, 5000);
+    for (const Vec3d p : points) fine->at<1>(p);
+    const std::size_t most = fine->bytesMade() / 3;
+    const auto coarse = DepthGrid::make(medium, towards, most);
+    for (const Vec3d p : points) coarse->at<1>(p);
+    EXPECT_GT(coarse->spacing(), fine->spacing());
+    EXPECT_LE(coarse->bytesMade(), most);
+    EXPECT_EQ(untouched->bytesMade(), 0u);
+}
+
+/// Nor for those that memory cannot show: a slab of voxels a million times as wide as high.
+TEST(DepthGrid, IsNotForMediaWithoutEnd) {
+    const auto makes = [](const Medium& medium) {
+        return DepthGrid::make(medium, towards, plenty) != nullptr;
+    };
+    EXPECT_TRUE(makes(greyMedium().medium()));
+    EXPECT_TRUE(makes(tintedGlass().medium()));
+    EXPECT_FALSE(makes(hazyMedium().medium()));
+    EXPECT_FALSE(makes(Medium{}));
+    EXPECT_FALSE(makes(
+        PlainMedium({{.grid = mixedGrid(1), .worldFromIndex = Affine3d::scale({1e6, 1, 1e6})}})
+            .medium()));
+    EXPECT_FALSE(
+        makes(PlainMedium({{.grid = {}, .box = {{-1e6, -1, -1e6}, {1e6, 1, 1e6}}}}).medium()));
+}
+
+TEST(ExactTransmittance, AgreesWithBruteForce) {
+    const PlainMedium plain = greyMedium();
+    const Medium medium = plain.medium();
+    std::uint64_t segments = 0;
+    for (const Vec3d p : pointsIn(medium, 100)) {
+        TrackingCounters counters;
+        const Vec3d expected = plain.transmittance(p, towards, 1000);
+        EXPECT_NEAR(exactTransmittance<1>(medium, p, towards, counters)[0], expected.x, 1e-6);
+        const Rgb all = exactTransmittance<3>(medium, p, towards, counters);
+        EXPECT_NEAR(all[2], expected.z, 1e-6);
+        segments += counters.segments;
+    }
+    EXPECT_GT(segments, 1000u);
+}
+
+}  // namespace
+}  // namespace woodcock::test
