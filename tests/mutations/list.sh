@@ -215,8 +215,8 @@ defect "shadow catchers forget the sky" 'SurfaceLayers*' "" \
 # ---- camera, film
 
 defect "picture off by half a pixel" 'Camera.*:Session.*:Transmittance.OfThinRays*' "" \
-    lib/woodcock/camera/camera.cpp \
-    'const double sx = (2 * x - pixelWidth) / h' 'const double sx = (2 * x + 1 - pixelWidth) / h'
+    lib/woodcock/camera/camera_rays.cpp \
+    'const double sx = (2 * x - width_) / h' 'const double sx = (2 * x + 1 - width_) / h'
 
 defect "a pixel's first sample is not summed" 'Film.*' "" \
     lib/woodcock/image/film.cpp \

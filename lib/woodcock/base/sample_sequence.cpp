@@ -14,17 +14,14 @@ constexpr std::uint32_t reverseBits(std::uint32_t v) {
 }
 
 /// A bijection in which every bit depends on itself and on lower bits only (Laine and Karras 2011,
-/// constants of Vegdahl 2021): on reversed bits, a nested uniform (Owen) scramble.
-constexpr std::uint32_t scrambleUpwards(std::uint32_t v, std::uint32_t seed) {
+/// constants of Vegdahl 2021): of reversed bits, a nested uniform (Owen) scramble.
+constexpr std::uint32_t scrambleReversed(std::uint32_t v, std::uint32_t seed) {
     v ^= v * 0x3d20adeau;
     v += seed;
     v *= (seed >> 16) | 1;
     v ^= v * 0x05526c56u;
     v ^= v * 0x53a22864u;
     return v;
-}
-constexpr std::uint32_t owenScramble(std::uint32_t v, std::uint32_t seed) {
-    return reverseBits(scrambleUpwards(reverseBits(v), seed));
 }
 
 using Matrix = std::array<std::uint32_t, 32>;
@@ -53,34 +50,37 @@ constexpr Matrix vanDerCorput() {
 constexpr std::array<Matrix, 4> sobol{vanDerCorput(), sobolMatrix<1>(0, {1}),
                                       sobolMatrix<2>(1, {1, 3}), sobolMatrix<3>(1, {1, 3, 1})};
 
-/// The points' digits by the bytes of the index: four look-ups instead of a loop over its bits.
+/// The points' digits by the bytes of the index: four look-ups instead of a loop over its bits. The
+/// bits of both are reversed, as the scrambles before and after take and leave them.
 using Digits = std::array<std::uint32_t, 4>;
-constexpr std::array<std::array<Digits, 256>, 4> sobolBytes = [] {
+constexpr std::array<std::array<Digits, 256>, 4> reversedSobolBytes = [] {
     std::array<std::array<Digits, 256>, 4> table{};
     for (std::size_t byte = 0; byte < 4; ++byte)
         for (std::size_t value = 0; value < 256; ++value)
             for (std::size_t bit = 0; bit < 8; ++bit)
                 if (value >> bit & 1)
                     for (std::size_t d = 0; d < 4; ++d)
-                        table[byte][value][d] ^= sobol[d][8 * byte + bit];
+                        table[byte][value][d] ^= reverseBits(sobol[d][31 - (8 * byte + bit)]);
     return table;
 }();
 
 }  // namespace
 
 SampleSequence::SampleSequence(std::uint64_t seed, int x, int y, std::uint32_t sample)
-    : pixelSeed_(hashOf(seed, x, y)), index_(sample) {}
+    : pixelSeed_(hashOf(seed, x, y)), reversedIndex_(reverseBits(sample)) {}
 
 std::array<double, 4> SampleSequence::draw(std::uint32_t set) const {
     const std::uint64_t seed = hashOf(pixelSeed_, set, 0x51);
-    const std::uint32_t index = owenScramble(index_, static_cast<std::uint32_t>(seed));
+    const std::uint32_t index = scrambleReversed(reversedIndex_, static_cast<std::uint32_t>(seed));
     Digits bits{};
     for (std::size_t byte = 0; byte < 4; ++byte)
         for (std::size_t d = 0; d < 4; ++d)
-            bits[d] ^= sobolBytes[byte][index >> (8 * byte) & 255][d];
+            bits[d] ^= reversedSobolBytes[byte][index >> (8 * byte) & 255][d];
     std::array<double, 4> numbers;
-    for (std::size_t d = 0; d < 4; ++d)
-        numbers[d] = owenScramble(bits[d], static_cast<std::uint32_t>(hashOf(seed, d))) * 0x1p-32;
+    for (std::size_t d = 0; d < 4; ++d) {
+        const auto dimensionSeed = static_cast<std::uint32_t>(hashOf(seed, d));
+        numbers[d] = reverseBits(scrambleReversed(bits[d], dimensionSeed)) * 0x1p-32;
+    }
     return numbers;
 }
 

@@ -22,7 +22,7 @@ public:
 
 private:
     std::uint64_t pixelSeed_;
-    std::uint32_t index_;
+    std::uint32_t reversedIndex_;  ///< of the sample, by bits
 };
 
 }  // namespace woodcock

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/camera/camera.h"
 
+#include "woodcock/camera/camera_rays.h"
+
 namespace woodcock::camera {
 
 Camera Camera::at(float time) const {
@@ -17,18 +19,7 @@ Camera Camera::at(float time) const {
 }
 
 CameraRay Camera::ray(double x, double y, int pixelWidth, int pixelHeight, float time) const {
-    if (motion) return at(time).ray(x, y, pixelWidth, pixelHeight, time);
-    const double h = pixelHeight;
-    const double sx = (2 * x - pixelWidth) / h + 2 * shiftX;
-    const double sy = (h - 2 * y) / h + 2 * shiftY;  // +-1 at top and bottom, where not shifted
-    if (kind == Kind::Orthographic) {
-        const double half = height / 2;
-        return {worldFromCamera.point({sx * half, sy * half, 0}),
-                normalize(worldFromCamera.vector({0, 0, -1})), time};
-    }
-    const double t = std::tan(fovY * pi / 360);
-    return {worldFromCamera.translation, normalize(worldFromCamera.vector({sx * t, sy * t, -1})),
-            time};
+    return CameraRays(*this, pixelWidth, pixelHeight).at(x, y, time);
 }
 
 Affine3d lookAtTransform(Vec3d eye, Vec3d lookAt, Vec3d up) {

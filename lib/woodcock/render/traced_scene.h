@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "woodcock/camera/camera_rays.h"
 #include "woodcock/render/media_table.h"
 #include "woodcock/render/nested_media.h"
 #include "woodcock/render/path_state.h"
@@ -15,6 +16,7 @@ struct TracedScene {
     const Scene& scene;
     const Needs needs;
     const PathTracer::Options options;
+    const camera::CameraRays cameraRays;
     const float typicalRadiance;  ///< in the scene's media; what roulette compares with
     const MediaTable media;
     // Where there are surfaces:
@@ -26,6 +28,7 @@ struct TracedScene {
         : scene(s),
           needs(n),
           options(o),
+          cameraRays(s.camera, o.width, o.height),
           typicalRadiance(s.lights.typicalRadiance(s.bounds())),
           media(s, n, o.approximations, o.approximateMedia) {
         if (!n.surfaces) return;

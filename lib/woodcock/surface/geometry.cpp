@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "woodcock/base/error.h"
 #include "woodcock/surface/geometry_impl.h"
@@ -12,7 +13,7 @@ namespace woodcock::surface {
 Geometry::Impl::Impl(std::vector<Shape> s, std::vector<ShapeInstance> i)
     : shapes(std::move(s)), instances(std::move(i)) {
     for (const Shape& shape : shapes) prepareShape(shape);
-    localOfWorld.reserve(instances.size());
+    places.reserve(instances.size());
     for (std::uint32_t n = 0; n < instances.size(); ++n) placeInstance(n);
     if (finite.empty()) return;
     buildTree();
@@ -92,17 +93,19 @@ void Geometry::Impl::prepareShape(const Shape& shape) {
     }
 }
 
-Columns Geometry::Impl::localOfWorldAt(std::uint32_t i, const Affine3d& worldFromObject) const {
-    Columns inverse = Affine3d{worldFromObject.column, {}}.inverse().column;
-    for (Vec3d& column : inverse) column = column * shapeOf(i).frame.scale;
-    return inverse;
+InstancePlace Geometry::Impl::placeAt(std::uint32_t i, const Affine3d& worldFromObject) const {
+    const Frame& own = shapeOf(i).frame;
+    Columns m = Affine3d{worldFromObject.column, {}}.inverse().column;
+    for (Vec3d& column : m) column = column * own.scale;
+    return {m, worldFromObject.point(own.centre), largest(m[0]) + largest(m[1]) + largest(m[2])};
 }
 
 void Geometry::Impl::placeInstance(std::uint32_t i) {
     const ShapeInstance& instance = instances[i];
     const PreparedShape& shape = prepared.at(instance.shape);
     const Affine3d& m = instance.worldFromObject;
-    const Columns inverse = localOfWorldAt(i, m);
+    const InstancePlace place = placeAt(i, m);
+    const Columns& inverse = place.localOfWorld;
     const double sides = length(m.column[0]) * length(m.column[1]) * length(m.column[2]);
     const bool invertible = isFinite(inverse[0]) && isFinite(inverse[1]) && isFinite(inverse[2]);
     constexpr double flat = 1e-14;  // of the box of its columns' lengths
@@ -112,7 +115,7 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
     if (!invertible || !(std::abs(m.determinant()) > flat * sides))
         throw inputError("the transform of instance {} (object {}) flattens its shape", i,
                          instance.object);
-    localOfWorld.push_back(inverse);
+    places.push_back(place);
     moves |= instance.motion != nullptr;
     if (shape.kind == PreparedShape::Kind::Plane) {
         planes.push_back(i);
@@ -124,14 +127,15 @@ void Geometry::Impl::placeInstance(std::uint32_t i) {
 
 Box3d Geometry::Impl::boxAt(std::uint32_t i, const Affine3d& worldFromObject) const {
     const PreparedShape& shape = shapeOf(i);
-    const Placement at(worldFromObject);
+    const InstancePlace place = placeAt(i, worldFromObject);
     if (shape.kind == PreparedShape::Kind::Sphere) {
         const Columns& c = worldFromObject.column;
         const Vec3d half{length(Vec3d{c[0].x, c[1].x, c[2].x}),
                          length(Vec3d{c[0].y, c[1].y, c[2].y}),
                          length(Vec3d{c[0].z, c[1].z, c[2].z})};
-        return {centre(i, at) - half, centre(i, at) + half};
+        return {place.centre - half, place.centre + half};
     }
+    const Placement at(worldFromObject, place);
     Box3d box;
     for (int corner = 0; corner < 8; ++corner) box.add(world(i, at, shape.box.corner(corner)));
     return box;
@@ -203,7 +207,6 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, float time,
                           const SurfaceHit* left, NearestSurface& nearest) const {
     const PreparedShape& shape = shapeOf(i);
     const Placement at = placed(i, time);
-    const LocalRay ray = local(i, at, worldRay);
     const double tMax = nearest.t + nearest.slack;
     Vec3d outwards;  // normal of the shape that the ray starts on
     bool leaves = false;
@@ -211,7 +214,7 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, float time,
         if (left->instance == i) {
             leaves = true, outwards = left->normal;
         } else if (left->coincident.any) {
-            if (const auto start = passesThrough(*left, i, 0)) {
+            if (const auto start = passesThrough(LocalHit(*this, *left, i))) {
                 leaves = true;
                 outwards = start->facing == 0  ? start->normal
                            : start->facing > 0 ? left->normal
@@ -220,15 +223,18 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, float time,
         }
     }
     std::optional<double> t;
+    LocalRay ray;
     MeshPoint point;
     switch (shape.kind) {
         case PreparedShape::Kind::Mesh:
+            ray = at->localRay(worldRay);
             if (const std::optional<MeshPoint> met = meetMesh(i, ray, tMax, left)) {
                 point = *met;
                 t = point.t;
             }
             break;
         case PreparedShape::Kind::Sphere:
+            ray = at->localRay(worldRay);
             if (!leaves)
                 t = meetSphere(ray, tMax);
             else if (dot(worldRay.direction, outwards) < 0)
@@ -237,6 +243,7 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, float time,
         case PreparedShape::Kind::Disk:
         case PreparedShape::Kind::Plane:
             if (leaves) break;
+            ray = at->localRay(worldRay);
             t = meetPlane(ray, tMax);
             if (t && shape.kind == PreparedShape::Kind::Disk) {
                 const Vec3d p = ray.at(*t);
@@ -244,7 +251,7 @@ void Geometry::Impl::meet(std::uint32_t i, const LocalRay& worldRay, float time,
             }
     }
     if (!t || !(*t < tMax)) return;
-    const double slack = slackOf(i, at, worldRay, ray, *t, point);
+    const double slack = slackOf(i, *at, worldRay, ray, *t, point);
     const bool nearer = *t < nearest.t;
     const bool coincident =
         nearest.found && std::abs(*t - nearest.t) <= std::max(slack, nearest.slack);
@@ -261,14 +268,16 @@ std::optional<MeshPoint> Geometry::Impl::meetMesh(std::uint32_t i, const LocalRa
     std::optional<std::uint32_t> triangle;
     if (left && left->instance == i) triangle = left->primitive;
     if (!left || !left->coincident.any) return mesh.nearest(ray, tMax, triangle);
-    return mesh.nearest(ray, tMax, triangle, [&](std::uint32_t other) {
-        return passesThrough(*left, i, other).has_value();
-    });
+    const LocalHit start(*this, *left, i);
+    const auto isLeft = [&](std::uint32_t other, const Triangle& corners) {
+        return passesThrough(start, other, corners).has_value();
+    };
+    return mesh.nearest(ray, tMax, triangle, std::cref(isLeft));
 }
 
 bool Geometry::Impl::encloses(std::uint32_t i, Vec3d point, float time) const {
     const PreparedShape& shape = shapeOf(i);
-    const Vec3d p = local(i, placed(i, time), {point, {}}).origin;
+    const Vec3d p = placed(i, time)->localPoint(point);
     switch (shape.kind) {
         case PreparedShape::Kind::Sphere:
             return dot(p, p) < 1;
@@ -294,11 +303,11 @@ void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& wor
     if (shapeOf(i).kind == PreparedShape::Kind::Mesh) {
         // A ray that leaves from the very edge could pass between two triangles in floats.
         const Triangle triangle = shapeOf(i).mesh->triangle(hit.primitive);
-        hit.position =
-            world(i, at, triangle.at(awayFromEdges(triangle, nearest.point.weights, floatError)));
-        completeMesh(at, nearest.point, hit);
+        const auto& weights = nearest.point.weights;
+        hit.position = world(i, at, triangle.at(awayFromEdges(triangle, weights, floatError)));
+        completeMesh(at, triangle, weights, hit);
     } else {
-        Vec3d p = local(i, at, worldRay).at(hit.t);
+        Vec3d p = at->localRay(worldRay).at(hit.t);
         if (shapeOf(i).kind == PreparedShape::Kind::Sphere)
             p = normalize(p);
         else
@@ -309,18 +318,18 @@ void Geometry::Impl::complete(const NearestSurface& nearest, const LocalRay& wor
     hit.coincident = {};
     if (!nearest.coincident) return;
     hit.coincident.any = true;
-    hit.coincident.reach = reach(i, at, hit.primitive, hit.normal, hit.position);
+    hit.coincident.reach = reach(i, *at, hit);
 }
 
 /// Completes a hit on a shape that is not a mesh, at a point of its own frame.
 void Geometry::Impl::completeShape(const Placement& at, Vec3d p, SurfaceHit& hit) const {
     if (shapeOf(hit.instance).kind == PreparedShape::Kind::Sphere) {
-        hit.normal = worldNormal(at, p);
+        hit.normal = at->worldNormal(p);
         const double longitude = std::atan2(-p.z, p.x) / (2 * pi);
         hit.u = longitude < 0 ? longitude + 1 : longitude;
         hit.v = 0.5 + std::asin(std::clamp(p.y, -1.0, 1.0)) / pi;
     } else {
-        hit.normal = worldNormal(at, {0, 1, 0});
+        hit.normal = at->worldNormal({0, 1, 0});
         // The texture covers the square around a disk.
         const bool disk = shapeOf(hit.instance).kind == PreparedShape::Kind::Disk;
         hit.u = disk ? (1 + p.x) / 2 : p.x;
@@ -329,15 +338,11 @@ void Geometry::Impl::completeShape(const Placement& at, Vec3d p, SurfaceHit& hit
     hit.shadingNormal = hit.normal;
 }
 
-void Geometry::Impl::completeMesh(const Placement& at, const MeshPoint& point,
-                                  SurfaceHit& hit) const {
-    const std::uint32_t i = hit.instance;
-    const FramedMesh& framed = *shapeOf(i).mesh;
-    const mesh::SurfaceMesh& mesh = framed.mesh();
-    const std::uint32_t primitive = point.triangle;
-    const std::array<double, 3>& w = point.weights;
-    const Triangle triangle = framed.triangle(primitive);
-    hit.normal = worldNormal(at, triangle.normal);
+void Geometry::Impl::completeMesh(const Placement& at, const Triangle& triangle,
+                                  const std::array<double, 3>& w, SurfaceHit& hit) const {
+    const mesh::SurfaceMesh& mesh = shapeOf(hit.instance).mesh->mesh();
+    const std::uint32_t primitive = hit.primitive;
+    hit.normal = at->worldNormal(triangle.normal);
     hit.shadingNormal = hit.normal;
     hit.u = hit.v = 0;
     if (!mesh.uvs.empty()) {
@@ -355,7 +360,7 @@ void Geometry::Impl::completeMesh(const Placement& at, const MeshPoint& point,
     }
     // In some files normals point against the triangles.
     if (dot(sum, triangle.normal) < 0) interpolated = -interpolated;
-    Vec3d n = worldNormal(at, interpolated);
+    Vec3d n = at->worldNormal(interpolated);
     constexpr double least = 1e-3;  // cosine: bent to just above the surface
     const double cosine = dot(n, hit.normal);
     if (cosine < least) n = normalize(n + hit.normal * (least - cosine));
@@ -395,7 +400,7 @@ std::vector<std::uint32_t> Geometry::enclosing(Vec3d point, const std::vector<bo
 std::size_t Geometry::memoryBytes() const {
     return (impl_->device ? impl_->device->memoryBytes() : 0) +
            impl_->instances.capacity() * sizeof(ShapeInstance) +
-           impl_->localOfWorld.capacity() * sizeof(Columns) +
+           impl_->places.capacity() * sizeof(InstancePlace) +
            impl_->finite.capacity() * sizeof(std::uint32_t);
 }
 

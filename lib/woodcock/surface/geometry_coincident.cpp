@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "woodcock/surface/geometry_impl.h"
@@ -20,25 +21,26 @@ constexpr double doubleRounding = 0x1p-47;
 constexpr double parallel = 1e-3;
 
 Vec3d absolute(Vec3d v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 }  // namespace
 
-double Geometry::Impl::reach(std::uint32_t i, const Placement& at, std::uint32_t primitive,
-                             Vec3d normal, Vec3d point) const {
-    const double doubles =
-        doubleRounding * dot(absolute(normal), absolute(point) + absolute(centre(i, at)));
-    if (shapeOf(i).kind != PreparedShape::Kind::Mesh) return doubles;
-    const FramedMesh& mesh = *shapeOf(i).mesh;
-    const Vec3d n = normalize(mesh.triangle(primitive).normal);
-    return doubles + mesh.rounding(primitive, n) / length(timesTransposed(at.localOfWorld(), n));
+double Geometry::Impl::reach(const InstancePlace& at, Vec3d normal, Vec3d point, double ofPlane) {
+    return doubleRounding * dot(absolute(normal), absolute(point) + absolute(at.centre)) + ofPlane;
 }
 
-double Geometry::Impl::slackOf(std::uint32_t i, const Placement& at, const LocalRay& worldRay,
+double Geometry::Impl::reach(std::uint32_t i, const InstancePlace& at,
+                             const SurfaceHit& hit) const {
+    double ofPlane = 0;
+    if (const auto& mesh = shapeOf(i).mesh) {
+        const Vec3d n = normalize(mesh->triangle(hit.primitive).normal);
+        ofPlane = mesh->rounding(hit.primitive, n) / length(at.gradient(n));
+    }
+    return reach(at, hit.normal, hit.position, ofPlane);
+}
+
+double Geometry::Impl::slackOf(std::uint32_t i, const InstancePlace& at, const LocalRay& worldRay,
                                const LocalRay& ray, double t, const MeshPoint& point) const {
-    const Columns& m = at.localOfWorld();
-    const double stretch = largest(m[0]) + largest(m[1]) + largest(m[2]);
-    const double numbers = largest(worldRay.origin) + t + largest(centre(i, at));
+    const double numbers = largest(worldRay.origin) + t + largest(at.centre);
     double cosine = 1;  // of the local direction, times its length
     switch (shapeOf(i).kind) {
         case PreparedShape::Kind::Mesh:
@@ -51,69 +53,81 @@ double Geometry::Impl::slackOf(std::uint32_t i, const Placement& at, const Local
         case PreparedShape::Kind::Plane:
             cosine = std::abs(ray.direction.y);
     }
-    const double slack = point.slack + 4 * doubleRounding * stretch * numbers / cosine;
+    const double slack = point.slack + 4 * doubleRounding * at.stretch * numbers / cosine;
     return std::isfinite(slack) ? slack : 0;
 }
 
-std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const SurfaceHit& hit,
-                                                               std::uint32_t i,
-                                                               std::uint32_t primitive) const {
-    const PreparedShape& shape = shapeOf(i);
-    const Placement at = placed(i, hit.time);
-    const Vec3d p = local(i, at, {hit.position, {}}).origin;
-    // In the shape's frame: the normal, and the point's height above the surface.
-    Vec3d n{0, 1, 0};
-    double height = p.y;
-    std::optional<Triangle> triangle;
-    if (shape.kind == PreparedShape::Kind::Sphere) {
-        n = normalize(p), height = length(p) - 1;
-    } else if (shape.kind == PreparedShape::Kind::Mesh) {
-        triangle.emplace(shape.mesh->triangle(primitive));
-        n = normalize(triangle->normal), height = dot(p - triangle->corner[0], n);
-    }
-    const Vec3d gradient = timesTransposed(at.localOfWorld(), n);
+Geometry::Impl::LocalHit::LocalHit(const Impl& geometry, const SurfaceHit& h, std::uint32_t i)
+    : hit(h), instance(i), at(geometry.placed(i, h.time)), position(at->localPoint(h.position)) {
+    constexpr double cracks = 0x1p-40;  // none between neighbours
+    edges = cracks + doubleRounding * at->stretch * (largest(h.position) + largest(at->centre));
+}
+
+std::optional<CoincidentSurface> Geometry::Impl::LocalHit::inPlane(std::uint32_t object,
+                                                                   std::uint32_t primitive, Vec3d n,
+                                                                   double height,
+                                                                   double rounding) const {
+    const Vec3d gradient = at->gradient(n);
     const double perUnit = length(gradient);
     const Vec3d normal = gradient * (1 / perUnit);
     if (!isFinite(normal)) return std::nullopt;  // a triangle without area
-    if (!(std::abs(height) / perUnit <=
-          hit.coincident.reach + reach(i, at, primitive, normal, hit.position)))
-        return std::nullopt;
     const double facing = dot(normal, hit.normal);
     if (dot(hit.normal, hit.normal) > 0 && !(facing * facing >= 1 - parallel * parallel))
         return std::nullopt;
-    if (shape.kind == PreparedShape::Kind::Disk && !(p.x * p.x + p.z * p.z <= 1))
+    if (!(std::abs(height) / perUnit <=
+          hit.coincident.reach + reach(*at, normal, hit.position, rounding / perUnit)))
         return std::nullopt;
-    if (triangle) {
-        constexpr double edges = 0x1p-40;  // no cracks between neighbours
-        const Columns& m = at.localOfWorld();
-        const double lost = doubleRounding * (largest(m[0]) + largest(m[1]) + largest(m[2])) *
-                            (largest(hit.position) + largest(centre(i, at)));
-        if (!(edgeDistance(*triangle, p) >= -(edges + lost))) return std::nullopt;
-    }
-    return CoincidentSurface{i, instances[i].object, primitive, facing, normal};
+    return CoincidentSurface{instance, object, primitive, facing, normal};
+}
+
+std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const LocalHit& hit) const {
+    const Vec3d p = hit.position;
+    const std::uint32_t object = instances[hit.instance].object;
+    const PreparedShape::Kind kind = shapeOf(hit.instance).kind;
+    if (kind == PreparedShape::Kind::Sphere)
+        return hit.inPlane(object, 0, normalize(p), length(p) - 1, 0);
+    if (kind == PreparedShape::Kind::Disk && !(p.x * p.x + p.z * p.z <= 1)) return std::nullopt;
+    return hit.inPlane(object, 0, {0, 1, 0}, p.y, 0);
+}
+
+std::optional<CoincidentSurface> Geometry::Impl::passesThrough(const LocalHit& hit,
+                                                               std::uint32_t primitive,
+                                                               const Triangle& triangle) const {
+    const Vec3d p = hit.position;
+    if (surelyBeside(triangle, p, hit.edges)) return std::nullopt;
+    const Vec3d n = normalize(triangle.normal);
+    const auto surface =
+        hit.inPlane(instances[hit.instance].object, primitive, n, dot(p - triangle.corner[0], n),
+                    shapeOf(hit.instance).mesh->rounding(primitive, n));
+    if (!surface || !(edgeDistance(triangle, weightsAt(triangle, p)) >= -hit.edges))
+        return std::nullopt;
+    return surface;
 }
 
 void Geometry::coincidentSurfaces(const SurfaceHit& hit,
                                   std::vector<CoincidentSurface>& found) const {
     found.clear();
     const Impl& impl = *impl_;
-    const auto add = [&](std::uint32_t i, std::uint32_t primitive) {
-        if (const auto surface = impl.passesThrough(hit, i, primitive)) found.push_back(*surface);
+    const auto add = [&](const std::optional<CoincidentSurface>& surface) {
+        if (surface) found.push_back(*surface);
     };
-    for (const std::uint32_t plane : impl.planes) add(plane, 0);
+    for (const std::uint32_t plane : impl.planes)
+        add(impl.passesThrough(Impl::LocalHit(impl, hit, plane)));
+    const auto visitInstance = [&](std::uint32_t box) {
+        const std::uint32_t i = impl.finite[box];
+        const Impl::LocalHit local(impl, hit, i);
+        if (!impl.shapeOf(i).mesh) return add(impl.passesThrough(local));
+        const Columns& m = local.at->localOfWorld;
+        const double stretch = length(m[0]) + length(m[1]) + length(m[2]);
+        const FramedMesh& mesh = *impl.shapeOf(i).mesh;
+        const auto visitTriangle = [&](std::uint32_t index) {
+            add(impl.passesThrough(local, index, mesh.triangle(index)));
+        };
+        mesh.around(local.position, stretch * hit.coincident.reach, std::cref(visitTriangle));
+    };
     if (impl.tree)
         impl.tree.around(impl.frame.point(hit.position), hit.coincident.reach * impl.frame.scale,
-                         hit.time, [&](std::uint32_t box) {
-                             const std::uint32_t i = impl.finite[box];
-                             if (!impl.shapeOf(i).mesh) return add(i, 0);
-                             const Impl::Placement at = impl.placed(i, hit.time);
-                             const Vec3d p = impl.local(i, at, {hit.position, {}}).origin;
-                             const Columns& m = at.localOfWorld();
-                             const double stretch = length(m[0]) + length(m[1]) + length(m[2]);
-                             const FramedMesh& mesh = *impl.shapeOf(i).mesh;
-                             mesh.around(p, stretch * hit.coincident.reach,
-                                         [&](std::uint32_t triangle) { add(i, triangle); });
-                         });
+                         hit.time, std::cref(visitInstance));
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
         return std::tie(a.instance, a.primitive) < std::tie(b.instance, b.primitive);
     });
@@ -124,14 +138,12 @@ SurfaceHit Geometry::inPlaceOf(const SurfaceHit& hit, const CoincidentSurface& o
     own.instance = other.instance, own.object = other.object, own.primitive = other.primitive;
     const Impl& impl = *impl_;
     const Impl::Placement at = impl.placed(other.instance, hit.time);
-    const Vec3d p = impl.local(other.instance, at, {hit.position, {}}).origin;
+    const Vec3d p = at->localPoint(hit.position);
     switch (impl.shapeOf(other.instance).kind) {
         case PreparedShape::Kind::Mesh: {
-            MeshPoint point;
-            point.triangle = other.primitive;
             const Triangle triangle = impl.shapeOf(other.instance).mesh->triangle(other.primitive);
-            point.weights = awayFromEdges(triangle, weightsAt(triangle, p), 0);
-            impl.completeMesh(at, point, own);
+            impl.completeMesh(at, triangle, awayFromEdges(triangle, weightsAt(triangle, p), 0),
+                              own);
             break;
         }
         case PreparedShape::Kind::Sphere:

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -30,6 +32,8 @@ inline Vec3d timesTransposed(const Columns& m, Vec3d v) {
     return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
 }
 
+inline double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 /// Of the tree, where instances move.
 inline constexpr std::uint32_t timeSteps = 17;
 
@@ -42,27 +46,42 @@ struct NearestSurface {
     MeshPoint point;  ///< of meshes
 };
 
+/// Where an instance is, as rays need it: what one hit reads lies together.
+struct InstancePlace {
+    Columns localOfWorld;  ///< directions to its shape's frame
+    Vec3d centre;          ///< of that frame, in the world
+    double stretch;        ///< the sum of the columns' largest parts
+
+    Vec3d localPoint(Vec3d world) const { return times(localOfWorld, world - centre); }
+    LocalRay localRay(const LocalRay& world) const {
+        return {localPoint(world.origin), times(localOfWorld, world.direction)};
+    }
+    /// Normals are covectors, so the outside does not depend on the sign of the determinant.
+    Vec3d gradient(Vec3d localNormal) const { return timesTransposed(localOfWorld, localNormal); }
+    Vec3d worldNormal(Vec3d localNormal) const { return normalize(gradient(localNormal)); }
+};
+
 struct Geometry::Impl {
     /// Where an instance is at a time. One that stands still is read from where it is kept.
     class Placement {
     public:
-        explicit Placement(const Affine3d& worldFromObject, const Columns* localOfWorld = nullptr)
-            : worldFromObject_(&worldFromObject), localOfWorld_(localOfWorld) {}
+        Placement(const Affine3d& worldFromObject, const InstancePlace& place)
+            : worldFromObject_(&worldFromObject), place_(&place) {}
         Placement(const Impl& geometry, std::uint32_t instance, float time);
         Placement(const Placement&) = delete;
         Placement& operator=(const Placement&) = delete;
 
         const Affine3d& worldFromObject() const { return *worldFromObject_; }
-        /// Directions to its shape's frame.
-        const Columns& localOfWorld() const { return *localOfWorld_; }
+        const InstancePlace& operator*() const { return *place_; }
+        const InstancePlace* operator->() const { return place_; }
 
     private:
         struct Moved {
             Affine3d worldFromObject;
-            Columns localOfWorld;
+            InstancePlace place;
         };
         const Affine3d* worldFromObject_;
-        const Columns* localOfWorld_;
+        const InstancePlace* place_;
         std::optional<Moved> moved_;
     };
 
@@ -70,7 +89,7 @@ struct Geometry::Impl {
     std::vector<ShapeInstance> instances;
     std::optional<EmbreeDevice> device;   ///< only where something is of finite size
     std::vector<PreparedShape> prepared;  ///< of each shape
-    std::vector<Columns> localOfWorld;    ///< of each instance: directions to its shape's frame
+    std::vector<InstancePlace> places;    ///< of each instance, at rest
     std::vector<std::uint32_t> finite, planes;
     bool moves = false;
     Box3d bounds;
@@ -80,7 +99,7 @@ struct Geometry::Impl {
     Impl(std::vector<Shape> s, std::vector<ShapeInstance> i);
     void prepareShape(const Shape& shape);
     void placeInstance(std::uint32_t i);
-    Columns localOfWorldAt(std::uint32_t i, const Affine3d& worldFromObject) const;
+    InstancePlace placeAt(std::uint32_t i, const Affine3d& worldFromObject) const;
     void buildTree();
     Box3d worldBox(std::uint32_t i) const;  ///< of the whole shutter
     Box3d boxAt(std::uint32_t i, const Affine3d& worldFromObject) const;
@@ -90,19 +109,8 @@ struct Geometry::Impl {
     Placement placed(std::uint32_t i, float time) const { return {*this, i, time}; }
     /// Of an instance that moves.
     Affine3d worldFromObjectAt(std::uint32_t i, float time) const;
-    Vec3d centre(std::uint32_t i, const Placement& at) const {
-        return at.worldFromObject().point(shapeOf(i).frame.centre);
-    }
-    LocalRay local(std::uint32_t i, const Placement& at, const LocalRay& ray) const {
-        return {times(at.localOfWorld(), ray.origin - centre(i, at)),
-                times(at.localOfWorld(), ray.direction)};
-    }
     Vec3d world(std::uint32_t i, const Placement& at, Vec3d p) const {
-        return at.worldFromObject().vector(p * (1 / shapeOf(i).frame.scale)) + centre(i, at);
-    }
-    /// Normals are covectors, so the outside does not depend on the sign of the determinant.
-    Vec3d worldNormal(const Placement& at, Vec3d n) const {
-        return normalize(timesTransposed(at.localOfWorld(), n));
+        return at.worldFromObject().vector(p * (1 / shapeOf(i).frame.scale)) + at->centre;
     }
 
     struct NearestVisitor;
@@ -116,31 +124,51 @@ struct Geometry::Impl {
     bool encloses(std::uint32_t i, Vec3d point, float time) const;
     void complete(const NearestSurface& nearest, const LocalRay& worldRay, float time,
                   SurfaceHit& hit) const;
-    void completeMesh(const Placement& at, const MeshPoint& point, SurfaceHit& hit) const;
+    void completeMesh(const Placement& at, const Triangle& triangle,
+                      const std::array<double, 3>& weights, SurfaceHit& hit) const;
     void completeShape(const Placement& at, Vec3d p, SurfaceHit& hit) const;
 
     // ---- surfaces that coincide: geometry_coincident.cpp
 
     /// How far rounding may move a point off the plane of an instance's surface: the rounding of
-    /// the numbers from which the point and the plane are computed.
-    double reach(std::uint32_t i, const Placement& at, std::uint32_t primitive, Vec3d normal,
-                 Vec3d point) const;
+    /// the numbers from which the point and the plane are computed. `ofPlane`: that of a mesh's
+    /// corners, along the normal.
+    static double reach(const InstancePlace& at, Vec3d normal, Vec3d point, double ofPlane);
+    double reach(std::uint32_t i, const InstancePlace& at, const SurfaceHit& hit) const;
     /// The error of t that follows from it, at a hit at `t` along a ray.
-    double slackOf(std::uint32_t i, const Placement& at, const LocalRay& worldRay,
+    double slackOf(std::uint32_t i, const InstancePlace& at, const LocalRay& worldRay,
                    const LocalRay& ray, double t, const MeshPoint& point) const;
-    /// The surface, if it passes through the position of a hit.
-    std::optional<CoincidentSurface> passesThrough(const SurfaceHit& hit, std::uint32_t i,
-                                                   std::uint32_t primitive) const;
+    struct LocalHit;
+    /// The surface, if it passes through the position of a hit: an instance's, or a triangle of its
+    /// mesh.
+    std::optional<CoincidentSurface> passesThrough(const LocalHit& hit) const;
+    std::optional<CoincidentSurface> passesThrough(const LocalHit& hit, std::uint32_t primitive,
+                                                   const Triangle& triangle) const;
+};
+
+/// A hit as the surfaces of an instance see it.
+struct Geometry::Impl::LocalHit {
+    const SurfaceHit& hit;
+    std::uint32_t instance;
+    Placement at;
+    Vec3d position;  ///< in the shape's frame
+    double edges;    ///< so far beyond a triangle's edge still counts as on it, in the frame
+
+    LocalHit(const Impl& geometry, const SurfaceHit& h, std::uint32_t i);
+    /// The surface in the plane of unit normal `n` that `position` is `height` above, if rounding
+    /// may have done that; `rounding` of the plane, along n.
+    std::optional<CoincidentSurface> inPlane(std::uint32_t object, std::uint32_t primitive, Vec3d n,
+                                             double height, double rounding) const;
 };
 
 inline Geometry::Impl::Placement::Placement(const Impl& geometry, std::uint32_t instance,
                                             float time)
-    : Placement(geometry.instances[instance].worldFromObject, &geometry.localOfWorld[instance]) {
+    : Placement(geometry.instances[instance].worldFromObject, geometry.places[instance]) {
     if (!geometry.instances[instance].motion) [[likely]]
         return;
     const Affine3d there = geometry.worldFromObjectAt(instance, time);
-    const Moved& m = moved_.emplace(Moved{there, geometry.localOfWorldAt(instance, there)});
-    worldFromObject_ = &m.worldFromObject, localOfWorld_ = &m.localOfWorld;
+    const Moved& m = moved_.emplace(Moved{there, geometry.placeAt(instance, there)});
+    worldFromObject_ = &m.worldFromObject, place_ = &m.place;
 }
 
 }  // namespace woodcock::surface

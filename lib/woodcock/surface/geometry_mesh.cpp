@@ -52,14 +52,14 @@ struct NearestTriangle final : TriangleVisitor {
     double speed;
     double error = floatError;  ///< of the search
     std::optional<Start> start;
-    const std::function<bool(std::uint32_t)>& alsoLeft;
+    const FramedMesh::TestsTriangle& alsoLeft;
     MeshPoint nearest;  ///< t: so far
     double slack = 0;   ///< what rounding may make of that t
     bool found = false;
     double side = 0;  ///< direction . normal, of what was found
 
     NearestTriangle(const FramedMesh& m, const LocalRay& r, double begin, double tMax,
-                    const std::function<bool(std::uint32_t)>& others)
+                    const FramedMesh::TestsTriangle& others)
         : mesh(m),
           ray{r.at(begin), r.direction},
           from(begin),
@@ -71,7 +71,7 @@ struct NearestTriangle final : TriangleVisitor {
     bool accept(std::uint32_t index) override {
         if (start && index == start->triangle) return false;
         const Triangle triangle = mesh.triangle(index);
-        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle, error);
+        const std::optional<TrianglePoint> point = meetTriangle(ray, speed, triangle, error);
         if (!point) return false;
         const double t = from + point->t;
         if (!(t > 0) || !(t < nearest.t + slack)) return false;
@@ -79,9 +79,9 @@ struct NearestTriangle final : TriangleVisitor {
         // hit from a rounding error: a ray that starts inside can only leave, and one that starts
         // outside can only enter.
         const double thisSide = dot(ray.direction, triangle.normal);
-        const bool doubtful = point->edge < 0 || t * speed < 4 * point->tolerance;
+        const bool doubtful = !point->within || t * speed < 4 * point->tolerance;
         if (start && doubtful && thisSide * start->side > 0) return false;
-        if (alsoLeft && alsoLeft(index)) return false;
+        if (alsoLeft && alsoLeft(index, triangle)) return false;
         // `tolerance` follows from the error of the search; the error of rounding is in proportion.
         const double thisSlack = 4 * mesh.largestRounding() * point->tolerance / (error * speed);
         const bool coincident = found && std::abs(t - nearest.t) <= std::max(slack, thisSlack);
@@ -112,9 +112,11 @@ struct Crossings final : TriangleVisitor {
 
     bool accept(std::uint32_t index) override {
         const Triangle triangle = mesh.triangle(index);
-        const std::optional<TrianglePoint> point = meetTriangle(ray, triangle, floatError);
+        const std::optional<TrianglePoint> point =
+            meetTriangle(ray, length(ray.direction), triangle, floatError);
         if (!point || !(point->t > 0)) return false;
-        uncertain = uncertain || point->edge < 2 * point->tolerance;
+        uncertain = uncertain || !point->within ||
+                    edgeDistance(triangle, point->weights) < 2 * point->tolerance;
         leaving += dot(ray.direction, triangle.normal) > 0 ? 1 : -1;
         return false;
     }
@@ -138,9 +140,9 @@ void FramedMesh::around(Vec3d point, double radius,
     tree_.around(point, radius, 0, visit);
 }
 
-std::optional<MeshPoint> FramedMesh::nearest(
-    const LocalRay& ray, double tMax, std::optional<std::uint32_t> left,
-    const std::function<bool(std::uint32_t)>& alsoLeft) const {
+std::optional<MeshPoint> FramedMesh::nearest(const LocalRay& ray, double tMax,
+                                             std::optional<std::uint32_t> left,
+                                             const TestsTriangle& alsoLeft) const {
     const RayInterval part = clip(ray, box_, EmbreeTree::margin, {0, tMax});
     if (part.empty()) return std::nullopt;
     NearestTriangle visitor(*this, ray, part.from, tMax, alsoLeft);

@@ -51,11 +51,12 @@ public:
         return largestRounding_;
     }  ///< a bound of rounding() over all triangles
 
+    using TestsTriangle = std::function<bool(std::uint32_t, const Triangle&)>;
     /// The nearest triangle in (0, tMax). `left`: the triangle that the ray starts on; `alsoLeft`
     /// says which other triangles it starts on.
     std::optional<MeshPoint> nearest(const LocalRay& ray, double tMax,
                                      std::optional<std::uint32_t> left,
-                                     const std::function<bool(std::uint32_t)>& alsoLeft = {}) const;
+                                     const TestsTriangle& alsoLeft = {}) const;
     /// Calls `visit` with all triangles that may lie within a radius of a point.
     void around(Vec3d point, double radius, const std::function<void(std::uint32_t)>& visit) const;
     /// Whether a ray from a point leaves through more triangles than it enters through.

@@ -23,9 +23,23 @@ std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d p, double twiceA
     return w;
 }
 
+double squareOf(Vec3d v) { return dot(v, v); }
+
+/// True only where each weight is at least `margin` of its height, and nearly always then. It
+/// compares squares, which takes no root and no division, with a factor to spare for rounding.
+bool surelyWithin(const Triangle& triangle, const std::array<double, 3>& w, double margin) {
+    const auto& p = triangle.corner;
+    const double square = squareOf(triangle.normal), limit = 4 * margin * margin;
+    const auto far = [&](double weight, Vec3d edge) {
+        return weight > 0 && weight * weight * square > limit * squareOf(edge);
+    };
+    return far(w[0], p[2] - p[1]) && far(w[1], p[0] - p[2]) && far(w[2], p[1] - p[0]);
+}
+
 }  // namespace
 
 RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterval within) {
+    double from = within.from, to = within.to;
     for (int axis = 0; axis < 3; ++axis) {
         const double lower = box.lower[axis] - margin - ray.origin[axis];
         const double upper = box.upper[axis] + margin - ray.origin[axis];
@@ -34,10 +48,12 @@ RayInterval clip(const LocalRay& ray, const Box3d& box, double margin, RayInterv
             if (lower > 0 || upper < 0) return {1, 0};
             continue;
         }
-        within.from = std::max(within.from, (d > 0 ? lower : upper) / d);
-        within.to = std::min(within.to, (d > 0 ? upper : lower) / d);
+        // Both are divided at once. The processor cannot guess which way a ray goes.
+        const double a = lower / d, b = upper / d;
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
     }
-    return within;
+    return {from, to};
 }
 
 std::optional<double> meetSphere(const LocalRay& ray, double tMax) {
@@ -69,13 +85,30 @@ std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d point) {
     return weightsAt(triangle, point, length(triangle.normal));
 }
 
-double edgeDistance(const Triangle& triangle, Vec3d point) {
-    const std::array<double, 3> w = weightsAt(triangle, point), height = heights(triangle);
+double edgeDistance(const Triangle& triangle, const std::array<double, 3>& w) {
+    const std::array<double, 3> height = heights(triangle);
     return std::min({w[0] * height[0], w[1] * height[1], w[2] * height[2]});
 }
 
-std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
-                                          double error) {
+bool surelyBeside(const Triangle& triangle, Vec3d point, double margin) {
+    // The weights times `square`, each against twice the margin, in squares as in surelyWithin().
+    const auto& c = triangle.corner;
+    const Vec3d edge1 = c[1] - c[0], edge2 = c[2] - c[0], from0 = point - c[0];
+    const double square = squareOf(triangle.normal), limit = 4 * margin * margin * square;
+    if (!(square > 1e-150)) return false;  // the squares below could vanish
+    const double w1 = dot(cross(from0, edge2), triangle.normal),
+                 w2 = dot(cross(edge1, from0), triangle.normal), w0 = square - w1 - w2;
+    const auto beside = [&](double weight, Vec3d edge) {
+        return weight < 0 && weight * weight > limit * squareOf(edge);
+    };
+    if (beside(w1, edge2) || beside(w2, edge1)) return true;
+    // This weight is what is left of the others: where they are large, rounding spoils it.
+    constexpr double large = 16;
+    return std::abs(w1) + std::abs(w2) < large * square && beside(w0, c[2] - c[1]);
+}
+
+std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, double speed,
+                                          const Triangle& triangle, double error) {
     const double slope = dot(ray.direction, triangle.normal);
     const double twiceArea = length(triangle.normal);
     if (slope == 0 || !(twiceArea > 0)) return std::nullopt;
@@ -84,12 +117,13 @@ std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& t
     auto& w = point.weights;
     w = weightsAt(triangle, ray.at(point.t), twiceArea);
 
-    const double cosine = std::abs(slope) / (length(ray.direction) * twiceArea);
+    const double cosine = std::abs(slope) / (speed * twiceArea);
     point.tolerance = error / cosine;
-    const std::array<double, 3> height = heights(triangle);
-    point.edge = std::min({w[0] * height[0], w[1] * height[1], w[2] * height[2]});
-    if (!(point.edge >= -point.tolerance)) return std::nullopt;
-    if (point.edge < 0) {
+    if (w[0] >= 0 && w[1] >= 0 && w[2] >= 0) return point;  // nearly always
+    const double edge = edgeDistance(triangle, w);
+    if (!(edge >= -point.tolerance)) return std::nullopt;
+    if (edge < 0) {
+        point.within = false;
         w = awayFromEdges(triangle, w, 0);
         point.t =
             dot(triangle.at(w) - ray.origin, ray.direction) / dot(ray.direction, ray.direction);
@@ -99,6 +133,7 @@ std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& t
 
 std::array<double, 3> awayFromEdges(const Triangle& triangle, std::array<double, 3> weights,
                                     double margin) {
+    if (surelyWithin(triangle, weights, margin)) return weights;
     const std::array<double, 3> height = heights(triangle);
     std::array<double, 3> least;
     double room = 1, slack = 0;

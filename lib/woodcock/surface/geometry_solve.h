@@ -46,20 +46,24 @@ struct Triangle {
 struct TrianglePoint {
     double t = 0;
     std::array<double, 3> weights{};  ///< barycentric, none negative
-    double edge = 0;  ///< distance of the ray from the nearest edge; negative: outside
+    bool within = true;  ///< false: the ray passes the triangle, by no more than the error
     double tolerance =
         0;  ///< the error along the triangle that follows from the error beside the ray
 };
 /// Where a ray meets a triangle that was found in floats. A ray that passes it by no more than the
 /// error of the search meets it at its edge, so that there are no cracks. Absent where it surely
-/// passes, or is parallel.
-std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, const Triangle& triangle,
-                                          double error);
+/// passes, or is parallel. `speed`: the length of the ray's direction.
+std::optional<TrianglePoint> meetTriangle(const LocalRay& ray, double speed,
+                                          const Triangle& triangle, double error);
 
 /// Barycentric weights of a point in a triangle's plane, or of its projection there.
 std::array<double, 3> weightsAt(const Triangle& triangle, Vec3d point);
-/// A point's distance from the nearest edge; negative: outside.
-double edgeDistance(const Triangle& triangle, Vec3d point);
+/// The distance from the nearest edge of the point with these weights; negative: outside.
+double edgeDistance(const Triangle& triangle, const std::array<double, 3>& weights);
+/// True only where the edgeDistance() of the point's weights is below -margin, and nearly always
+/// then, but for points that are many times the triangle's size away from it. It takes a fraction
+/// of the time. The triangle is of about unit size; the margin is 2^-40 at least.
+bool surelyBeside(const Triangle& triangle, Vec3d point, double margin);
 
 /// Weights moved inwards so that their point is `margin` away from all edges, or the middle of the
 /// triangle.

@@ -17,8 +17,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
     const SampleSequence sequence(options.seed, job.x, job.y, job.sample);
     const auto u = sequence.draw(0);
     const float time = traced.needs.motion ? drawTime(sequence) : 0;
-    const camera::CameraRay ray =
-        traced.scene.camera.ray(job.x + u[0], job.y + u[1], options.width, options.height, time);
+    const camera::CameraRay ray = traced.cameraRays.at(job.x + u[0], job.y + u[1], time);
     result = {};
     batch.paths.push_back(
         {.result = &result,
