@@ -114,13 +114,19 @@ void runMerge(const MergeOptions& options, const std::string& commandLine) {
     const image::StateFile first(options.parts.front(), "part");
     checkLayers(options, first);
     checkSameLayers(options);
-    const image::Outputs outputs = prepareOutputs(options, pictureFactsOf(first),
-                                                  image::Film::keptIn(first.planes()).parts.groups);
+    const PictureFacts facts = pictureFactsOf(first);
+    const image::Outputs outputs =
+        prepareOutputs(options, facts, image::Film::keptIn(first.planes()).parts.groups);
     const render::MergedParts merged =
         render::mergeParts(options.parts, {options.partial, options.spp});
-    const std::string note = outputs.write(
-        merged.film, {merged.firstSample, merged.endSample, merged.seeds.front(), merged.seconds,
-                      first.fact("scene"), commandLine, merged.adaptive});
+    image::RenderMetadata metadata = facts.shot;
+    metadata.firstSample = merged.firstSample, metadata.endSample = merged.endSample;
+    metadata.seed = merged.seeds.front();
+    metadata.renderSeconds = merged.seconds;
+    metadata.sceneDigest = first.fact("scene");
+    metadata.commandLine = commandLine;
+    metadata.adaptive = merged.adaptive;
+    const std::string note = outputs.write(merged.film, metadata);
     for (const std::filesystem::path& file : options.outputs)
         spdlog::info("wrote {}", file.string());
     if (!note.empty()) spdlog::info("{}", note);

@@ -362,6 +362,29 @@ double StateFile::number(const std::string& name) const {
     return value;
 }
 
+template <typename Number>
+std::vector<Number> StateFile::numbers(const std::string& name, std::size_t many) const {
+    const std::string& text = fact(name);
+    std::vector<Number> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (at < end && numbers.size() <= many) {
+        Number value{};
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || (next < end && *next != ',')) break;
+        numbers.push_back(value);
+        at = next < end ? next + 1 : next;
+    }
+    if (at != end || numbers.size() != many)
+        throw unreadable(
+            fmt::format("its '{}' is '{}', not {} numbers", name, shown(text, 60), many));
+    return numbers;
+}
+
+template std::vector<int> StateFile::numbers(const std::string&, std::size_t) const;
+template std::vector<float> StateFile::numbers(const std::string&, std::size_t) const;
+template std::vector<std::uint64_t> StateFile::numbers(const std::string&, std::size_t) const;
+
 void StateFile::read(std::span<const Film::Plane> planes) const {
     try {
         Imf::MultiPartInputFile input(file_.c_str());

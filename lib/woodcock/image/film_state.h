@@ -62,6 +62,9 @@ public:
     /// Throws Error{Input} on anything but a whole number in the range.
     std::int64_t count(const std::string& fact, std::int64_t lowest, std::int64_t highest) const;
     double number(const std::string& fact) const;  ///< likewise; finite
+    /// So many, between commas: of int, std::uint64_t or float. Throws likewise.
+    template <typename Number>
+    std::vector<Number> numbers(const std::string& fact, std::size_t many) const;
 
     /// Fills `planes`, which must be those of the file, in its order, and of its window. Throws
     /// Error{Input} where numbers are not those that were written.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <climits>
 #include <cmath>
 
@@ -42,26 +41,6 @@ std::string countersText(const RenderCounters& counters) {
     for (const auto counter : countersKept)
         text += fmt::format("{}{}", text.empty() ? "" : ",", counters.*counter);
     return text;
-}
-
-/// Whole numbers between commas. Throws Error{Input} unless there are so many.
-template <typename Number>
-std::vector<Number> numbersOf(const image::StateFile& file, const char* fact, std::size_t many) {
-    const std::string& text = file.fact(fact);
-    std::vector<Number> numbers;
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    while (at < end && numbers.size() <= many) {
-        Number value{};
-        const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc() || (next < end && *next != ',')) break;
-        numbers.push_back(value);
-        at = next < end ? next + 1 : next;
-    }
-    if (at != end || numbers.size() != many)
-        throw file.unreadable(
-            fmt::format("its '{}' is '{}', not {} numbers", fact, shown(text, 60), many));
-    return numbers;
 }
 
 std::string sampledText(const RenderSettings& settings) {
@@ -145,7 +124,7 @@ Ending endingOf(const image::StateFile& file) {
 }
 
 image::Film::Window pictureOf(const image::StateFile& file) {
-    const auto n = numbersOf<int>(file, "picture", 4);
+    const auto n = file.numbers<int>("picture", 4);
     const image::Film::Window own = file.window(), picture{n[0], n[1], n[2], n[3]};
     if (picture.x0 < 0 || picture.y0 < 0 || picture.x1 > file.width() ||
         picture.y1 > file.height() || own.x0 < picture.x0 || own.y0 < picture.y0 ||
@@ -179,7 +158,7 @@ RenderState readState(const image::StateFile& file) {
     state.endSample = static_cast<int>(file.count("end", first, INT_MAX));
     state.passLength = static_cast<int>(file.count("pass", 1, 1 << 20));
     state.seconds = std::max(0.0, file.number("seconds"));
-    const auto counters = numbersOf<std::uint64_t>(file, "counters", countersKept.size());
+    const auto counters = file.numbers<std::uint64_t>("counters", countersKept.size());
     for (std::size_t i = 0; i < counters.size(); ++i) state.counters.*countersKept[i] = counters[i];
     for (const std::uint64_t n : drawn) {
         if (n < static_cast<std::uint64_t>(first) || n > INT_MAX)
