@@ -7,6 +7,7 @@ set -euo pipefail
 
 woodcock=$1 digest=$2 pictures=${3:-3}
 RANDOM=${4:-1}
+here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 kills=0 resumed=0 picture=0
 end() {
@@ -18,28 +19,15 @@ trap end EXIT
 trap 'exit 130' INT TERM
 cd "$folder"
 
-cat >fog.toml <<'SCENE'
-[[volume]]
-box = { min = [-1, -1, -1], max = [1, 1, 1] }
-scale = 1.5
-albedo = 0.8
-[[light]]
-type = "environment"
+cat "$here/tools/fog.toml" - >fog.toml <<'SCENE'
 [[light]]
 type = "sun"
 direction = [1, -2, 0]
-[camera]
-eye = [2, 1, 4]
-look_at = [0, 0, 0]
-fov = 30
-[render]
-resolution = [40, 30]
-spp = 800
 SCENE
 
 # Whether samples are spread evenly or by a plan.
 declare -A options=([even]="--no-adaptive" [adaptive]="--adaptive")
-render=("$woodcock" render fog.toml --quiet --layers "depth,error,samples")
+render=("$woodcock" render fog.toml --quiet --res 40x30 --spp 800 --layers "depth,error,samples")
 pixels() { "$digest" "$1" | cut -d' ' -f1; }
 
 declare -A expected

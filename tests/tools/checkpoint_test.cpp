@@ -24,7 +24,7 @@ using Words = std::vector<std::string>;
 
 class Checkpoints : public testing::Test {
 protected:
-    void SetUp() override { writeText(dir / "fog.toml", fogScene); }
+    void SetUp() override { writeText(dir / "fog.toml", fogScene()); }
 
     std::string file(const std::string& name) const { return (dir / name).string(); }
     Words words(const Words& more, const std::string& out = "a.exr",
