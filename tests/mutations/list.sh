@@ -223,6 +223,10 @@ defect "kept sums are floats" 'FilmStates.*:Resume.*' "" \
     lib/woodcock/image/film_state.cpp \
     'act(component.name + ".lo", wordsOf(component));' ';'
 
+defect "of deep parts, the last one's bins alone" 'DeepFilm.*:MergeParts.*' "" \
+    lib/woodcock/image/deep_film.cpp \
+    'bin.stopped += more.stopped;' 'bin.stopped = more.stopped;'
+
 defect "a single missing sample is passed over" 'PartCoverage.*' "" \
     lib/woodcock/render/part_coverage.cpp \
     'if (part->first > reached)' 'if (part->first > reached + 4)'

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders that are interrupted, killed and resumed, and parts that are merged, as users do it.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -213,6 +215,61 @@ TEST_F(Merge, PartsAreOnePicture) {
                        mergedPng = readLayers(dir / "merged.png");
     for (std::size_t i = 0; i < wholePng.planes.size(); ++i)
         EXPECT_EQ(wholePng.planes[i].values, mergedPng.planes[i].values);
+}
+
+/// Mattes and deep pixels of tiles and ranges of samples, and headers that only differ in how the
+/// picture was made.
+TEST_F(Merge, MattesDeepPixelsAndHeadersAreThoseOfOnePicture) {
+    writeText(dir / "fog.toml", fogScene() + "fps = 25\n[[surface]]\nsphere = { radius = 0.3 }\n");
+    const auto draw = [&](Words more, const std::string& name) {
+        more.insert(more.end(),
+                    {"--mattes", "object,material", "--deep", file(name + "_deep.exr")});
+        EXPECT_EQ(render(more, name + ".exr").exitCode, 0);
+    };
+    draw({"--spp", "9"}, "whole");
+    Words parts;
+    for (const char* tile : {"0/2", "1/2"})
+        for (const char* range : {"0:4", "4:9"}) {
+            parts.push_back("part" + std::to_string(parts.size()) + ".exr");
+            draw({"--tile", tile, "--samples", range}, "part" + std::to_string(parts.size() - 1));
+        }
+    ASSERT_EQ(merge(parts, {"--deep", file("merged_deep.exr")}).exitCode, 0);
+    const ReadBack whole = readBack(dir / "whole.exr"), merged = readBack(dir / "merged.exr");
+    EXPECT_EQ(whole.channels, merged.channels);
+    ASSERT_TRUE(whole.has("CryptoMaterial02.a"));
+    for (std::size_t i = 0; i < whole.values.size(); ++i)
+        EXPECT_FLOAT_EQ(whole.values[i], merged.values[i]);
+    const auto expectSameHeaders = [](std::map<std::string, std::string> a,
+                                      std::map<std::string, std::string> b) {
+        EXPECT_TRUE(a.contains("woodcock/commandLine"));
+        for (const char* made : {"woodcock/commandLine", "woodcock/renderSeconds", "DateTime"})
+            a.erase(made), b.erase(made);
+        EXPECT_EQ(a, b);
+    };
+    for (const char* known : {"worldToCamera", "worldToNDC", "framesPerSecond"})
+        EXPECT_TRUE(whole.attributes.contains(known)) << known;
+    expectSameHeaders(whole.attributes, merged.attributes);
+
+    // Bins have the same edges; points of the sphere may be grouped otherwise.
+    OIIO::ImageBuf one(file("whole_deep.exr")), other(file("merged_deep.exr"));
+    ASSERT_TRUE(one.read(0, 0, true) && other.read(0, 0, true));
+    const OIIO::ImageBuf flat = OIIO::ImageBufAlgo::flatten(one),
+                         flatMerged = OIIO::ImageBufAlgo::flatten(other);
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 24; ++x)
+            for (int c = 0; c < 4; ++c)
+                EXPECT_NEAR(flat.getchannel(x, y, 0, c), flatMerged.getchannel(x, y, 0, c), 1e-6);
+
+    // Elsewhere, or left out.
+    ASSERT_EQ(merge(parts, {"--mattes-file", file("m.exr")}).exitCode, 0);
+    EXPECT_FALSE(readBack(dir / "merged.exr").has("CryptoObject00.r"));
+    EXPECT_TRUE(readBack(dir / "m.exr").has("CryptoObject00.r"));
+    EXPECT_EQ(render({"--mergeable", "--spp", "1"}, "plain.exr").exitCode, 0);
+    expectSaid(merge({"plain.exr"}, {"--deep", file("d.exr")}), 2,
+               {"--deep: the parts hold no deep pixels: they were rendered without --deep"});
+    expectSaid(merge({"plain.exr"}, {"--mattes-file", file("d.exr")}), 2,
+               {"--mattes-file: the parts hold no mattes"});
+    EXPECT_FALSE(fs::exists(dir / "d.exr"));
 }
 
 TEST_F(Merge, SaysWhatDoesNotFit) {

@@ -480,7 +480,8 @@ private:
         const image::StateFacts facts = factsOf(description_);
         const std::string& digest = facts.at("scene");
         Checkpoint checkpoint(
-            options_, settings_, pictureOf(description_.render, options_), outputs, files(), facts,
+            options_, settings_, pictureOf(description_.render, options_), outputs,
+            checkpointFile(description_.output), facts,
             [&](const render::RenderState& state) { return metadataOf(state, digest); });
         const render::RenderResult result =
             renderWithProgress(scene, settings_, style_, place_, checkpoint.hooks());
