@@ -280,7 +280,7 @@ int partOfState(const Imf::MultiPartInputFile& file) {
     return -1;
 }
 
-std::vector<std::string> split(const std::string& text) {
+std::vector<std::string> namesIn(const std::string& text) {
     std::vector<std::string> words;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find(' ', at), text.size());
@@ -324,7 +324,7 @@ StateFile::StateFile(const std::filesystem::path& file, std::string_view what)
     }
     if (window_.x0 < 0 || window_.y0 < 0 || window_.x1 > width_ || window_.y1 > height_)
         throw unreadable("it is damaged: its pixels lie outside of its image");
-    planes_ = split(fact(planesFact));
+    planes_ = namesIn(fact(planesFact));
 }
 
 Error StateFile::unreadable(const std::string& reason) const {
