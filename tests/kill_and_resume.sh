@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# kill_and_resume.sh WOODCOCK PIXEL_DIGEST [PICTURES [SEED]]: renders a tiny picture without
+# kill_and_resume.sh WOODCOCK PIXEL_DIGEST [PICTURES [SEED]]: renders tiny pictures without
 # interruption, then as often as PICTURES says with checkpoints, killed by SIGKILL at random times
-# and resumed until it is done. Every picture must have the same pixels. Says how often it killed.
+# and resumed until they are done. Every picture must have the same pixels, and its deep pixels the
+# same bytes. Says how often it killed.
 set -euo pipefail
 
 woodcock=$1 digest=$2 pictures=${3:-3}
 RANDOM=${4:-1}
+here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 kills=0 resumed=0 picture=0
 end() {
@@ -18,49 +20,55 @@ trap end EXIT
 trap 'exit 130' INT TERM
 cd "$folder"
 
-cat >fog.toml <<'SCENE'
-[[volume]]
-box = { min = [-1, -1, -1], max = [1, 1, 1] }
-scale = 1.5
-albedo = 0.8
-[[light]]
-type = "environment"
+cat "$here/tools/fog.toml" - >fog.toml <<'SCENE'
 [[light]]
 type = "sun"
 direction = [1, -2, 0]
-[camera]
-eye = [2, 1, 4]
-look_at = [0, 0, 0]
-fov = 30
-[render]
-resolution = [40, 30]
-spp = 800
+[[surface]]
+name = "ball"
+sphere = { radius = 0.4 }
 SCENE
 
-# Whether samples are spread evenly or by a plan.
-declare -A options=([even]="--no-adaptive" [adaptive]="--adaptive")
-render=("$woodcock" render fog.toml --quiet --layers "depth,error,samples")
-pixels() { "$digest" "$1" | cut -d' ' -f1; }
+# Whether samples are spread evenly or by a plan, and what is kept beside the picture.
+kinds=(even deep adaptive mattes)
+declare -A options=(
+    [even]="--no-adaptive"
+    [deep]="--adaptive --mattes object --deep a_deep.exr"
+    [adaptive]="--adaptive"
+    [mattes]="--no-adaptive --mattes object,material --mattes-file a_mattes.exr --deep a_deep.exr")
+# The same words always: headers repeat them.
+render=("$woodcock" render fog.toml --quiet --res 40x30 --spp 800 --layers "depth,error,samples"
+    -o a.exr --checkpoint 0.1s --resume)
+outputs=(a.exr a_mattes.exr a_deep.exr)
 
-declare -A expected
-start=$(date +%s%N)
-for kind in even adaptive; do
-    "${render[@]}" ${options[$kind]} -o "$kind.exr"
-    expected[$kind]=$(pixels "$kind.exr")
-done
+# One line for each file that the render has written.
+sums() {
+    local file
+    for file in "${outputs[@]}"; do
+        if [[ ! -e $file ]]; then continue; fi
+        if [[ $file == a_deep.exr ]]; then cksum "$file"; else "$digest" "$file"; fi
+    done
+}
 
-# Milliseconds that a render takes on this machine, which may be busy.
-takes=$((($(date +%s%N) - start) / 2000000))
+declare -A expected takes
 for ((picture = 0; picture < pictures; ++picture)); do
-    if ((picture % 2)); then kind=adaptive; else kind=even; fi
-    rm -f a.exr
-    while true; do
+    kind=${kinds[picture % ${#kinds[@]}]}
+    if [[ -z ${expected[$kind]:-} ]]; then
+        start=$(date +%s%N)
+        "${render[@]}" ${options[$kind]}
+        # Milliseconds that it takes on this machine, which may be busy.
+        takes[$kind]=$((($(date +%s%N) - start) / 1000000 + 1))
+        expected[$kind]=$(sums)
+        rm -f "${outputs[@]}"
+    fi
+    for ((attempt = 0; ; ++attempt)); do
         there=no
         if [[ -e a.checkpoint.exr ]]; then there=yes; fi
         # Not by a function: its process would be a shell's, whose death spares the program.
-        "${render[@]}" ${options[$kind]} -o a.exr --checkpoint 0.1s --resume &
+        "${render[@]}" ${options[$kind]} &
         process=$!
-        pause=$((RANDOM % takes + takes / 8))
+        # More patience each time, on a machine that may have become slower.
+        pause=$((RANDOM % (takes[$kind] / 4 + 1) + takes[$kind] * (1 + attempt) / 16))
         sleep "$((pause / 1000)).$(printf %03d $((pause % 1000)))"
         kill -9 $process 2>/dev/null || true
         code=0
@@ -71,17 +79,17 @@ for ((picture = 0; picture < pictures; ++picture)); do
         elif ((code != 0)); then
             echo "picture $picture ($kind): exit code $code after $kills kills" >&2
             exit 1
+        else
+            break
         fi
-        [[ -e a.exr ]] && break
     done
-    # Killed after the picture was written and before its checkpoint was removed.
-    if [[ -e a.checkpoint.exr ]]; then "${render[@]}" ${options[$kind]} -o a.exr --resume; fi
-    if [[ $(pixels a.exr) != "${expected[$kind]}" ]]; then
+    if [[ $(sums) != "${expected[$kind]}" ]]; then
         echo "picture $picture ($kind) differs after $kills kills" >&2
         exit 1
     fi
-    if compgen -G '.woodcock*' >/dev/null; then
-        echo "temporary files are left: $(ls -a)" >&2
+    if compgen -G '.woodcock*' >/dev/null || [[ -e a.checkpoint.exr ]]; then
+        echo "files are left: $(ls -a)" >&2
         exit 1
     fi
+    rm -f "${outputs[@]}"
 done

@@ -240,6 +240,51 @@ TEST(DeepFilm, CannotBeCrackedByRandomRays) {
     }
 }
 
+/// Parts add up to the film of all rays, also where pixels of several windows come together.
+TEST(DeepFilm, PartsAreOneFilm) {
+    const std::vector<float> edges{1, 2, 4};
+    const auto ray = [](double after, double depth) {
+        return StoppedLight{
+            .stops = {{.near = 1, .far = 4, .before = 1, .after = after, .owner = 0},
+                      {.near = depth,
+                       .far = depth,
+                       .before = after,
+                       .after = 0,
+                       .owner = 3,
+                       .kind = Kind::Surface}},
+            .arrivals = {{1.5, Rgb(3), false}, {depth, Rgb(2), true, 3}}};
+    };
+    using Edges = std::vector<std::vector<float>>;
+    DeepFilm whole({0, 0, 2, 1}, 0.01, Edges{edges, {}}), left({0, 0, 1, 1}, 0.01, Edges{edges}),
+        right({1, 0, 2, 1}, 0.01, Edges(1)), both({0, 0, 2, 1}, 0.01, Edges{edges, {}});
+    Film film(2, 1, {0, 0, 2, 1});
+    for (const auto& [x, after, depth] : {std::tuple(0, 0.5, 5.0),
+                                          {0, 0.25, 7.0},
+                                          {1, 0.75, 5.0},
+                                          {0, 0.75, 5.01},
+                                          {1, 0.5, 6.0}}) {
+        whole.add(x, 0, ray(after, depth));
+        film.add(x, 0, FilmSample{Rgb(5), 1});
+        DeepFilm& part = depth > 5 ? both : x == 0 ? left : right;
+        part.add(x, 0, ray(after, depth));
+    }
+    EXPECT_FALSE(left.mismatch(right) || left.mismatch(both) || both.mismatch(right));
+    const std::vector<DeepFilm> parts{right, left, both};
+    const DeepFilm joined({0, 0, 2, 1}, parts);
+    for (const int x : {0, 1}) {
+        const auto a = whole.samples(x, 0, film), b = joined.samples(x, 0, film);
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            EXPECT_FLOAT_EQ(a[i].near, b[i].near);
+            EXPECT_FLOAT_EQ(a[i].far, b[i].far);
+            EXPECT_FLOAT_EQ(a[i].alpha, b[i].alpha);
+            EXPECT_FLOAT_EQ(a[i].colour[0], b[i].colour[0]);
+        }
+    }
+    const DeepFilm other({1, 0, 2, 1}, 0.01, Edges{edges});
+    EXPECT_EQ(whole.mismatch(other), (std::array{1, 0}));
+}
+
 }  // namespace
 
 }  // namespace woodcock::test

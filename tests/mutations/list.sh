@@ -229,7 +229,11 @@ defect "what is drawn already is drawn again" 'Resume.*' "" \
 
 defect "kept sums are floats" 'FilmStates.*:Resume.*' "" \
     lib/woodcock/image/film_state.cpp \
-    'act(name + "lo", first + static_cast<std::size_t>(c) * 8);' ';'
+    'act(component.name + ".lo", wordsOf(component));' ';'
+
+defect "of deep parts, the last one's bins alone" 'DeepFilm.*:MergeParts.*' "" \
+    lib/woodcock/image/deep_film.cpp \
+    'bin.stopped += more.stopped;' 'bin.stopped = more.stopped;'
 
 defect "a single missing sample is passed over" 'PartCoverage.*' "" \
     lib/woodcock/render/part_coverage.cpp \

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/support/expect_error.h"
@@ -39,11 +40,20 @@ RenderSettings settings(int first, int end) {
     return s;
 }
 
+/// Mattes and deep pixels, too.
+RenderSettings compositing(int first, int end) {
+    RenderSettings s = settings(first, end);
+    s.mattes = {{"CryptoObject", {"fog"}, {0}}};
+    s.deepError = 0.02;
+    return s;
+}
+
 class MergeParts : public testing::Test {
 protected:
     fs::path part(const std::string& name, const RenderSettings& s,
-                  const StateFacts& facts = {{"scene", "0123"}, {"files", "4567"}}) const {
-        const RenderResult result = render::render(scene, s);
+                  const StateFacts& facts = {{"scene", "0123"}, {"files", "4567"}},
+                  const Scene* other = nullptr) const {
+        const RenderResult result = render::render(other ? *other : scene, s);
         const SavedState saved(
             result, s, s.height == picture.y1 ? picture : Film::Window{0, 0, s.width, s.height},
             endingOf(result.reason), facts);
@@ -88,22 +98,69 @@ void expectSamePictures(const Film& a, const Film& b) {
     EXPECT_NEAR(a.noise(), b.noise(), 1e-12);
 }
 
+void expectSameCompositing(const RenderResult& whole, const MergedParts& merged) {
+    for (int y = picture.y0; y < picture.y1; ++y)
+        for (int x = picture.x0; x < picture.x1; ++x) {
+            const std::uint64_t n = whole.film.at(x, y).samples;
+            std::array<float, 2 * matteRanks> a, b;
+            whole.mattes->ranks(0, x, y, n, a), merged.mattes->ranks(0, x, y, n, b);
+            EXPECT_EQ(a[0], b[0]);
+            EXPECT_TRUE(withinOneUlp(a[1], b[1])) << a[1] << ", " << b[1];
+            const std::vector<DeepSample> one = whole.deep->samples(x, y, whole.film),
+                                          other = merged.deep->samples(x, y, merged.film);
+            ASSERT_EQ(one.size(), other.size()) << x << ", " << y;
+            for (std::size_t i = 0; i < one.size(); ++i) {
+                EXPECT_EQ(one[i].near, other[i].near);
+                EXPECT_EQ(one[i].far, other[i].far);
+                EXPECT_TRUE(withinOneUlp(one[i].alpha, other[i].alpha));
+                expectWithinOneUlp(one[i].colour, other[i].colour, "deep");
+            }
+        }
+}
+
 TEST_F(MergeParts, SampleRangesAndTilesAreOneRender) {
-    const RenderResult whole = render::render(scene, settings(0, 22));
+    const RenderResult whole = render::render(scene, compositing(0, 22));
     std::vector<fs::path> files;
     for (int tile = 0; tile < 6; ++tile)
         for (const auto& [first, end] : {std::pair(0, 9), std::pair(9, 22)}) {
-            RenderSettings s = settings(first, end);
+            RenderSettings s = compositing(first, end);
             s.crop = pictureTile(picture, tile, 6);
             files.push_back(part("t" + std::to_string(files.size()) + ".exr", s));
         }
     std::swap(files.front(), files.back());
     const MergedParts merged = mergeParts(files, {.spp = 22});
     expectSamePictures(whole.film, merged.film);
+    expectSameCompositing(whole, merged);
     EXPECT_EQ(merged.firstSample, 0);
     EXPECT_EQ(merged.endSample, 22);
     EXPECT_EQ(merged.seeds, std::vector<std::uint64_t>{0});
     EXPECT_TRUE(merged.missing.empty());
+}
+
+TEST_F(MergeParts, RefusesOtherMattesAndOtherBins) {
+    const fs::path a = part("a.exr", compositing(0, 2)), plain = part("p.exr", settings(2, 4));
+    RenderSettings s = compositing(2, 4);
+    s.mattes[0].names[0] = "smoke";
+    const fs::path named = part("n.exr", s);
+    s = compositing(2, 4);
+    s.crop = Film::Window{10, 10, 40, 30};
+    const fs::path fitting = part("f.exr", s);
+    const Scene denser = sceneFrom(
+        "[[volume]]\nbox = { min = [-1, -1, -1], max = [1, 1, 1] }\nsigma_s = 5\n"
+        "[[light]]\ntype = \"environment\"\n"
+        "[camera]\neye = [0, 0.5, 5]\nlook_at = [0, 0, 0]\nfov = 40\n");
+    const fs::path other = part("o.exr", s, {{"scene", "0123"}, {"files", "4567"}}, &denser);
+    const auto refused = [](const std::string& said, const std::vector<fs::path>& files) {
+        expectError(ErrorKind::Input, said, [&] { mergeParts(files, {.partial = true}); });
+    };
+    refused(
+        "were sampled for different layers: depth and features, CryptoObject, deep pixels of "
+        "error 0.02 and depth and features",
+        {a, plain});
+    refused("have different names of mattes: ", {a, named});
+    refused("a.exr' and '" + other.string() + "' have deep pixels with different bins, first at ",
+            {a, other});
+    EXPECT_NO_THROW(mergeParts({a, fitting}, {.partial = true}));
 }
 
 /// A pixel's mean is that of all its samples, whichever render drew them.

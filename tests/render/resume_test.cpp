@@ -39,6 +39,24 @@ RenderSettings settings(int samples) {
     return s;
 }
 
+/// Of a part of the picture, mattes and deep pixels, too.
+RenderSettings compositing(int samples) {
+    RenderSettings s = settings(samples);
+    s.crop = Film::Window{25, 10, 52, 43};
+    s.mattes = {{"CryptoObject", {"fog", "ground"}, {0, 1}}, {"CryptoMaterial", {"all"}, {0, 0}}};
+    s.deepError = 0.02;
+    return s;
+}
+
+void expectSameBits(const RenderState& a, const RenderState& b) {
+    test::expectSameBits(a.film, b.film);
+    ASSERT_EQ(a.mattes.has_value(), b.mattes.has_value());
+    if (a.mattes) test::expectSameBits(*a.mattes, *b.mattes);
+    ASSERT_EQ(a.deep.has_value(), b.deep.has_value());
+    if (a.deep) test::expectSameBits(*a.deep, *b.deep);
+    EXPECT_EQ(a.drawn, b.drawn);
+}
+
 class Resume : public testing::Test {
 protected:
     /// Writes and reads the state, as another process would.
@@ -69,17 +87,20 @@ protected:
         }
     }
 
-    void expectSameInPieces(const RenderSettings& s) const {
-        const RenderResult whole = render::render(scene, s);
+    /// On a machine so fast that it is done before it can be interrupted, it draws more.
+    void expectSameInPieces(RenderSettings s) const {
         int interruptions = 0;
-        const RenderResult pieces = inPieces(s, &interruptions);
-        EXPECT_GE(interruptions, 1);
-        expectSameBits(whole.film, pieces.film);
-        EXPECT_EQ(whole.reason, pieces.reason);
-        EXPECT_EQ(whole.endSample, pieces.endSample);
-        EXPECT_EQ(whole.drawn, pieces.drawn);
-        EXPECT_EQ(whole.counters.paths, pieces.counters.paths);
-        EXPECT_EQ(whole.counters.distanceCollisions, pieces.counters.distanceCollisions);
+        std::optional<RenderResult> pieces(inPieces(s, &interruptions));
+        while (interruptions == 0) {
+            s.endSample *= 4, s.noise /= 2;
+            pieces.emplace(inPieces(s, &interruptions));
+        }
+        const RenderResult whole = render::render(scene, s);
+        expectSameBits(whole, *pieces);
+        EXPECT_EQ(whole.reason, pieces->reason);
+        EXPECT_EQ(whole.endSample, pieces->endSample);
+        EXPECT_EQ(whole.counters.paths, pieces->counters.paths);
+        EXPECT_EQ(whole.counters.distanceCollisions, pieces->counters.distanceCollisions);
     }
 
     const Scene scene = fogOverGround();
@@ -101,6 +122,13 @@ TEST_F(Resume, KeepsTheAdaptivePlan) {
     expectSameInPieces(s);
 }
 
+TEST_F(Resume, KeepsMattesAndDeepPixels) {
+    RenderSettings s = compositing(100);
+    expectSameInPieces(s);
+    s.adaptive = true;
+    expectSameInPieces(s);
+}
+
 /// Passes end where they would have ended, so the noise is looked at where it would have been.
 TEST_F(Resume, StopsAtTheSameNoise) {
     RenderSettings s = settings(4000);
@@ -114,20 +142,24 @@ TEST_F(Resume, StopsAtTheSameNoise) {
 /// moment.
 TEST_F(Resume, GoesOnFromCopiesOfARenderAtWork) {
     for (const bool adaptive : {false, true}) {
-        RenderSettings s = settings(100);
+        RenderSettings s = compositing(50);
         s.adaptive = adaptive;
         std::vector<RenderState> states;
-        const RenderResult whole =
-            render::render(scene, s, {},
-                           {.wanted = [] { return true; },
-                            .write = [&](const RenderState& state) { states.push_back(state); }});
-        ASSERT_GE(states.size(), 2u);
-        for (const std::size_t i : {std::size_t{0}, states.size() / 2, states.size() - 1}) {
-            const RenderResult rest =
-                render::render(scene, s, {}, {.from = throughAFile(states[i], s)});
-            expectSameBits(whole.film, rest.film);
-            EXPECT_EQ(whole.drawn, rest.drawn);
+        const auto draw = [&] {
+            states.clear();
+            return render::render(
+                scene, s, {},
+                {.wanted = [] { return true; },
+                 .write = [&](const RenderState& state) { states.push_back(state); }});
+        };
+        std::optional<RenderResult> whole(draw());
+        while (states.size() < 2) {  // a fast machine has to draw more
+            s.endSample *= 4;
+            whole.emplace(draw());
         }
+        for (const std::size_t i : {std::size_t{0}, states.size() / 2, states.size() - 1})
+            expectSameBits(*whole,
+                           render::render(scene, s, {}, {.from = throughAFile(states[i], s)}));
     }
 }
 
@@ -135,7 +167,7 @@ TEST_F(Resume, MayAskForMoreSamples) {
     const RenderResult begun = render::render(scene, settings(10));
     const RenderResult more =
         render::render(scene, settings(24), {}, {.from = throughAFile(begun, settings(24))});
-    expectSameBits(render::render(scene, settings(24)).film, more.film);
+    expectSameBits(render::render(scene, settings(24)), more);
     expectError(ErrorKind::Usage, "the checkpoint holds samples up to 10 of a pixel, and only 0:9",
                 [&] { render::render(scene, settings(9), {}, {.from = begun}); });
 }
@@ -186,6 +218,26 @@ TEST_F(Resume, RefusesWhatIsNotItsOwn) {
            [](RenderSettings& o) { o.layers.features = false; });
     refuse("Go on with what it was made by, or remove the file to begin anew",
            [](RenderSettings& o) { o.seed = 8; });
+}
+
+TEST_F(Resume, RefusesOtherMattesAndDeepPixels) {
+    const RenderSettings s = compositing(2);
+    const RenderResult result = render::render(scene, s);
+    throughAFile(result, s);
+    const StateFile file(dir / "a.exr", "checkpoint");
+    const auto refuse = [&](const std::string& message, auto change) {
+        RenderSettings changed = s;
+        change(changed);
+        expectError(ErrorKind::Input, message, [&] {
+            checkGoesOn(file, changed, {0, 0, s.width, s.height}, facts);
+        });
+        expectError(ErrorKind::Usage, "of another size or with other layers",
+                    [&] { render::render(scene, changed, {}, {.from = readState(file)}); });
+    };
+    refuse("CryptoMaterial, deep pixels of error 0.02' there and 'depth and features' here",
+           [](RenderSettings& o) { o.mattes.clear(), o.deepError = 0; });
+    refuse("deep pixels of error 0.5' here", [](RenderSettings& o) { o.deepError = 0.5; });
+    refuse("the names of mattes are ", [](RenderSettings& o) { o.mattes[0].names[1] = "grass"; });
 }
 
 TEST_F(Resume, RefusesAnotherNumberOfSamplesOfAnAdaptivePlan) {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tests/support/paths.h"
@@ -105,6 +106,12 @@ std::string RunningProgram::awaitLine(const std::string& text) {
         line.clear();
     }
     return {};
+}
+
+bool RunningProgram::awaitSamples(int samples) {
+    for (std::string line; !(line = awaitLine("\"event\":\"progress\"")).empty();)
+        if (nlohmann::json::parse(line).at("samples") >= samples) return true;
+    return false;
 }
 
 void RunningProgram::signal(int number) { kill(process_, number); }

@@ -39,6 +39,9 @@ public:
     /// The next line of stderr that holds `text`, as soon as it is there; empty when it never
     /// comes.
     std::string awaitLine(const std::string& text);
+    /// Waits until a render with `--progress json` has so many samples of each pixel; false when it
+    /// ends before.
+    bool awaitSamples(int samples);
     void signal(int number);
     /// Waits for the end; `err` is what awaitLine() did not take, `out` is not kept.
     ProgramResult wait();

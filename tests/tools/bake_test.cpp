@@ -247,7 +247,7 @@ TEST_F(BakeCommand, WrongFramesAreNamed) {
 }
 
 TEST_F(BakeCommand, AnInterruptKeepsTheFramesBefore) {
-    RunningProgram running({"bake", "cumulus", "-o", file("x.#.vdb"), "--frames", "1-1000",
+    RunningProgram running({"bake", "cumulus", "-o", file("x.#.vdb"), "--frames", "1-100000",
                             "--resolution", "40", "--progress", "json"});
     EXPECT_NE(running.awaitLine("wrote"), "");
     running.signal(SIGTERM);

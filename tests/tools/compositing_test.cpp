@@ -180,24 +180,6 @@ TEST_F(Compositing, OutputsThatCannotHoldThemAreRefused) {
                   "has to be an EXR file", 3);
 }
 
-TEST_F(Compositing, SumsThatAreNotKeptAreRefused) {
-    const Words keeping[] = {{"--samples", "0:8"},
-                             {"--tile", "0/2"},
-                             {"--mergeable"},
-                             {"--checkpoint", "60s"},
-                             {"--resume"}};
-    for (const Words& option : keeping)
-        for (const Words& asked : {Words{"--mattes", "object"}, Words{"--deep", file("d.exr")}}) {
-            Words all{"-o", file("a.exr")};
-            all.insert(all.end(), option.begin(), option.end());
-            all.insert(all.end(), asked.begin(), asked.end());
-            expectRefused(medium, all,
-                          option.front() +
-                              " keeps the sums of a picture, and those of mattes and "
-                              "deep pixels are not kept yet");
-        }
-}
-
 TEST_F(Compositing, EachFrameHasItsFiles) {
     const Words asked{"-o",       file("a.##.exr"), "--deep",        file("d.##.exr"),
                       "--mattes", "object",         "--mattes-file", file("m.##.exr"),

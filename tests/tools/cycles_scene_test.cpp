@@ -29,7 +29,7 @@ nlohmann::json written(const std::string& text) {
 }
 
 TEST(CyclesScene, ScatteringsBecomeBounces) {
-    const std::string fog = fogScene;
+    const std::string fog = fogScene();
     EXPECT_EQ(written(fog)["render"]["bounces"]["volume"], 1024);
     EXPECT_EQ(written(fog + "max_scatterings = 5\n")["render"]["bounces"]["volume"], 4);
     // Those off surfaces are bounded together only where nothing else bounces.
@@ -52,7 +52,7 @@ TEST(CyclesScene, ScatteringsBecomeBounces) {
 /// Whose sockets are those of Blender's nodes that scatter.
 TEST(CyclesScene, PhaseFunctionsBecomeThoseOfCycles) {
     const auto phase = [](const std::string& keys) {
-        std::string fog = fogScene;
+        std::string fog = fogScene();
         fog.replace(fog.find("g = 0.3"), 7, keys);
         return written(fog)["volumes"][0]["phase"];
     };
@@ -73,7 +73,7 @@ TEST(CyclesScene, PhaseFunctionsBecomeThoseOfCycles) {
 }
 
 TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
-    const std::string fog = fogScene;
+    const std::string fog = fogScene();
     const auto refused = [&](const std::string& text, const std::vector<std::string>& said) {
         for (const std::string& words : said)
             expectError(ErrorKind::Input, words, [&] { written(text); });

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 class Cycles : public testing::Test {
 protected:
-    void SetUp() override { writeText(dir / "fog.toml", fogScene); }
+    void SetUp() override { writeText(dir / "fog.toml", fogScene()); }
 
     std::string file(const std::string& name) const { return (dir / name).string(); }
 
@@ -270,7 +270,7 @@ void expectSameMeans(const ReadBack& theirs, const ReadBack& ours, double larges
 }
 
 TEST_F(WithBlender, FogIsAsBright) {
-    const ReadBack theirs = draw(fogScene, {"--seed", "5"});
+    const ReadBack theirs = draw(fogScene(), {"--seed", "5"});
     const ProgramResult result =
         runProgram({"render", file("fog.toml"), "-o", file("ours.exr"), "-q", "--spp", "1024"});
     ASSERT_EQ(result.exitCode, 0) << result.err;

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
+#include "tests/support/paths.h"
+
 namespace woodcock::test {
 
-inline constexpr const char* fogScene = R"([[volume]]
-box = { min = [-1, -1, -1], max = [1, 1, 1] }
-scale = 1.5
-albedo = 0.8
-g = 0.3
-[[light]]
-type = "environment"
-[camera]
-eye = [2, 1, 4]
-look_at = [0, 0, 0]
-fov = 30
-[render]
-resolution = [24, 24]
-spp = 256
-)";
+/// The scene that tests of several commands share, and tests/kill_and_resume.sh.
+inline std::string fogScene() { return readText(sourceDir() / "tests/tools/fog.toml"); }
 
 }  // namespace woodcock::test

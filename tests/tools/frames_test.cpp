@@ -206,14 +206,20 @@ TEST_F(Frames, TellFarmsHowFarTheyAre) {
 }
 
 TEST_F(Frames, AnInterruptLeavesWholeFrames) {
-    writeText(dir / "scene.toml", sequence("outside = \"ping_pong\""));
-    RunningProgram running({"render", file("scene.toml"), "--frames", "1-1000", "--res", "16x8",
+    // The second frame has no end, so that the signal comes while it is drawn.
+    std::string endless = lit;
+    endless.replace(endless.find("spp = 2"), 7, "spp = 1000000000");
+    for (const int n : {1, 2, 3})
+        writeText(dir / fmt::format("shot.{:04}.toml", n),
+                  "[[volume]]\nfile = \"s.0009.vdb\"\nscale = 0.1\n" + (n == 2 ? endless : lit));
+    RunningProgram running({"render", file("shot.####.toml"), "--frames", "1-3", "--res", "16x8",
                             "-o", file("x.####.exr")});
     EXPECT_NE(running.awaitLine("wrote"), "");
     running.signal(SIGTERM);
     const ProgramResult result = running.wait();
     expectSaid(result, 130, {"interrupted: ", " done: 1"});
     EXPECT_FALSE(pixels("x.0001.exr").empty());
+    EXPECT_FALSE(fs::exists(dir / "x.0002.exr"));
     for (const auto& entry : fs::directory_iterator(dir.path()))
         EXPECT_EQ(entry.path().filename().string().find("tmp"), std::string::npos) << entry.path();
 }

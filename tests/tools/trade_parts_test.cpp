@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/run_program.h"
+#include "tests/tools/run_trade.h"
 #include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
@@ -41,8 +41,8 @@ protected:
 };
 
 TEST_F(TradeParts, NeedsAreMeasuredAndReported) {
-    const ProgramResult result = runProgram(
-        {"trade", file("fog.toml"), "--needs", "--budget", "10s", "--report", file("new/report")});
+    const ProgramResult result =
+        runTrade({file("fog.toml"), "--needs", "--report", file("new/report")}, 10);
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_NE(result.out.find("three colour channels"), std::string::npos) << result.out;
     const json report = json::parse(readText(file("new/report/needs.json")));
@@ -72,8 +72,7 @@ TEST_F(TradeParts, NeedsAreMeasuredAndReported) {
 }
 
 TEST_F(TradeParts, ScalingIsMeasuredAndReported) {
-    const ProgramResult result =
-        runProgram({"trade", "--scaling", "--budget", "10s", "--report", file("report")});
+    const ProgramResult result = runTrade({"--scaling", "--report", file("report")}, 10);
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const json report = json::parse(readText(file("report/scaling.json")));
     std::vector<std::string> names;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/support/run_program.h"
+#include "tests/tools/run_trade.h"
 #include "woodcock/base/temp_dir.h"
 
 namespace woodcock::test {
@@ -92,9 +92,8 @@ void expectEveryField(const json& report) {
 }
 
 TEST_F(Trade, FindsTheBiasThatIsThereAndNoOther) {
-    const ProgramResult result =
-        runProgram({"trade", file("fog.toml"), "--candidates", file("three.toml"), "--budget", "6s",
-                    "--report", file("report")});
+    const ProgramResult result = runTrade(
+        {file("fog.toml"), "--candidates", file("three.toml"), "--report", file("report")}, 6);
     ASSERT_EQ(result.exitCode, 0) << result.err;
     std::istringstream lines(result.out);
     for (std::string line; std::getline(lines, line);)
@@ -105,7 +104,6 @@ TEST_F(Trade, FindsTheBiasThatIsThereAndNoOther) {
 
     const json report = json::parse(readText(dir / "report/trade.json"));
     expectEveryField(report);
-    EXPECT_LT(report.at("seconds"), 1.1 * 6);
     const json& candidates = report.at("candidates");
     ASSERT_EQ(candidates.size(), 3u);
     for (const json& c : candidates) {

@@ -84,7 +84,14 @@ TEST(NeedsCost, WhatIsNeededIsNotCompared) {
     const Scene scene = sceneFrom(foggy + camera);
     RenderSettings settings;
     settings.width = settings.height = 16;
-    const auto costs = needsCost(scene, settings, {.budget = 10, .precision = 0.2});
+    std::vector<NeedCost> costs;
+    for (double budget = 10; costs.empty(); budget *= 4) {
+        try {
+            costs = needsCost(scene, settings, {.budget = budget, .precision = 0.2});
+        } catch (const Error&) {
+            if (budget > 600) throw;  // or the machine is only busy
+        }
+    }
     ASSERT_EQ(costs.size(), needNames.size());
     for (const NeedCost& cost : costs) {
         SCOPED_TRACE(needNames[static_cast<std::size_t>(cost.need)]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "woodcock/image/film_state.h"
+#include "woodcock/image/write_exr.h"
 #include "woodcock/scene/description.h"
 
 namespace woodcock::tool {
@@ -11,6 +12,7 @@ struct PictureFacts {
     scene::OutputDescription output;  ///< but for the files
     std::filesystem::path ocio;
     bool withAlpha = false, glows = false;  ///< as in image::OutputSettings
+    image::RenderMetadata shot;             ///< what scene::describeShot() says, and no more
 };
 
 /// Of a scene: those, and the digests that tell scenes apart.

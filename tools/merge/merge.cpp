@@ -17,6 +17,7 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/merge_parts.h"
+#include "woodcock/render/saved_state.h"
 
 namespace woodcock::tool {
 
@@ -24,11 +25,19 @@ namespace {
 
 struct MergeOptions {
     std::vector<std::filesystem::path> parts, outputs;
+    std::filesystem::path mattesFile, deep;
     std::vector<std::string> layers;
     std::optional<double> exposure;
     bool mkdir = false, partial = false;
     std::optional<int> spp;
     ReportOptions reports;
+
+    std::vector<std::filesystem::path> files() const {
+        std::vector<std::filesystem::path> all = outputs;
+        for (const std::filesystem::path& file : {mattesFile, deep})
+            if (!file.empty()) all.push_back(file);
+        return all;
+    }
 };
 
 /// The pictures are those that the first part tells of, where the options say nothing else.
@@ -37,11 +46,13 @@ image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& f
     const scene::OutputDescription& output = facts.output;
     image::OutputSettings settings{.colour = image::ColorConfig(facts.ocio)};
     settings.files = options.outputs;
-    for (const std::filesystem::path& file : settings.files) {
+    settings.matteFile = options.mattesFile;
+    settings.deepFile = options.deep;
+    for (const std::filesystem::path& file : options.files()) {
         image::imageFormat(file);
         prepareOutput(file, options.mkdir, "");
     }
-    refuseOverwriting(settings.files, settings.colour.files());
+    refuseOverwriting(options.files(), settings.colour.files());
     settings.half = output.half;
     settings.multipart = output.multipart;
     settings.layers = image::layersFromNames(
@@ -70,6 +81,19 @@ void checkLayers(const MergeOptions& options, const image::StateFile& first) {
     }
 }
 
+/// Throws where files are asked for of which the parts hold nothing.
+void checkCompositing(const MergeOptions& options, const image::StateFile& first) {
+    const auto demand = [](const std::filesystem::path& file, const char* option, bool there,
+                           const char* what, const char* made) {
+        if (!file.empty() && !there)
+            throw usageError("{}: the parts hold no {}: they were rendered without {}", option,
+                             what, made);
+    };
+    demand(options.mattesFile, "--mattes-file", !render::matteLayersIn(first).empty(), "mattes",
+           "--mattes");
+    demand(options.deep, "--deep", image::DeepState::isIn(first), "deep pixels", "--deep");
+}
+
 void checkSameLayers(const MergeOptions& options) {
     if (!options.layers.empty()) return;
     const image::StateFile first(options.parts.front(), "part");
@@ -88,10 +112,12 @@ void report(const MergeOptions& options, const render::MergedParts& merged) {
     const double noise = film.noise();
     spdlog::info("{} parts, {} to {} samples per pixel, {}", options.parts.size(),
                  film.fewestSamples(), film.mostSamples(), noiseText(noise));
+    if (merged.deep && options.deep.empty())
+        spdlog::info("the parts hold deep pixels, too; --deep FILE.exr writes them");
     for (const std::string& what : merged.missing) spdlog::warn("{}", what);
     if (!options.reports.json) return;
     std::vector<std::string> files;
-    for (const std::filesystem::path& file : options.outputs) files.push_back(file.string());
+    for (const std::filesystem::path& file : options.files()) files.push_back(file.string());
     printJson(nlohmann::ordered_json{{"files", files},
                                      {"parts", options.parts.size()},
                                      {"seeds", merged.seeds},
@@ -110,18 +136,27 @@ void report(const MergeOptions& options, const render::MergedParts& merged) {
 
 void runMerge(const MergeOptions& options, const std::string& commandLine) {
     options.reports.start();
-    refuseOverwriting(options.outputs, options.parts);
+    refuseOverwriting(options.files(), options.parts);
     const image::StateFile first(options.parts.front(), "part");
     checkLayers(options, first);
+    checkCompositing(options, first);
     checkSameLayers(options);
-    const image::Outputs outputs = prepareOutputs(options, pictureFactsOf(first),
-                                                  image::Film::keptIn(first.planes()).parts.groups);
+    const PictureFacts facts = pictureFactsOf(first);
+    const image::Outputs outputs =
+        prepareOutputs(options, facts, image::Film::keptIn(first.planes()).parts.groups);
     const render::MergedParts merged =
         render::mergeParts(options.parts, {options.partial, options.spp});
+    image::RenderMetadata metadata = facts.shot;
+    metadata.firstSample = merged.firstSample, metadata.endSample = merged.endSample;
+    metadata.seed = merged.seeds.front();
+    metadata.renderSeconds = merged.seconds;
+    metadata.sceneDigest = first.fact("scene");
+    metadata.commandLine = commandLine;
+    metadata.adaptive = merged.adaptive;
     const std::string note = outputs.write(
-        merged.film, {merged.firstSample, merged.endSample, merged.seeds.front(), merged.seconds,
-                      first.fact("scene"), commandLine, merged.adaptive});
-    for (const std::filesystem::path& file : options.outputs)
+        merged.film, metadata,
+        {merged.mattes ? &*merged.mattes : nullptr, merged.deep ? &*merged.deep : nullptr});
+    for (const std::filesystem::path& file : options.files())
         spdlog::info("wrote {}", file.string());
     if (!note.empty()) spdlog::info("{}", note);
     report(options, merged);
@@ -147,6 +182,16 @@ CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
             "More layers for EXR files, in place of those that the parts have")
         ->delimiter(',')
         ->type_name("LAYER,...");
+    command
+        .add_option("--mattes-file", o.mattesFile,
+                    "Write the parts' mattes into an EXR file of their own. Without it, they are "
+                    "in the EXR files of -o")
+        ->type_name("FILE");
+    command
+        .add_option("--deep", o.deep,
+                    "Write the parts' deep pixels into this EXR file. They were rendered with "
+                    "--deep, too")
+        ->type_name("FILE");
     addParsed(
         command, "--exposure", o.exposure,
         [](const std::string& text) { return parseNumber(text, -100, 100); },

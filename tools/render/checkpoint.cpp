@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "tools/common/interrupt.h"
+#include "tools/render/frame_reader.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/base/printable.h"
@@ -19,7 +20,8 @@ namespace woodcock::tool {
 
 namespace fs = std::filesystem;
 
-fs::path checkpointFile(const std::vector<fs::path>& outputs) {
+fs::path checkpointFile(const scene::OutputDescription& output) {
+    const std::vector<fs::path> outputs = output.files.empty() ? imagesOf(output) : output.files;
     if (outputs.empty()) return {};
     const auto exr = std::find_if(outputs.begin(), outputs.end(), [](const fs::path& file) {
         return image::imageFormat(file) == image::ImageFormat::Exr;
@@ -32,14 +34,14 @@ fs::path checkpointFile(const std::vector<fs::path>& outputs) {
 }
 
 Checkpoint::Checkpoint(const RenderOptions& options, const render::RenderSettings& settings,
-                       image::Film::Window picture, const image::Outputs& outputs,
-                       const std::vector<fs::path>& files, image::StateFacts facts,
+                       image::Film::Window picture, const image::Outputs& outputs, fs::path file,
+                       image::StateFacts facts,
                        std::function<image::RenderMetadata(const render::RenderState&)> metadata)
     : options_(options),
       settings_(settings),
       picture_(picture),
       outputs_(outputs),
-      file_(checkpointFile(files)),
+      file_(std::move(file)),
       facts_(std::move(facts)),
       metadata_(std::move(metadata)) {}
 
@@ -72,6 +74,7 @@ render::Checkpoints Checkpoint::hooks() {
     render::Checkpoints hooks{.from = read()};
     last_ = std::chrono::steady_clock::now();
     hooks.wanted = [this] { return isDue(); };
+    hooks.planned = options_.keepsCheckpoint();
     hooks.write = [this](const render::RenderState& state) { write(state); };
     return hooks;
 }
@@ -86,7 +89,8 @@ bool Checkpoint::write(const render::RenderState& state) {
     const render::SavedState saved(state, settings_, picture_, render::Ending::Unfinished, facts_);
     bool done = false;
     try {
-        outputs_.writeCheckpoint(file_, state.film, metadata_(state), saved.filmState());
+        outputs_.writeCheckpoint(file_, state.film, metadata_(state), saved.filmState(),
+                                 state.mattes ? &*state.mattes : nullptr);
         done = written_ = true;
         spdlog::info("wrote {}: {} samples of each pixel", file_.string(),
                      state.endSample - settings_.firstSample);

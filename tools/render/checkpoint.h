@@ -15,17 +15,18 @@
 namespace woodcock::tool {
 
 /// Where the checkpoint of a picture with these files lies: NAME.checkpoint.exr beside the first
-/// EXR, or else the first file. Nowhere for pipes, devices and no files: empty.
-std::filesystem::path checkpointFile(const std::vector<std::filesystem::path>& outputs);
+/// EXR, or else the first picture; of none, beside the mattes or deep pixels. Nowhere for pipes,
+/// devices and no files: empty.
+std::filesystem::path checkpointFile(const scene::OutputDescription& output);
 
 /// The checkpoint of one picture, from which its render goes on and into which it is written.
 class Checkpoint {
 public:
-    /// `picture`: the pixels of which the settings' crop is a part. `facts` as of factsOf(). The
-    /// references must stay.
+    /// `picture`: the pixels of which the settings' crop is a part. `file`: that of
+    /// checkpointFile(). `facts` as of factsOf(). The references must stay.
     Checkpoint(const RenderOptions& options, const render::RenderSettings& settings,
                image::Film::Window picture, const image::Outputs& outputs,
-               const std::vector<std::filesystem::path>& files, image::StateFacts facts,
+               std::filesystem::path file, image::StateFacts facts,
                std::function<image::RenderMetadata(const render::RenderState&)> metadata);
 
     /// For render(): goes on from the file with --resume, if there is one. Throws Error{Input}

@@ -85,7 +85,7 @@ void checkFiles(const scene::SceneDescription& scene, const RenderOptions& optio
     if (options.rendersImages()) written = imagesOf(scene.output);
     for (const std::filesystem::path& file : {options.stats, options.writeScene})
         if (!isStdout(file)) written.push_back(file);
-    if (options.keepsCheckpoint()) written.push_back(checkpointFile(scene.output.files));
+    if (options.keepsCheckpoint()) written.push_back(checkpointFile(scene.output));
     refuseOverwriting(written, filesRead(options.sceneInput(), scene));
 }
 
@@ -107,10 +107,9 @@ std::string placeOfDisplayError(const scene::SceneDescription& scene, std::strin
     return "";
 }
 
-void prepareCheckpoint(const std::vector<std::filesystem::path>& files,
-                       const RenderOptions& options) {
+void prepareCheckpoint(const scene::OutputDescription& output, const RenderOptions& options) {
     const std::string option = options.resume ? "--resume" : "--checkpoint";
-    const std::filesystem::path file = checkpointFile(files);
+    const std::filesystem::path file = checkpointFile(output);
     if (file.empty())
         throw usageError("{} needs an output that is a file: the checkpoint lies beside it",
                          option);
@@ -150,7 +149,7 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
     if (options.frames.empty() || !namesFrame(options.stats.string()))
         prepareOutput(options.stats, options.mkdir, "--stats");
     prepareOutput(options.writeScene, options.mkdir, "--write-scene");
-    if (options.keepsCheckpoint()) prepareCheckpoint(scene.output.files, options);
+    if (options.keepsCheckpoint()) prepareCheckpoint(scene.output, options);
     image::ColorConfig colour =
         scene::inPlace(scene::findPlace(scene.places, scene::keyName(scene, scene.ocio)),
                        [&] { return image::ColorConfig(scene.ocio); });
@@ -243,18 +242,6 @@ image::Film::Window pictureOf(const scene::RenderDescription& render,
     return {p.x0, p.y0, p.x1, p.y1};
 }
 
-namespace {
-
-/// The option by which sums are kept.
-const char* keepingOption(const RenderOptions& options) {
-    if (options.resume) return "--resume";
-    if (options.checkpoint) return "--checkpoint";
-    if (options.tile) return "--tile";
-    return options.samples ? "--samples" : "--mergeable";
-}
-
-}  // namespace
-
 void checkCompositing(const scene::SceneDescription& scene, const RenderOptions& options) {
     const scene::OutputDescription& output = scene.output;
     if (output.mattes.empty() && !output.mattesFile.empty())
@@ -270,11 +257,6 @@ void checkCompositing(const scene::SceneDescription& scene, const RenderOptions&
             "mattes need an EXR file, and no output is one; give --mattes-file, or -o "
             "of an .exr");
     if (output.mattes.empty() && output.deep.empty()) return;
-    if (options.keepsSums() || options.keepsCheckpoint())
-        throw usageError(
-            "{} keeps the sums of a picture, and those of mattes and deep pixels are not kept yet. "
-            "Render these in one piece, without {}",
-            keepingOption(options), keepingOption(options));
     if (options.choosesQuality())
         throw usageError(
             "--quality auto may choose what mattes and deep pixels cannot have; give --quality "

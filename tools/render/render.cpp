@@ -30,6 +30,7 @@
 #include "tools/render/picture_warnings.h"
 #include "tools/render/prepare.h"
 #include "tools/render/quality_auto.h"
+#include "tools/render/report_result.h"
 #include "tools/render/trial.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/frame_names.h"
@@ -39,7 +40,6 @@
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
-#include "woodcock/render/needs.h"
 #include "woodcock/render/precision.h"
 #include "woodcock/render/saved_state.h"
 #include "woodcock/render/session.h"
@@ -65,44 +65,6 @@ bool haveSameFields(const scene::SceneDescription& a, const scene::SceneDescript
     const scene::RenderDescription &ra = a.render, &rb = b.render;
     return a.volumes == b.volumes && ra.storage == rb.storage && ra.lookup == rb.lookup &&
            ra.levelOfDetail == rb.levelOfDetail;
-}
-
-std::string samplesText(const render::RenderResult& result,
-                        const render::RenderSettings& settings) {
-    if (!settings.adaptive)
-        return fmt::format("samples {}:{} of each pixel", settings.firstSample, result.endSample);
-    const image::Film& film = result.film;
-    return fmt::format("the work of {} samples per pixel, {} to {} of them, {:.3g} in the mean",
-                       result.endSample, film.fewestSamples(), film.mostSamples(),
-                       film.meanSamples());
-}
-
-/// Numbers that say how well the render went.
-void reportResult(const render::RenderResult& result, const render::RenderSettings& settings) {
-    spdlog::info("{} in {}: {}, {}", stopReasonName(result.reason), formatDuration(result.seconds),
-                 samplesText(result, settings), noiseOf(result));
-    if (const std::uint64_t count = result.counters.clamped)
-        spdlog::info("{} of {} paths were clamped to a radiance of {:g}", count,
-                     result.counters.paths, settings.approximations.clamp);
-    if (const std::uint64_t count = result.film.nonFiniteCount())
-        spdlog::warn("{} samples were not finite and are left out", count);
-    if (result.deep)
-        spdlog::info("deep pixels: {:.3g} bins of depth in the mean pixel",
-                     result.deep->meanBins());
-    const std::uint64_t missing = result.film.pixelsWithoutSamples();
-    if (missing > 0 && result.film.mostSamples() > 0)
-        spdlog::warn("{} of {} pixels have no sample yet; they are black, with alpha 0{}", missing,
-                     std::int64_t{result.film.crop().width()} * result.film.crop().height(),
-                     result.reason == render::StopReason::TimeLimit
-                         ? ": one sample of each takes longer than twice the time limit"
-                         : "");
-}
-
-void reportNeeds(const render::Scene& scene) {
-    const render::Needs needs = render::findNeeds(scene);
-    spdlog::info("the scene {}", render::usedOf(needs));
-    if (const std::string unused = render::unusedOf(needs); !unused.empty())
-        spdlog::debug("the scene {}", unused);
 }
 
 /// One call of the command, in its phases: check, load, build, render, write; the last four for
@@ -480,7 +442,8 @@ private:
         const image::StateFacts facts = factsOf(description_);
         const std::string& digest = facts.at("scene");
         Checkpoint checkpoint(
-            options_, settings_, pictureOf(description_.render, options_), outputs, files(), facts,
+            options_, settings_, pictureOf(description_.render, options_), outputs,
+            checkpointFile(description_.output), facts,
             [&](const render::RenderState& state) { return metadataOf(state, digest); });
         const render::RenderResult result =
             renderWithProgress(scene, settings_, style_, place_, checkpoint.hooks());

@@ -7,14 +7,13 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/printable.h"
+#include "woodcock/image/exr_layout.h"
 #include "woodcock/image/image_header.h"
 
 namespace woodcock::image {
 
 namespace {
 
-// Of the second word of a file.
-constexpr std::uint32_t tiledFlag = 0x200, deepFlag = 0x800, partsFlag = 0x1000;
 constexpr std::size_t longestName = 255;
 constexpr int mostParts = 1000, mostAttributes = 10000;
 
@@ -100,18 +99,19 @@ public:
 
     void run() {
         const auto version = walk_.value<std::uint32_t>();
-        if ((version & 0xff) != 2)
-            throw file_.unreadable(fmt::format(
-                "it is an OpenEXR file of version {}; only version 2 is known", version & 0xff));
-        if (version & deepFlag)
+        if ((version & exr::versionMask) != exr::version)
+            throw file_.unreadable(
+                fmt::format("it is an OpenEXR file of version {}; only version {} is known",
+                            version & exr::versionMask, exr::version));
+        if (version & exr::deepParts)
             throw file_.unreadable("it has deep pixels, which woodcock does not read");
-        const bool parts = version & partsFlag;
+        const bool parts = version & exr::severalParts;
         double chunks = 0;
         for (int part = 0; part == 0 || parts; ++part) {
             if (part > mostParts) throw damaged("its header has no end");
             std::string name = walk_.name();
             if (parts && name.empty()) break;
-            chunks += check(readPart(std::move(name), version & tiledFlag));
+            chunks += check(readPart(std::move(name), version & exr::tiled));
         }
         if (8 * chunks > static_cast<double>(walk_.left()))
             throw damaged(fmt::format("its table of {:.0f} chunks does not fit in {} bytes", chunks,

@@ -5,13 +5,11 @@
 #include <cstring>
 
 #include "woodcock/base/error.h"
+#include "woodcock/image/exr_layout.h"
 
 namespace woodcock::image {
 
 namespace {
-
-constexpr std::uint32_t magic = 20000630, version = 2;
-constexpr std::uint32_t tiled = 0x200, longNames = 0x400, deepParts = 0x800, severalParts = 0x1000;
 
 /// Reads on in a file, whose numbers are little-endian, as those of the processors here.
 class Reader {
@@ -85,9 +83,10 @@ struct Layout {
 
 Layout layoutOf(std::span<const unsigned char> file) {
     Reader reader(file);
-    if (reader.number<std::uint32_t>() != magic) throw failure("a part is no OpenEXR file");
+    if (reader.number<std::uint32_t>() != exr::magic) throw failure("a part is no OpenEXR file");
     const auto flags = reader.number<std::uint32_t>();
-    if ((flags & 0xff) != version || flags & (tiled | deepParts | severalParts))
+    if ((flags & exr::versionMask) != exr::version ||
+        flags & (exr::tiled | exr::deepParts | exr::severalParts))
         throw failure("a part of an OpenEXR file is not flat, of lines and alone");
     const std::size_t begin = reader.position();
     while (reader.text() > 0) {
@@ -106,15 +105,15 @@ Layout layoutOf(std::span<const unsigned char> file) {
 
 std::vector<unsigned char> joinExrParts(std::span<const ExrPart> parts) {
     std::vector<Layout> layouts;
-    std::uint32_t flags = version | severalParts;
+    std::uint32_t flags = exr::version | exr::severalParts;
     std::size_t size = 64;
     for (const ExrPart& part : parts) {
         layouts.push_back(layoutOf(part.file));
-        flags |= layouts.back().flags & longNames;
+        flags |= layouts.back().flags & exr::longNames;
         size += part.file.size() + 128 + part.name.size() + 4 * layouts.back().chunks.size();
     }
     Writer writer(size);
-    writer.number(magic), writer.number(flags);
+    writer.number(exr::magic), writer.number(flags);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         writer.bytes(layouts[i].attributes);
         writer.attribute("name", parts[i].name);

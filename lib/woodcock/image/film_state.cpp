@@ -62,11 +62,24 @@ void eachWord(const Plane& plane, std::size_t pixels, Act act) {
         }
 }
 
+/// Its numbers, each of which is a plane by itself.
 template <typename Plane>
-bool isZero(const Plane& plane, std::size_t pixels) {
-    std::uint64_t any = 0;
-    eachWord(plane, pixels, [&](std::uint64_t word) { any |= word; });
-    return any == 0;
+std::vector<Plane> componentsOf(const Plane& plane) {
+    std::vector<Plane> components;
+    for (int c = 0; c < plane.components; ++c)
+        components.push_back({fmt::format("{}.{}", plane.name, c), 1, plane.stride,
+                              plane.sums ? plane.sums + c : nullptr,
+                              plane.counts ? plane.counts + c : nullptr});
+    return components;
+}
+
+bool isZero(const Film::ConstPlane& component, std::size_t pixels) {
+    for (std::size_t p = 0; p < pixels; ++p) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, wordsOf(component) + p * component.stride * sizeof word, sizeof word);
+        if (word != 0) return false;
+    }
+    return true;
 }
 
 std::size_t pixelsOf(const Film::Window& window) {
@@ -104,23 +117,19 @@ std::string checkOf(const StateFacts& facts, std::span<const Plane> planes,
 
 /// Calls act(name of the channel, where its numbers begin).
 template <typename Plane, typename Act>
-void eachChannel(const Plane& plane, Act act) {
-    auto* const first = wordsOf(plane);
-    for (int c = 0; c < plane.components; ++c) {
-        const std::string name = fmt::format("{}.{}.", plane.name, c);
-        act(name + "lo", first + static_cast<std::size_t>(c) * 8);
-        act(name + "hi", first + static_cast<std::size_t>(c) * 8 + 4);
-    }
+void eachChannel(const Plane& component, Act act) {
+    act(component.name + ".lo", wordsOf(component));
+    act(component.name + ".hi", wordsOf(component) + 4);
 }
 
 /// Its numbers in place, without a copy.
 template <typename Plane>
-void insert(Imf::FrameBuffer& buffer, const Plane& plane, const Film::Window& window) {
-    const std::size_t ofPixel = plane.stride * 8,
+void insert(Imf::FrameBuffer& buffer, const Plane& component, const Film::Window& window) {
+    const std::size_t ofPixel = component.stride * 8,
                       ofRow = ofPixel * static_cast<std::size_t>(window.width());
     const std::ptrdiff_t origin = static_cast<std::ptrdiff_t>(ofPixel) * window.x0 +
                                   static_cast<std::ptrdiff_t>(ofRow) * window.y0;
-    eachChannel(plane, [&](const std::string& name, const char* numbers) {
+    eachChannel(component, [&](const std::string& name, const char* numbers) {
         // OpenEXR only reads from slices that it writes to files.
         buffer.insert(name,
                       Imf::Slice(Imf::UINT, const_cast<char*>(numbers) - origin, ofPixel, ofRow));
@@ -183,7 +192,7 @@ private:
     std::uint64_t at_ = 0;
 };
 
-Imf::Header headerOf(const FilmState& state, std::span<const Film::ConstPlane> planes,
+Imf::Header headerOf(const FilmState& state, std::span<const Film::ConstPlane> components,
                      const StateFacts& facts, const Imf::Header& picture) {
     const Film::Window& w = state.window;
     Imf::Header header(picture.displayWindow(),
@@ -192,8 +201,8 @@ Imf::Header headerOf(const FilmState& state, std::span<const Film::ConstPlane> p
     header.setType(Imf::SCANLINEIMAGE);
     // The lower bits of sums are noise, which nothing packs; but whole regions may be zero.
     header.compression() = Imf::RLE_COMPRESSION;
-    for (const Film::ConstPlane& plane : planes)
-        eachChannel(plane, [&](const std::string& name, const char*) {
+    for (const Film::ConstPlane& component : components)
+        eachChannel(component, [&](const std::string& name, const char*) {
             header.channels().insert(name, Imf::Channel(Imf::UINT));
         });
     for (const auto& [name, value] : facts)
@@ -220,10 +229,11 @@ void encode(OnDisk& to, std::span<const unsigned char> picture, const FilmState&
     std::vector<Film::ConstPlane> kept;
     for (const Film::ConstPlane& plane : state.planes) {
         names += (names.empty() ? "" : " ") + plane.name;
-        if (!isZero(plane, pixelsOf(state.window))) kept.push_back(plane);
+        for (Film::ConstPlane& component : componentsOf(plane))
+            if (!isZero(component, pixelsOf(state.window))) kept.push_back(std::move(component));
     }
     // A part needs a channel.
-    if (kept.empty()) kept.push_back(state.planes.front());
+    if (kept.empty()) kept.push_back(componentsOf(state.planes.front()).front());
     facts[checkFact] =
         checkOf(facts, std::span<const Film::ConstPlane>(state.planes), state.window);
     headers.push_back(headerOf(state, kept, facts, headers.front()));
@@ -234,7 +244,7 @@ void encode(OnDisk& to, std::span<const unsigned char> picture, const FilmState&
         Imf::OutputPart(file, i).copyPixels(in);
     }
     Imf::FrameBuffer buffer;
-    for (const Film::ConstPlane& plane : kept) insert(buffer, plane, state.window);
+    for (const Film::ConstPlane& component : kept) insert(buffer, component, state.window);
     Imf::OutputPart sums(file, from.parts());
     sums.setFrameBuffer(buffer);
     sums.writePixels(state.window.height());
@@ -270,7 +280,7 @@ int partOfState(const Imf::MultiPartInputFile& file) {
     return -1;
 }
 
-std::vector<std::string> split(const std::string& text) {
+std::vector<std::string> namesIn(const std::string& text) {
     std::vector<std::string> words;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find(' ', at), text.size());
@@ -314,7 +324,7 @@ StateFile::StateFile(const std::filesystem::path& file, std::string_view what)
     }
     if (window_.x0 < 0 || window_.y0 < 0 || window_.x1 > width_ || window_.y1 > height_)
         throw unreadable("it is damaged: its pixels lie outside of its image");
-    planes_ = split(fact(planesFact));
+    planes_ = namesIn(fact(planesFact));
 }
 
 Error StateFile::unreadable(const std::string& reason) const {
@@ -352,18 +362,42 @@ double StateFile::number(const std::string& name) const {
     return value;
 }
 
+template <typename Number>
+std::vector<Number> StateFile::numbers(const std::string& name, std::size_t many) const {
+    const std::string& text = fact(name);
+    std::vector<Number> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (at < end && numbers.size() <= many) {
+        Number value{};
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || (next < end && *next != ',')) break;
+        numbers.push_back(value);
+        at = next < end ? next + 1 : next;
+    }
+    if (at != end || numbers.size() != many)
+        throw unreadable(
+            fmt::format("its '{}' is '{}', not {} numbers", name, shown(text, 60), many));
+    return numbers;
+}
+
+template std::vector<int> StateFile::numbers(const std::string&, std::size_t) const;
+template std::vector<float> StateFile::numbers(const std::string&, std::size_t) const;
+template std::vector<std::uint64_t> StateFile::numbers(const std::string&, std::size_t) const;
+
 void StateFile::read(std::span<const Film::Plane> planes) const {
     try {
         Imf::MultiPartInputFile input(file_.c_str());
         const Imf::ChannelList& channels = input.header(part_).channels();
         Imf::FrameBuffer buffer;
-        for (const Film::Plane& plane : planes) {
-            bool there = false;
-            eachChannel(plane, [&](const std::string& name, const char*) {
-                there |= channels.findChannel(name) != nullptr;
-            });
-            if (there) insert(buffer, plane, window_);
-        }
+        for (const Film::Plane& plane : planes)
+            for (const Film::Plane& component : componentsOf(plane)) {
+                bool there = false;
+                eachChannel(component, [&](const std::string& name, const char*) {
+                    there |= channels.findChannel(name) != nullptr;
+                });
+                if (there) insert(buffer, component, window_);
+            }
         Imf::InputPart part(input, part_);
         part.setFrameBuffer(buffer);
         part.readPixels(window_.y0, window_.y1 - 1);

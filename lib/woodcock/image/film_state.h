@@ -21,8 +21,8 @@ namespace woodcock::image {
 // The sums are a part of the file by themselves, "woodcock.sums", behind the picture: what shows
 // images shows the first part. Each number of a plane is two channels of unsigned integers, as EXR
 // has no doubles: "radiance.0.hi" and "radiance.0.lo" are the upper and the lower 32 bits of the
-// first number of plane "radiance", a double (IEEE 754) or a count. Planes that are zero everywhere
-// are left out. Attributes of the part tell what the numbers are of.
+// first number of plane "radiance", a double (IEEE 754) or a count. Numbers that are zero
+// everywhere are left out. Attributes of the part tell what the numbers are of.
 
 /// Texts about the numbers, by name; attribute "woodcock/NAME" has each.
 using StateFacts = std::map<std::string, std::string>;
@@ -62,6 +62,9 @@ public:
     /// Throws Error{Input} on anything but a whole number in the range.
     std::int64_t count(const std::string& fact, std::int64_t lowest, std::int64_t highest) const;
     double number(const std::string& fact) const;  ///< likewise; finite
+    /// So many, between commas: of int, std::uint64_t or float. Throws likewise.
+    template <typename Number>
+    std::vector<Number> numbers(const std::string& fact, std::size_t many) const;
 
     /// Fills `planes`, which must be those of the file, in its order, and of its window. Throws
     /// Error{Input} where numbers are not those that were written.

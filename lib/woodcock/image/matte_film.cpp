@@ -2,7 +2,7 @@
 #include "woodcock/image/matte_film.h"
 
 #include <algorithm>
-#include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace woodcock::image {
@@ -54,6 +54,14 @@ void MatteFilm::ranks(std::size_t layer, int x, int y, std::uint64_t samples,
     }
 }
 
+bool MatteFilm::isLike(const MatteFilm& other) const {
+    return crop_ == other.crop_ &&
+           std::equal(layers_.begin(), layers_.end(), other.layers_.begin(), other.layers_.end(),
+                      [](const MatteLayer& a, const MatteLayer& b) {
+                          return a.name == b.name && a.names == b.names;
+                      });
+}
+
 std::vector<Film::Plane> MatteFilm::planes() {
     std::vector<Film::Plane> planes;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
@@ -77,6 +85,26 @@ double MatteFilm::bytesPerPixel(const std::vector<MatteLayer>& layers) {
     for (const MatteLayer& layer : layers)
         bytes += sizeof(double) * static_cast<double>(layer.names.size());
     return bytes;
+}
+
+std::string matteNamesText(const std::vector<MatteLayer>& layers) {
+    if (layers.empty()) return "";
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const MatteLayer& layer : layers)
+        all.push_back({{"layer", layer.name}, {"names", layer.names}});
+    return all.dump();
+}
+
+std::optional<std::vector<MatteLayer>> matteLayersOf(const std::string& text) {
+    std::vector<MatteLayer> layers;
+    if (text.empty()) return layers;
+    try {
+        for (const nlohmann::json& layer : nlohmann::json::parse(text))
+            layers.push_back({layer.at("layer"), layer.at("names"), {}});
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    }
+    return layers;
 }
 
 }  // namespace woodcock::image

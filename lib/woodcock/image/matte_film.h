@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "woodcock/image/cryptomatte.h"
@@ -28,6 +30,11 @@ public:
     /// The pixel's `matteChannels()`.
     void ranks(std::size_t layer, int x, int y, std::uint64_t samples, std::span<float> to) const;
 
+    /// Whether another film is of the same crop, with the same layers and names.
+    bool isLike(const MatteFilm& other) const;
+    /// Takes the sums of one like this in place of its own; it need not know the owners.
+    void takeSums(MatteFilm&& other) { sums_ = std::move(other.sums_); }
+
     /// Everything that samples have added to: see Film::planes(). One plane for each layer, with
     /// the names as its components.
     std::vector<Film::Plane> planes();
@@ -42,5 +49,10 @@ private:
     std::vector<MatteLayer> layers_;
     std::vector<std::vector<double>> sums_;  // by layer; pixel by pixel, names innermost
 };
+
+/// Layers and their names, for files: JSON. Empty: there are none.
+std::string matteNamesText(const std::vector<MatteLayer>& layers);
+/// The layers of such a text, whose names have no owners. Nothing: it is no such text.
+std::optional<std::vector<MatteLayer>> matteLayersOf(const std::string& text);
 
 }  // namespace woodcock::image

@@ -65,8 +65,7 @@ double Outputs::write(const std::filesystem::path& file, const Film& film,
     } else if (file == settings_.matteFile) {
         writeCryptomatte(file, *more.mattes, film, metadata);
     } else if (imageFormat(file) == ImageFormat::Exr) {
-        writeExr(file, film, metadata, exrSettings(), state,
-                 settings_.matteFile.empty() ? more.mattes : nullptr);
+        writeExr(file, film, metadata, exrSettings(), state, ofExr(more.mattes));
     } else {
         return writeDisplay(file, film, *transform_,
                             {settings_.withAlpha, settings_.glows, settings_.display.exposure});

@@ -54,12 +54,16 @@ public:
 
     /// Writes an EXR of the same kind. Throws Error{Failure}.
     void writeCheckpoint(const std::filesystem::path& file, const Film& film,
-                         const RenderMetadata& metadata, const FilmState& state) const {
-        writeExr(file, film, metadata, exrSettings(), &state);
+                         const RenderMetadata& metadata, const FilmState& state,
+                         const MatteFilm* mattes = nullptr) const {
+        writeExr(file, film, metadata, exrSettings(), &state, ofExr(mattes));
     }
 
 private:
     ExrSettings exrSettings() const;
+    const MatteFilm* ofExr(const MatteFilm* mattes) const {
+        return settings_.matteFile.empty() ? mattes : nullptr;
+    }
     double write(const std::filesystem::path& file, const Film& film,
                  const RenderMetadata& metadata, const CompositingFilms& more,
                  const FilmState* state) const;

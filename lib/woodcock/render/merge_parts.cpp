@@ -31,7 +31,8 @@ constexpr std::array sharedFacts{
     SharedFact{"scene", "are of different scenes: their digests are"},
     SharedFact{"files", "are of scenes whose files differ: their digests are"},
     SharedFact{"picture", "are parts of different pixels:"},
-    SharedFact{"sampled", "were sampled for different layers:"}};
+    SharedFact{"sampled", "were sampled for different layers:"},
+    SharedFact{"mattes", "have different names of mattes:"}};
 
 void checkLikeFirst(const StateFile& first, const StateFile& other) {
     const auto refuse = [&](const std::string& why) {
@@ -47,7 +48,9 @@ void checkLikeFirst(const StateFile& first, const StateFile& other) {
     const auto sums = [](const StateFile& file) {
         return image::Film(1, 1, {0, 0, 1, 1}, image::Film::keptIn(file.planes()));
     };
-    if (!sums(first).isLike(sums(other))) throw refuse("keep different sums");
+    if (!sums(first).isLike(sums(other)) ||
+        image::DeepState::isIn(first) != image::DeepState::isIn(other))
+        throw refuse("keep different sums");
 }
 
 std::vector<StateFile> openParts(const std::vector<std::filesystem::path>& files) {
@@ -74,8 +77,9 @@ PartCoverage coverageOf(const StateFile& file, const RenderState& state) {
     return part;
 }
 
-/// The sums of a film whose crop lies within that of `whole`.
-void addPart(image::Film& whole, const image::Film& part) {
+/// The sums of a part, a Film or a MatteFilm, whose crop lies within that of `whole`.
+template <typename SomeFilm>
+void addPart(SomeFilm& whole, const SomeFilm& part) {
     const std::vector<image::Film::Plane> to = whole.planes();
     const std::vector<image::Film::ConstPlane> from = part.planes();
     const Window w = part.crop(), all = whole.crop();
@@ -94,6 +98,38 @@ void addPart(image::Film& whole, const image::Film& part) {
         to[i].sums ? add(to[i].sums, from[i].sums) : add(to[i].counts, from[i].counts);
     }
 }
+
+/// The deep pixels of parts: films with the same crop are added at once, others at the end, when
+/// the bins of all pixels are known.
+class DeepParts {
+public:
+    /// Throws Error{Input} where the bins differ from those of a part before.
+    void add(const std::string& name, image::DeepFilm part) {
+        image::DeepFilm* like = nullptr;
+        for (std::size_t i = 0; i < films_.size(); ++i) {
+            if (const auto pixel = films_[i].mismatch(part))
+                throw inputError(
+                    "'{}' and '{}' have deep pixels with different bins, first at {}, {}: another "
+                    "version of woodcock, or another machine, may have made one of them",
+                    names_[i], name, (*pixel)[0], (*pixel)[1]);
+            if (films_[i].crop() == part.crop()) like = &films_[i];
+        }
+        if (like) return like->add(part);
+        films_.push_back(std::move(part));
+        names_.push_back(name);
+    }
+
+    std::optional<image::DeepFilm> all(const Window& picture) && {
+        if (films_.empty()) return std::nullopt;
+        if (films_.size() == 1 && films_.front().crop() == picture)
+            return std::move(films_.front());
+        return image::DeepFilm(picture, films_);
+    }
+
+private:
+    std::vector<image::DeepFilm> films_;
+    std::vector<std::string> names_;  // of the first part of each
+};
 
 std::string joined(const std::vector<std::string>& sentences) {
     constexpr std::size_t most = 20;
@@ -117,19 +153,25 @@ MergedParts mergeParts(const std::vector<std::filesystem::path>& files,
     const StateFile& first = parts.front();
     const Window picture = pictureOf(first);
     const image::Film::Kept kept = image::Film::keptIn(first.planes());
+    std::vector<image::MatteLayer> mattes = matteLayersIn(first);
     const double needed = 2.0 * picture.width() * picture.height() *
-                          static_cast<double>(image::Film::bytesPerPixel(kept));
+                          (static_cast<double>(image::Film::bytesPerPixel(kept)) +
+                           image::MatteFilm::bytesPerPixel(mattes));
     if (const auto possible = static_cast<double>(memoryLimit()); needed > possible)
         throw failure("the parts need {} of memory, and there are {}", formatGiB(needed),
                       formatGiB(possible));
 
     MergedParts merged{image::Film(first.width(), first.height(), picture, kept)};
+    if (!mattes.empty()) merged.mattes.emplace(picture, std::move(mattes));
+    DeepParts deep;
     std::vector<PartCoverage> coverage;
     std::vector<std::string> unfinished;
     std::map<std::uint64_t, Reached> reached;
     for (const StateFile& file : parts) {
-        const RenderState state = readState(file);
+        RenderState state = readState(file);
         addPart(merged.film, state.film);
+        if (merged.mattes) addPart(*merged.mattes, *state.mattes);
+        if (state.deep) deep.add(file.file().string(), std::move(*state.deep));
         const PartCoverage& part = coverage.emplace_back(coverageOf(file, state));
         const bool adaptive = file.fact("adaptive") == "yes";
         merged.adaptive |= adaptive;
@@ -153,6 +195,7 @@ MergedParts mergeParts(const std::vector<std::filesystem::path>& files,
     if (!merged.missing.empty() && !settings.partial)
         throw inputError("the parts are not all:\n{}\n--partial merges what is there",
                          joined(merged.missing));
+    merged.deep = std::move(deep).all(picture);
     std::int64_t samples = 0;
     for (const auto& [seed, r] : reached) samples += r.end - r.first;
     merged.firstSample = reached.size() == 1 ? reached.begin()->second.first : 0;

@@ -21,6 +21,8 @@ struct MergeSettings {
 /// A picture of several parts.
 struct MergedParts {
     image::Film film;
+    std::optional<image::MatteFilm> mattes = {};  ///< where the parts have them
+    std::optional<image::DeepFilm> deep = {};
     std::vector<std::uint64_t> seeds = {};  ///< in the order of the parts
     /// The samples [firstSample, endSample) of each pixel, of all seeds one after the other: what
     /// every pixel has at least, or, of adaptive parts, as much work.
@@ -34,11 +36,13 @@ struct MergedParts {
 /// together. Each sample counts once, so the result is that of one render, up to the rounding of
 /// double sums. Parts of different seeds weigh as much as they have samples in a pixel; the number
 /// of an adaptive part's samples does not depend on these, so the mean stays unbiased (see
-/// SamplePlan).
-/// Throws Error{Input} where parts are of different scenes, sizes or layers, where two hold the
-/// same sample of a pixel, and, unless `partial`, where some are missing: it names all of them.
-/// Samples are missing before a range that begins later and after one that ends early, of a seed
-/// that others have; not after a part that a limit of time or noise ended.
+/// SamplePlan). Points of deep pixels are grouped anew where several parts hold samples of a pixel:
+/// see DeepFilm::add().
+/// Throws Error{Input} where parts are of different scenes, sizes or layers, or have other bins of
+/// deep pixels, where two hold the same sample of a pixel, and, unless `partial`, where some are
+/// missing: it names all of them. Samples are missing before a range that begins later and after
+/// one that ends early, of a seed that others have; not after a part that a limit of time or noise
+/// ended.
 MergedParts mergeParts(const std::vector<std::filesystem::path>& files,
                        const MergeSettings& settings);
 

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <climits>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
@@ -21,6 +22,7 @@ namespace {
 constexpr const char* drawnPlane = "drawn";
 constexpr const char* sharePlane = "planShare";
 constexpr const char* costPlane = "planCost";
+constexpr const char* mattesFact = "mattes";
 constexpr std::array endingNames{"complete", "limited", "unfinished"};
 
 constexpr std::array countersKept{&RenderCounters::paths,
@@ -44,26 +46,6 @@ std::string countersText(const RenderCounters& counters) {
     return text;
 }
 
-/// Whole numbers between commas. Throws Error{Input} unless there are so many.
-template <typename Number>
-std::vector<Number> numbersOf(const image::StateFile& file, const char* fact, std::size_t many) {
-    const std::string& text = file.fact(fact);
-    std::vector<Number> numbers;
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    while (at < end && numbers.size() <= many) {
-        Number value{};
-        const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc() || (next < end && *next != ',')) break;
-        numbers.push_back(value);
-        at = next < end ? next + 1 : next;
-    }
-    if (at != end || numbers.size() != many)
-        throw file.unreadable(
-            fmt::format("its '{}' is '{}', not {} numbers", fact, shown(text, 60), many));
-    return numbers;
-}
-
 std::string sampledText(const RenderSettings& settings) {
     const image::LayerNeeds& layers = settings.layers;
     std::string text = layers.features         ? "depth and features"
@@ -73,15 +55,19 @@ std::string sampledText(const RenderSettings& settings) {
     if (layers.stops) text += ", exact depths";
     for (std::size_t part = 0; part < layers.parts.count(); ++part)
         text += ", " + layers.parts.name(part);
+    for (const image::MatteLayer& layer : settings.mattes) text += ", " + layer.name;
+    if (settings.deepError > 0)
+        text += fmt::format(", deep pixels of error {}", settings.deepError);
     return text;
 }
 
-void requireMemory(const image::StateFile& file) {
+void requireMemory(const image::StateFile& file, const std::vector<image::MatteLayer>& mattes) {
     const image::Film::Window& w = file.window();
     const double needed =
         double(w.width()) * w.height() *
-        static_cast<double>(image::Film::bytesPerPixel(image::Film::keptIn(file.planes())) +
-                            sizeof(SamplePlan::Weight) + 2 * sizeof(std::uint64_t));
+        (image::MatteFilm::bytesPerPixel(mattes) +
+         static_cast<double>(image::Film::bytesPerPixel(image::Film::keptIn(file.planes())) +
+                             sizeof(SamplePlan::Weight) + 2 * sizeof(std::uint64_t)));
     if (const auto possible = static_cast<double>(memoryLimit()); needed > possible)
         throw file.unreadable(fmt::format("its sums need {} of memory, and there are {}",
                                           formatGiB(needed), formatGiB(possible)));
@@ -116,6 +102,16 @@ SavedState::SavedState(const RenderState& state, const RenderSettings& settings,
     saved_ = {std::move(facts), film.width(), film.height(), film.crop(), film.planes()};
     saved_.planes.push_back({drawnPlane, 1, 1, nullptr, drawn_.data()});
     image::StateFacts& f = saved_.facts;
+    const auto keep = [&](std::vector<image::Film::ConstPlane> planes) {
+        std::move(planes.begin(), planes.end(), std::back_inserter(saved_.planes));
+    };
+    if (state.mattes) keep(state.mattes->planes());
+    if (state.deep) {
+        deep_.emplace(*state.deep);
+        keep(std::as_const(*deep_).planes());
+        f.merge(deep_->facts());
+    }
+    f[mattesFact] = image::matteNamesText(settings.mattes);
     if (state.plan) {
         plan_ = state.plan->weights();
         saved_.planes.push_back({sharePlane, 1, 2, &plan_.front().share, nullptr});
@@ -145,7 +141,7 @@ Ending endingOf(const image::StateFile& file) {
 }
 
 image::Film::Window pictureOf(const image::StateFile& file) {
-    const auto n = numbersOf<int>(file, "picture", 4);
+    const auto n = file.numbers<int>("picture", 4);
     const image::Film::Window own = file.window(), picture{n[0], n[1], n[2], n[3]};
     if (picture.x0 < 0 || picture.y0 < 0 || picture.x1 > file.width() ||
         picture.y1 > file.height() || own.x0 < picture.x0 || own.y0 < picture.y0 ||
@@ -154,14 +150,30 @@ image::Film::Window pictureOf(const image::StateFile& file) {
     return picture;
 }
 
+std::vector<image::MatteLayer> matteLayersIn(const image::StateFile& file) {
+    const std::string& text = file.fact(mattesFact);
+    if (auto layers = image::matteLayersOf(text)) return std::move(*layers);
+    throw file.unreadable(
+        fmt::format("its '{}' is '{}', not names of mattes", mattesFact, shown(text, 60)));
+}
+
 RenderState readState(const image::StateFile& file) {
-    requireMemory(file);
+    std::vector<image::MatteLayer> mattes = matteLayersIn(file);
+    requireMemory(file, mattes);
     RenderState state{image::Film(file.width(), file.height(), file.window(),
                                   image::Film::keptIn(file.planes()))};
+    if (!mattes.empty()) state.mattes.emplace(file.window(), std::move(mattes));
+    std::optional<image::DeepState> deep;
+    if (image::DeepState::isIn(file)) deep.emplace(file);
     const std::size_t pixels = state.film.pixelCount();
     std::vector<image::Film::Plane> planes = state.film.planes();
     std::vector<std::uint64_t> drawn(pixels);
     planes.push_back({drawnPlane, 1, 1, nullptr, drawn.data()});
+    const auto expect = [&](std::vector<image::Film::Plane> more) {
+        std::move(more.begin(), more.end(), std::back_inserter(planes));
+    };
+    if (state.mattes) expect(state.mattes->planes());
+    if (deep) expect(deep->planes());
     std::vector<SamplePlan::Weight> plan;
     if (file.has("pilot")) {
         plan.resize(pixels);
@@ -174,12 +186,13 @@ RenderState readState(const image::StateFile& file) {
             "it keeps other sums than this version of woodcock; another version may have written "
             "it");
     file.read(planes);
+    if (deep) state.deep = deep->film(file);
 
     const auto first = file.count("first", 0, INT_MAX);
     state.endSample = static_cast<int>(file.count("end", first, INT_MAX));
     state.passLength = static_cast<int>(file.count("pass", 1, 1 << 20));
     state.seconds = std::max(0.0, file.number("seconds"));
-    const auto counters = numbersOf<std::uint64_t>(file, "counters", countersKept.size());
+    const auto counters = file.numbers<std::uint64_t>("counters", countersKept.size());
     for (std::size_t i = 0; i < counters.size(); ++i) state.counters.*countersKept[i] = counters[i];
     for (const std::uint64_t n : drawn) {
         if (n < static_cast<std::uint64_t>(first) || n > INT_MAX)
@@ -222,6 +235,7 @@ void checkGoesOn(const image::StateFile& file, const RenderSettings& settings,
     compare("first", fmt::format("{}", settings.firstSample), "the first sample is");
     compare("adaptive", settings.adaptive ? "yes" : "no", "adaptive sampling is");
     compare("sampled", sampledText(settings), "sampled for layers is");
+    compare(mattesFact, image::matteNamesText(settings.mattes), "the names of mattes are");
     if (settings.adaptive)
         compare("asked", fmt::format("{}", settings.endSample),
                 "the samples per pixel, from which the plan of an adaptive render follows, are");

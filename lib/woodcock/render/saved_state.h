@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "woodcock/image/deep_state.h"
 #include "woodcock/image/film_state.h"
 #include "woodcock/render/session.h"
 
@@ -32,12 +34,15 @@ public:
 private:
     std::vector<std::uint64_t> drawn_;
     std::vector<SamplePlan::Weight> plan_;
+    std::optional<image::DeepState> deep_;
     image::FilmState saved_;
 };
 
 /// What the file keeps. Throws Error{Input} where that is damaged, or not of a render.
 RenderState readState(const image::StateFile& file);
 Ending endingOf(const image::StateFile& file);
+/// Of its mattes, without owners.
+std::vector<image::MatteLayer> matteLayersIn(const image::StateFile& file);
 /// The pixels of which the file's are a part.
 image::Film::Window pictureOf(const image::StateFile& file);
 

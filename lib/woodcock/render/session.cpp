@@ -76,7 +76,8 @@ std::optional<image::MatteFilm> mattesOf(const RenderSettings& settings, image::
 }
 
 std::optional<image::DeepFilm> deepOf(const Scene& scene, const Needs& needs,
-                                      const RenderSettings& settings, image::Film::Window crop) {
+                                      const RenderSettings& settings, image::Film::Window crop,
+                                      int copies) {
     if (!(settings.deepError > 0)) return std::nullopt;
     const DeepBins bins(scene, needs, settings.width, settings.height, settings.deepError);
     const auto width = static_cast<std::size_t>(crop.width());
@@ -88,7 +89,7 @@ std::optional<image::DeepFilm> deepOf(const Scene& scene, const Needs& needs,
     };
     const int threads = settings.threads > 0 ? settings.threads : tbb::task_arena::automatic;
     tbb::task_arena(threads).execute([&] { tbb::parallel_for(crop.y0, crop.y1, find); });
-    return image::DeepFilm(crop, settings.deepError, edges);
+    return image::DeepFilm(crop, settings.deepError, edges, copies);
 }
 
 /// Whether a film takes the sample: what it drops is not in mattes and deep pixels either.
@@ -122,15 +123,17 @@ public:
                               .places = settings.layers.places,
                               .stops = settings.layers.stops,
                               .parts = settings.layers.parts}),
-                 std::vector<std::uint32_t>(), settings.firstSample},
-          mattes_(mattesOf(settings, crop)),
-          deep_(deepOf(scene, needs_, settings, crop)),
+                 mattesOf(settings, crop)},
           tiles_(scatteredTiles(crop, tileSize)),
           work_(tiles_.size(), settings.endSample - settings.firstSample),
           checkpoints_(std::move(checkpoints)) {
+        state_.endSample = settings.firstSample;
         state_.drawn.assign(state_.film.pixelCount(),
                             static_cast<std::uint32_t>(settings.firstSample));
-        if (checkpoints_.from) goOnFrom(*std::exchange(checkpoints_.from, {}));
+        if (checkpoints_.from)
+            goOnFrom(*std::exchange(checkpoints_.from, {}));
+        else
+            state_.deep = deepOf(scene, needs_, settings, crop, checkpoints_.planned ? 2 : 1);
     }
 
     RenderResult run(const std::function<bool(const RenderProgress&)>& onProgress) {
@@ -148,12 +151,19 @@ public:
         state_.endSample = std::max(state_.endSample, endedAt_);
         state_.seconds = seconds();
         if (onProgress) onProgress(progress());
-        return {std::move(state_), needs_, reason_, std::move(mattes_), std::move(deep_)};
+        return {std::move(state_), needs_, reason_};
     }
 
 private:
     void goOnFrom(RenderState from) {
-        if (!state_.film.isLike(from.film) || from.drawn.size() != state_.drawn.size())
+        const bool sameMattes =
+            state_.mattes ? from.mattes && state_.mattes->isLike(*from.mattes) : !from.mattes;
+        const bool sameDeep = settings_.deepError > 0
+                                  ? from.deep && from.deep->crop() == crop_ &&
+                                        from.deep->error() == settings_.deepError
+                                  : !from.deep;
+        if (!state_.film.isLike(from.film) || from.drawn.size() != state_.drawn.size() ||
+            !sameMattes || !sameDeep)
             throw usageError("the checkpoint is of a picture of another size or with other layers");
         const std::uint32_t most = *std::max_element(from.drawn.begin(), from.drawn.end());
         if (from.endSample < settings_.firstSample || from.endSample > settings_.endSample ||
@@ -163,6 +173,10 @@ private:
                 most, settings_.firstSample, settings_.endSample);
         secondsBefore_ = from.seconds;
         work_.resumeAfter(from.endSample - settings_.firstSample);
+        if (state_.mattes) {
+            state_.mattes->takeSums(std::move(*from.mattes));
+            from.mattes = std::move(state_.mattes);
+        }
         state_ = std::move(from);
     }
 
@@ -367,8 +381,8 @@ private:
     }
 
     void addStopped(const PathJob& job, const PathResult& result) {
-        if (mattes_) mattes_->add(job.x, job.y, *result.stopped);
-        if (deep_) deep_->add(job.x, job.y, *result.stopped);
+        if (state_.mattes) state_.mattes->add(job.x, job.y, *result.stopped);
+        if (state_.deep) state_.deep->add(job.x, job.y, *result.stopped);
     }
 
     PathTracer::Options tracerOptions() const {
@@ -379,7 +393,7 @@ private:
                 .maxBounces = settings_.maxBounces,
                 .approximations = settings_.approximations,
                 .layers = settings_.layers,
-                .stoppedLight = mattes_ || deep_,
+                .stoppedLight = state_.mattes || state_.deep,
                 .approximateMedia = &approximateMedia_,
                 .sunDepths = &sunDepths_};
     }
@@ -400,8 +414,6 @@ private:
     /// changes the rest has it alone.
     std::shared_mutex stateMutex_;
     RenderState state_;
-    std::optional<image::MatteFilm> mattes_;
-    std::optional<image::DeepFilm> deep_;
     const std::vector<image::Film::Window> tiles_;
     double secondsBefore_ = 0;  // an interruption
     double lookSeconds_ = 0, sinceLook_ = 0;
@@ -440,8 +452,6 @@ RenderResult render(const Scene& scene, const RenderSettings& settings,
     const image::Film::Window crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     validate(settings, crop);
-    if (checkpoints.from && (!settings.mattes.empty() || settings.deepError > 0))
-        throw usageError("a checkpoint does not hold mattes or deep pixels: begin anew");
     prepare(scene, settings.approximations);
     return Session(scene, settings, crop, std::move(checkpoints)).run(onProgress);
 }

@@ -53,6 +53,8 @@ enum class StopReason { Complete, TimeLimit, NoiseReached, Interrupted };
 /// Where a render stands: all that it needs to go on to the same bits.
 struct RenderState {
     image::Film film;
+    std::optional<image::MatteFilm> mattes = {};  ///< where they are asked for
+    std::optional<image::DeepFilm> deep = {};
     /// Of each pixel of the crop, row by row: the film holds its samples [firstSample, drawn).
     std::vector<std::uint32_t> drawn = {};
     /// Samples [firstSample, endSample) are complete in every pixel; of an adaptive render, as much
@@ -67,8 +69,6 @@ struct RenderState {
 struct RenderResult : RenderState {
     Needs needs;
     StopReason reason = StopReason::Complete;
-    std::optional<image::MatteFilm> mattes = {};  ///< where they were asked for
-    std::optional<image::DeepFilm> deep = {};
 };
 
 /// How a render is kept from being lost.
@@ -80,6 +80,8 @@ struct Checkpoints {
     std::function<bool()> wanted = {};
     /// Gets a copy of the state, between tiles. The render goes on meanwhile. Must not throw.
     std::function<void(const RenderState&)> write = {};
+    /// Whether there are to be some: deep pixels that leave no memory for a copy are refused.
+    bool planned = false;
 };
 
 /// Why there can be no mattes or deep pixels with these approximations; empty: there can.
@@ -97,8 +99,7 @@ std::string compositingFlaw(const Approximations& approximations, bool deep);
 /// for bit; only what a time limit ends depends on the machine. The limit includes the time before.
 /// Throws Error{Usage} on an empty crop, image or sample range, on an adaptive render of a range
 /// that does not begin at 0, on mattes or deep pixels that compositingFlaw() is against, and on a
-/// checkpoint of another size, with other sums or with more samples than are asked for. Checkpoints
-/// do not hold mattes or deep pixels, so a render with these cannot go on from one.
+/// checkpoint of another size, with other sums or with more samples than are asked for.
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress = {},
                     Checkpoints checkpoints = {});
