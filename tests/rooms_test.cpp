@@ -28,6 +28,7 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"surface", {"mesh", "base"}},
     {"camera", {"base"}},
     {"image", {"base"}},
+    {"denoise", {"image", "base"}},
     {"render", {"medium", "light", "surface", "camera", "image", "base"}},
     {"convert", {"mesh", "image", "grid", "base"}},
     {"bake", {"convert", "image", "grid", "base"}},
