@@ -33,7 +33,9 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"convert", {"mesh", "image", "grid", "base"}},
     {"bake", {"convert", "image", "grid", "base"}},
     {"compare", {"image", "base"}},
-    {"scene", {"render", "image", "light", "surface", "camera", "medium", "mesh", "grid", "base"}},
+    {"scene",
+     {"render", "denoise", "image", "light", "surface", "camera", "medium", "mesh", "grid",
+      "base"}},
     {"proof", {"scene", "render", "light", "medium", "grid", "base"}},
     {"trade", {"scene", "compare", "bake", "render", "medium", "grid", "base"}}};
 

@@ -14,6 +14,7 @@
 #include "tools/common/report_options.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/denoise/denoiser.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/merge_parts.h"
@@ -26,7 +27,7 @@ struct MergeOptions {
     std::vector<std::filesystem::path> parts, outputs;
     std::vector<std::string> layers;
     std::optional<double> exposure;
-    bool mkdir = false, partial = false;
+    bool mkdir = false, partial = false, denoise = false;
     std::optional<int> spp;
     ReportOptions reports;
 };
@@ -46,11 +47,24 @@ image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& f
     settings.multipart = output.multipart;
     settings.layers = image::layersFromNames(
         options.layers.empty() ? output.layers : options.layers, groups, output.half);
+    settings.denoised = options.denoise;
+    if (options.denoise) image::dropLayersOfNoise(settings.layers);
     settings.display = {output.display, output.view, output.look,
                         options.exposure.value_or(output.exposure)};
     settings.withAlpha = facts.withAlpha;
     settings.glows = facts.glows;
     return image::Outputs(std::move(settings));
+}
+
+/// Throws where there is no denoiser, or the parts do not hold what it needs.
+std::optional<denoise::Denoiser> denoiserOf(const MergeOptions& options,
+                                            const image::StateFile& first) {
+    if (!options.denoise) return {};
+    if (!image::Film::keptIn(first.planes()).features)
+        throw usageError(
+            "--denoise needs the layers albedo and normal, and the parts were rendered without "
+            "them; render them with --layers albedo,normal");
+    return scene::inPlace("--denoise", [] { return denoise::Denoiser::load(); });
 }
 
 /// Throws where the parts hold nothing of a layer.
@@ -114,13 +128,18 @@ void runMerge(const MergeOptions& options, const std::string& commandLine) {
     const image::StateFile first(options.parts.front(), "part");
     checkLayers(options, first);
     checkSameLayers(options);
+    const std::optional<denoise::Denoiser> denoiser = denoiserOf(options, first);
     const image::Outputs outputs = prepareOutputs(options, pictureFactsOf(first),
                                                   image::Film::keptIn(first.planes()).parts.groups);
     const render::MergedParts merged =
         render::mergeParts(options.parts, {options.partial, options.spp});
-    const std::string note = outputs.write(
-        merged.film, {merged.firstSample, merged.endSample, merged.seeds.front(), merged.seconds,
-                      first.fact("scene"), commandLine, merged.adaptive});
+    std::optional<image::DenoisedPicture> denoised;
+    if (denoiser) denoised = denoiser->denoise(merged.film);
+    const std::string note =
+        outputs.write(merged.film,
+                      {merged.firstSample, merged.endSample, merged.seeds.front(), merged.seconds,
+                       first.fact("scene"), commandLine, merged.adaptive},
+                      {.denoised = denoised ? &*denoised : nullptr});
     for (const std::filesystem::path& file : options.outputs)
         spdlog::info("wrote {}", file.string());
     if (!note.empty()) spdlog::info("{}", note);
@@ -152,6 +171,9 @@ CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
         [](const std::string& text) { return parseNumber(text, -100, 100); },
         "Make pictures brighter by this many stops, in place of the parts' exposure")
         ->type_name("NUMBER");
+    command.add_flag("--denoise", o.denoise,
+                     "Denoise the picture by Open Image Denoise. The parts must have the layers "
+                     "albedo and normal; see woodcock render --help");
     addMkdir(command, o.mkdir);
     addCount(command, "--spp", o.spp, 1, INT_MAX,
              "Refuse parts that do not reach so many samples in every pixel. Without it, nothing "
