@@ -37,7 +37,7 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
      {"render", "denoise", "image", "light", "surface", "camera", "medium", "mesh", "grid",
       "base"}},
     {"proof", {"scene", "render", "light", "medium", "grid", "base"}},
-    {"trade", {"scene", "compare", "bake", "render", "medium", "grid", "base"}}};
+    {"trade", {"scene", "compare", "bake", "render", "denoise", "medium", "grid", "base"}}};
 
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
 /// that bear the library's name, which only .cpp files and each other include.
