@@ -28,13 +28,16 @@ const std::map<std::string, std::set<std::string>> roomsBelow{
     {"surface", {"mesh", "base"}},
     {"camera", {"base"}},
     {"image", {"base"}},
+    {"denoise", {"image", "base"}},
     {"render", {"medium", "light", "surface", "camera", "image", "base"}},
     {"convert", {"mesh", "image", "grid", "base"}},
     {"bake", {"convert", "image", "grid", "base"}},
     {"compare", {"image", "base"}},
-    {"scene", {"render", "image", "light", "surface", "camera", "medium", "mesh", "grid", "base"}},
+    {"scene",
+     {"render", "denoise", "image", "light", "surface", "camera", "medium", "mesh", "grid",
+      "base"}},
     {"proof", {"scene", "render", "light", "medium", "grid", "base"}},
-    {"trade", {"scene", "compare", "bake", "render", "medium", "grid", "base"}}};
+    {"trade", {"scene", "compare", "bake", "render", "denoise", "medium", "grid", "base"}}};
 
 /// Where the headers of heavy libraries may appear: in .cpp files of these rooms, and in headers
 /// that bear the library's name, which only .cpp files and each other include.

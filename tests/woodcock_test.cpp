@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/environment_variable.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
@@ -112,6 +113,28 @@ TEST_F(Door, WritesWhatTheProgramWrites) {
     image.write(dir / "door.png");
     EXPECT_GT(std::filesystem::file_size(dir / "door.png"), 0u);
     expectError(ErrorKind::Usage, "xyz", [&] { image.write(dir / "door.xyz"); });
+}
+
+TEST_F(Door, DenoisesWhereTheSceneSaysSo) {
+    Renderer renderer = Renderer::open(dir / "scene.toml");
+    setSmall(renderer);
+    renderer.set("render.denoise", "true");
+    {
+        const EnvironmentVariable library("WOODCOCK_OIDN", fakeOidn().string());
+        const RenderedImage image = renderer.render();
+        image.write(dir / "a.exr");
+        const ReadBack written = readBack(dir / "a.exr");
+        bool differs = false;
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x) {
+                const auto i = 4 * (std::size_t(y) * std::size_t(image.width()) + std::size_t(x));
+                EXPECT_EQ(image.pixels()[i], written.at(x, y, "R"));
+                differs |= image.pixels()[i] != written.at(x, y, "noisy.R");
+            }
+        EXPECT_TRUE(differs);
+    }
+    const EnvironmentVariable none("WOODCOCK_OIDN", (dir / "none").string());
+    expectError(ErrorKind::Usage, "which is not there", [&] { renderer.render(); });
 }
 
 TEST_F(Door, TakesAnArrayAsAFileOfTheSameVolume) {

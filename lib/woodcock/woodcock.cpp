@@ -17,6 +17,7 @@
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/defaults.h"
+#include "woodcock/scene/denoising.h"
 #include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/load.h"
 #include "woodcock/scene/scene_file.h"
@@ -148,12 +149,12 @@ render::RenderResult draw(const render::Scene& scene, const render::RenderSettin
                           [&](const render::RenderProgress& now) { return tell(calls, now); });
 }
 
-std::vector<float> pixelsOf(const image::Film& film) {
+std::vector<float> pixelsOf(const image::Film& film, const image::DenoisedPicture* denoised) {
     std::vector<float> pixels;
     pixels.reserve(std::size_t(film.width()) * std::size_t(film.height()) * 4);
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
-            const Rgb radiance = film.radiance(x, y);
+            const Rgb radiance = denoised ? denoised->radiance(x, y) : film.radiance(x, y);
             pixels.insert(pixels.end(), radiance.c.begin(), radiance.c.end());
             pixels.push_back(film.alpha(x, y));
         }
@@ -166,6 +167,7 @@ struct RenderedImage::Impl {
     scene::SceneDescription scene;  // complete
     render::RenderSettings settings;
     render::RenderResult result;
+    std::optional<image::DenoisedPicture> denoised;
     std::vector<float> pixels;
     std::vector<std::string> notes;
 };
@@ -192,6 +194,7 @@ void RenderedImage::write(const fs::path& file) const {
         .half = output.half,
         .layers = scene::outputLayers(scene),
         .multipart = output.multipart,
+        .denoised = impl_->denoised.has_value(),
         .display = {output.display, output.view, output.look, output.exposure},
         .colour = std::move(colour),
         .withAlpha = scene::environmentIsHidden(scene),
@@ -202,7 +205,8 @@ void RenderedImage::write(const fs::path& file) const {
                                    scene::sceneDigest(scene),   "",
                                    impl_->settings.adaptive};
     scene::describeShot(scene, metadata);
-    image::Outputs(std::move(settings)).write(result.film, metadata);
+    image::Outputs(std::move(settings))
+        .write(result.film, metadata, {.denoised = impl_->denoised ? &*impl_->denoised : nullptr});
 }
 
 struct Renderer::Impl {
@@ -310,20 +314,25 @@ int Renderer::addVolume(const LatticeVolume& volume) {
 RenderedImage Renderer::render(const RenderCalls& calls) const {
     if (impl_->isEmpty()) throw usageError("the scene is empty: add a volume before you render it");
     scene::SceneDescription description = impl_->scene;
+    std::vector<std::string> notes;
+    const auto denoiser = scene::settleDenoising(description, &notes);
     const render::RenderSettings settings = settingsOf(description, calls);
     scene::LoadedScene loaded = load(description, impl_->arrays);
-    std::vector<std::string> notes = loaded.notes;
     const auto note = [&](std::vector<std::string> more) {
         notes.insert(notes.end(), more.begin(), more.end());
     };
+    note(loaded.notes);
     note(scene::completeScene(description, loaded));
     scene::loadChosen(description, loaded);
     const render::Scene scene = scene::buildScene(description, std::move(loaded), &notes);
     note(render::precisionWarnings(scene));
     render::RenderResult result = draw(scene, settings, calls);
-    std::vector<float> pixels = pixelsOf(result.film);
-    return RenderedImage(std::make_shared<const RenderedImage::Impl>(RenderedImage::Impl{
-        std::move(description), settings, std::move(result), std::move(pixels), std::move(notes)}));
+    std::optional<image::DenoisedPicture> denoised;
+    if (denoiser) denoised = denoiser->denoise(result.film, calls.threads);
+    std::vector<float> pixels = pixelsOf(result.film, denoised ? &*denoised : nullptr);
+    return RenderedImage(std::make_shared<const RenderedImage::Impl>(
+        RenderedImage::Impl{std::move(description), settings, std::move(result),
+                            std::move(denoised), std::move(pixels), std::move(notes)}));
 }
 
 std::string Renderer::libraryVersion() { return std::string(version()); }

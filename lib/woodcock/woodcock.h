@@ -77,15 +77,15 @@ public:
     int height() const;
 
     /// height * width * 4 floats: rows from the top, pixels from the left, each red, green, blue
-    /// and alpha. Colours are scene-linear and multiplied by alpha. Valid as long as this image, or
-    /// a copy of it, lives.
+    /// and alpha. Colours are scene-linear and multiplied by alpha, and denoised where the scene
+    /// says so (render.denoise). Valid as long as this image, or a copy of it, lives.
     std::span<const float> pixels() const;
 
     int samples() const;    ///< complete per pixel
     bool complete() const;  ///< false where it was stopped, or a limit of time or noise was reached
     double seconds() const;  ///< that the render took
     /// Relative standard error of what the scene shows, as one number; below 0.01 no grain is seen.
-    /// Infinite below two samples.
+    /// Infinite below two samples. Of a denoised picture it is that before.
     double noise() const;
     /// What was chosen for you, and what you should know of the scene; a sentence or more each.
     const std::vector<std::string>& notes() const;

@@ -57,6 +57,16 @@ TEST(Quality, KeysBesideItWin) {
     EXPECT_FALSE(preview.approximations.similarityAfter);
 }
 
+TEST(Quality, PreviewsAreDenoisedWherePossible) {
+    EXPECT_EQ(parse("quality = \"preview\"").render.denoise, Denoise::IfInstalled);
+    EXPECT_EQ(parse("quality = \"preview\"\ndenoise = false").render.denoise, Denoise::Never);
+    EXPECT_EQ(parse("quality = \"final\"\ndenoise = true").render.denoise, Denoise::Always);
+    EXPECT_EQ(parse("denoise = true", {"render.quality=final"}).render.denoise, Denoise::Never);
+    EXPECT_EQ(biasedChoices(parse("denoise = true")), std::vector<std::string>{"render.denoise"});
+    expectError(ErrorKind::Input, "is 'auto'; expected true, false or \"if_installed\"",
+                [] { parse("denoise = \"auto\""); });
+}
+
 TEST(Quality, OfTheCommandLineReplacesWhatTheSceneSays) {
     const std::string written = "clamp = 3\nmarch_step = 2\nmarch_estimate = \"exponential\"";
     const std::string half = "storage = \"half\"";

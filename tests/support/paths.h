@@ -9,6 +9,7 @@ namespace woodcock::test {
 
 std::filesystem::path program();            ///< the `woodcock` program of this build
 std::filesystem::path renderEachProgram();  ///< tests/programs/render_each
+std::filesystem::path fakeOidn();           ///< the library of tests/programs/fake_oidn.cpp
 std::filesystem::path sourceDir();          ///< top of the source tree
 
 /// Reference data that is not part of the repository, beside it; may be missing. A test that needs

@@ -123,10 +123,6 @@ TEST(Options, UnknownOnesNameTheNearestOnly) {
     };
     EXPECT_EQ(said("--nosie"),
               "error: woodcock render: unknown option --nosie; did you mean '--noise'?\n");
-    EXPECT_EQ(said("--denoise"),
-              "error: there is no option --denoise: Woodcock does not denoise; --layers "
-              "albedo,normal writes what denoisers ask for (tools/render/README.md, For "
-              "denoisers)\n");
     EXPECT_EQ(said("--width=300"),
               "error: woodcock render: unknown option --width=300; the image's size is --res "
               "WIDTHxHEIGHT\n");

@@ -121,6 +121,10 @@ TEST_F(Candidates, BuiltInOnesFitTheScene) {
                               "level of detail 1", "nearest", "clamp 2;", "transparent shadows",
                               "16 scatterings", "draft", "preview", "final", "reference"})
         EXPECT_NE(all.find(there), std::string::npos) << there << " not in " << all;
+    EXPECT_EQ(all.find("denoised"), std::string::npos) << "there is no denoiser";
+    facts.denoiser = true;
+    for (const Extent extent : {Extent::All, Extent::Few})
+        EXPECT_NE(names(facts, extent).find("; denoised;"), std::string::npos);
     facts.cameraInside = true;
     EXPECT_EQ(names(facts, Extent::All).find("level"), std::string::npos);
     EXPECT_LT(names(facts, Extent::Few).size(), all.size() / 2);

@@ -64,6 +64,34 @@ TEST(EvaluateTrade, FindsWhatWasPutIn) {
     EXPECT_EQ(result.reference.samples, 800);
 }
 
+// Its squared bias is 0.4^2 with 4 samples and 0.2^2 with 16: it falls as 1 / n.
+TEST(EvaluateTrade, DenoisedPicturesHaveABiasThatFalls) {
+    TradeMeasurements m = measurements(1);
+    std::mt19937 random(2);
+    m.candidates.push_back({{"denoised", "", {}}, true, 1, 1000, {}, true});
+    for (int k = 0; k < tradeSeeds; ++k) {
+        m.candidates.back().seeds.push_back(
+            {stage(random, 4, 0.1, 0.4, 0.01), stage(random, 16, 0.1, 0.2, 0.01)});
+        for (Stage& s : m.candidates.back().seeds.back()) s.denoiseSeconds = 0.5;
+    }
+    const TradeResult result = evaluateTrade(m, 0);
+    const CandidateResult& denoised = result.candidates.back();
+    EXPECT_NEAR(denoised.squaredBias.value, 0.04, 4 * denoised.squaredBias.se);
+    EXPECT_NEAR(denoised.model.biasPower, 1, 0.05);
+    EXPECT_NEAR(denoised.model.biasSeconds, 16 * 0.04, 1e-9);
+    EXPECT_DOUBLE_EQ(denoised.denoiseSeconds, 4 * 0.5) << "a quarter of the pixels was measured";
+    EXPECT_NEAR(denoised.points[0].seconds, 2 + 4 * 0.04, 1e-9);
+    EXPECT_NEAR(denoised.model.errorAt(2 + 4 * 0.04)->value, 0.16, 0.02);
+    EXPECT_NEAR(denoised.points[0].relMse.value, 0.16, 0.02);
+    EXPECT_EQ(result.candidates[0].model.fixedSeconds, 0);
+    m.denoiserStart = 0.3;
+    EXPECT_DOUBLE_EQ(evaluateTrade(m, 0).candidates.back().denoiseSeconds, 0.3 + 4 * 0.2)
+        << "what does not grow with the picture";
+    EXPECT_DOUBLE_EQ(result.models(Counted::LoadingToo).back().fixedSeconds, 3);
+    EXPECT_NE(result.notes.back().find("'denoised' is denoised, in 2"), std::string::npos)
+        << result.notes.back();
+}
+
 // Unbiased: 1 x 0.04 / t; fast: 0.04 + 0.01 x 0.04 / t. They cross just below a second.
 TEST(EvaluateTrade, RecommendsTheUnbiasedAmongEquals) {
     const TradeResult result = evaluateTrade(measurements(1), 0);

@@ -38,7 +38,7 @@ TEST(TradeModel, TimeToAnErrorIsTheInverse) {
 
 TEST(TradeModel, LoadingPassesBeforeTheFirstSample) {
     TradeModel loaded = biased;
-    loaded.loadSeconds = 3;
+    loaded.fixedSeconds = 3;
     EXPECT_DOUBLE_EQ(loaded.firstSample(), 3.1);
     EXPECT_FALSE(loaded.errorAt(3.05));
     EXPECT_EQ(loaded.samplesIn(2), 0);
@@ -46,6 +46,25 @@ TEST(TradeModel, LoadingPassesBeforeTheFirstSample) {
     EXPECT_DOUBLE_EQ(loaded.errorAt(13)->value, 0.05);
     EXPECT_DOUBLE_EQ(loaded.secondsTo(0.05)->value, 13);
     EXPECT_EQ(loaded.samplesTo(0.05), biased.samplesTo(0.05));
+}
+
+// The squared bias is 0.01 after 64 seconds, and falls as 1 / sqrt(t) until then.
+TEST(TradeModel, ABiasMayFallWithTimeUntilItWasMeasured) {
+    TradeModel denoised{0.5, {0.01, 0}, {0.4, 0.4}, true};
+    denoised.biasPower = 0.5, denoised.biasSeconds = 64;
+    EXPECT_DOUBLE_EQ(denoised.errorAt(4)->value, 0.01 * 4 + 0.4 / 4);
+    EXPECT_DOUBLE_EQ(denoised.errorAt(64)->value, 0.01 + 0.4 / 64);
+    EXPECT_DOUBLE_EQ(denoised.errorAt(1000)->value, 0.01 + 0.4 / 1000) << "and stays";
+    EXPECT_NEAR(denoised.secondsTo(0.14)->value, 4, 1e-9);
+    EXPECT_NEAR(denoised.secondsTo(0.01 + 0.4 / 64)->value, 64, 1e-6);
+    EXPECT_NEAR(denoised.secondsTo(0.0104)->value, 1000, 1e-6);
+    EXPECT_DOUBLE_EQ(denoised.secondsTo(100)->value, 0.5) << "a sample at least";
+    EXPECT_FALSE(denoised.secondsTo(0.01));
+    EXPECT_EQ(denoised.samplesTo(0.14), 8);
+    EXPECT_NEAR(errorDifference(denoised, slow, 4).value, 0.14 - 0.5, 1e-12);
+    denoised.fixedSeconds = 2;
+    EXPECT_NEAR(denoised.secondsTo(0.14)->value, 6, 1e-9);
+    EXPECT_DOUBLE_EQ(denoised.errorAt(6)->value, 0.14);
 }
 
 TEST(TradeModel, WhatWasNotMeasuredTakesPartInNothing) {
@@ -107,13 +126,13 @@ TEST(Pareto, SeedsAreCompared) {
 TEST(Pareto, SeedsAreComparedAfterLoading) {
     const TradeModel a{1, {}, {1, 2, 4, 8}};
     TradeModel b{1, {}, {0.5, 1, 2, 4}};
-    b.loadSeconds = 5;  // half the time of rendering at half the noise
+    b.fixedSeconds = 5;  // half the time of rendering at half the noise
     const Measured difference = errorDifference(a, b, 10);
     EXPECT_NEAR(difference.value, 0, 1e-12);
     EXPECT_NEAR(difference.se, 0, 1e-12);
-    b.loadSeconds = 6;
+    b.fixedSeconds = 6;
     EXPECT_EQ(bestAt({a, b}, 10)->best, 0u);
-    b.loadSeconds = 4;
+    b.fixedSeconds = 4;
     EXPECT_EQ(bestAt({a, b}, 10)->best, 1u);
     EXPECT_FALSE(errorDifference(a, b, 10).value < 0);
 }

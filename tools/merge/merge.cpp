@@ -14,6 +14,7 @@
 #include "tools/common/report_options.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/denoise/denoiser.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/merge_parts.h"
@@ -28,7 +29,7 @@ struct MergeOptions {
     std::filesystem::path mattesFile, deep;
     std::vector<std::string> layers;
     std::optional<double> exposure;
-    bool mkdir = false, partial = false;
+    bool mkdir = false, partial = false, denoise = false;
     std::optional<int> spp;
     ReportOptions reports;
 
@@ -57,11 +58,24 @@ image::Outputs prepareOutputs(const MergeOptions& options, const PictureFacts& f
     settings.multipart = output.multipart;
     settings.layers = image::layersFromNames(
         options.layers.empty() ? output.layers : options.layers, groups, output.half);
+    settings.denoised = options.denoise;
+    if (options.denoise) image::dropLayersOfNoise(settings.layers);
     settings.display = {output.display, output.view, output.look,
                         options.exposure.value_or(output.exposure)};
     settings.withAlpha = facts.withAlpha;
     settings.glows = facts.glows;
     return image::Outputs(std::move(settings));
+}
+
+/// Throws where there is no denoiser, or the parts do not hold what it needs.
+std::optional<denoise::Denoiser> denoiserOf(const MergeOptions& options,
+                                            const image::StateFile& first) {
+    if (!options.denoise) return {};
+    if (!image::Film::keptIn(first.planes()).features)
+        throw usageError(
+            "--denoise needs the layers albedo and normal, and the parts were rendered without "
+            "them; render them with --layers albedo,normal");
+    return scene::inPlace("--denoise", [] { return denoise::Denoiser::load(); });
 }
 
 /// Throws where the parts hold nothing of a layer.
@@ -141,6 +155,7 @@ void runMerge(const MergeOptions& options, const std::string& commandLine) {
     checkLayers(options, first);
     checkCompositing(options, first);
     checkSameLayers(options);
+    const std::optional<denoise::Denoiser> denoiser = denoiserOf(options, first);
     const PictureFacts facts = pictureFactsOf(first);
     const image::Outputs outputs =
         prepareOutputs(options, facts, image::Film::keptIn(first.planes()).parts.groups);
@@ -153,9 +168,12 @@ void runMerge(const MergeOptions& options, const std::string& commandLine) {
     metadata.sceneDigest = first.fact("scene");
     metadata.commandLine = commandLine;
     metadata.adaptive = merged.adaptive;
-    const std::string note = outputs.write(
-        merged.film, metadata,
-        {merged.mattes ? &*merged.mattes : nullptr, merged.deep ? &*merged.deep : nullptr});
+    std::optional<image::DenoisedPicture> denoised;
+    if (denoiser) denoised = denoiser->denoise(merged.film);
+    const std::string note =
+        outputs.write(merged.film, metadata,
+                      {merged.mattes ? &*merged.mattes : nullptr,
+                       merged.deep ? &*merged.deep : nullptr, denoised ? &*denoised : nullptr});
     for (const std::filesystem::path& file : options.files())
         spdlog::info("wrote {}", file.string());
     if (!note.empty()) spdlog::info("{}", note);
@@ -197,6 +215,9 @@ CLI::App& addTo(CLI::App& app, const std::string& commandLine) {
         [](const std::string& text) { return parseNumber(text, -100, 100); },
         "Make pictures brighter by this many stops, in place of the parts' exposure")
         ->type_name("NUMBER");
+    command.add_flag("--denoise", o.denoise,
+                     "Denoise the picture by Open Image Denoise. The parts must have the layers "
+                     "albedo and normal; see woodcock render --help");
     addMkdir(command, o.mkdir);
     addCount(command, "--spp", o.spp, 1, INT_MAX,
              "Refuse parts that do not reach so many samples in every pixel. Without it, nothing "

@@ -9,6 +9,7 @@
 #include "tools/common/output_folders.h"
 #include "tools/common/scene_input.h"
 #include "woodcock/base/nearest_name.h"
+#include "woodcock/denoise/denoiser.h"
 #include "woodcock/image/cryptomatte.h"
 #include "woodcock/image/layers.h"
 #include "woodcock/scene/keys/sections.h"
@@ -131,6 +132,11 @@ void addRendering(CLI::App& command, RenderOptions& o) {
             "--adaptive,!--no-adaptive", [&o](std::int64_t times) { o.adaptive = times > 0; },
             "Spend the same time, but take more samples where the error is larger and fewer "
             "elsewhere"),
+        command.add_flag_function(
+            "--denoise,!--no-denoise", [&o](std::int64_t times) { o.denoise = times > 0; },
+            "Denoise the picture by Open Image Denoise, which 'pip install pyoidn' brings. EXR "
+            "files keep the noisy picture beside it. " +
+                denoise::searchText()),
         addCount(command, "--threads", o.threads, 0, 4096,
                  "How many processor threads to use. 0 takes all cores"),
         command.add_flag("--estimate", o.estimate,
@@ -202,19 +208,6 @@ void addReports(CLI::App& command, RenderOptions& o) {
         ->group("Reports");
 }
 
-/// Options that other programs have, which are named so that what to do instead can be said.
-void refuse(CLI::App& command, const std::string& names, const std::string& instead) {
-    command
-        .add_option_function<std::string>(names,
-                                          [=](const std::string&) {
-                                              throw usageError("there is no option {}: {}",
-                                                               names.substr(0, names.find(',')),
-                                                               instead);
-                                          })
-        ->expected(0, 1)
-        ->group("");
-}
-
 bool hasExtension(const std::filesystem::path& file, const char* extension) {
     return CLI::detail::to_lower(file.extension().string()) == extension;
 }
@@ -251,9 +244,6 @@ void RenderOptions::addTo(CLI::App& command) {
     addRendering(command, *this);
     addScene(command, *this);
     addReports(command, *this);
-    refuse(command, "--denoise",
-           "Woodcock does not denoise; --layers albedo,normal writes what denoisers ask for "
-           "(tools/render/README.md, For denoisers)");
 }
 
 SceneInput RenderOptions::sceneInput() const {

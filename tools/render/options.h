@@ -32,7 +32,7 @@ struct RenderOptions {
     bool resume = false;
     std::optional<std::uint64_t> seed;
     std::optional<double> timeLimit, noise;
-    std::optional<bool> adaptive;
+    std::optional<bool> adaptive, denoise;
     std::optional<std::string> quality;  ///< one of qualityNames, or "auto"
     std::optional<int> threads;
     std::vector<std::string> overrides;
@@ -69,6 +69,8 @@ struct RenderOptions {
     bool keepsCheckpoint() const { return checkpoint || resume; }
     /// Whether EXR files keep their sums, for merging.
     bool keepsSums() const { return mergeable || samples || tile; }
+    /// What is drawn is no picture yet, but goes into one.
+    bool drawsPart() const { return samples || tile; }
     /// Or only saves the scene.
     bool rendersImages() const { return writeScene.empty() || !outputs.empty(); }
 };

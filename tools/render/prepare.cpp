@@ -14,15 +14,25 @@
 #include "woodcock/base/frame_names.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/whole_file.h"
+#include "woodcock/denoise/denoiser.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/render/tile_order.h"
 #include "woodcock/scene/build.h"
+#include "woodcock/scene/denoising.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/mattes.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
+
+namespace {
+
+std::string placeOfDenoise(const scene::RenderDescription& render) {
+    return "render." + scene::keyName(render, render.denoise);
+}
+
+}  // namespace
 
 scene::SceneDescription describeScene(const RenderOptions& options, std::optional<int> frame) {
     SceneInput input = options.sceneInput();
@@ -38,6 +48,10 @@ scene::SceneDescription describeScene(const RenderOptions& options, std::optiona
     render.timeLimit = options.timeLimit.value_or(render.timeLimit);
     render.noise = options.noise.value_or(render.noise);
     if (options.adaptive) render.adaptive = options.adaptive;
+    if (options.denoise) {
+        render.denoise = *options.denoise ? scene::Denoise::Always : scene::Denoise::Never;
+        scene.places[placeOfDenoise(render)] = "--denoise";
+    }
 
     scene::OutputDescription& output = scene.output;
     if (!options.outputs.empty()) {
@@ -173,6 +187,7 @@ image::Outputs prepareOutputs(const scene::SceneDescription& scene, const Render
     settings.half = scene.output.half;
     settings.layers = layersOf(scene);
     settings.multipart = scene.output.multipart;
+    settings.denoised = scene.render.denoise == scene::Denoise::Always;
     settings.display = {scene.output.display, scene.output.view, scene.output.look,
                         scene.output.exposure};
     settings.withAlpha = scene::environmentIsHidden(scene);
@@ -198,12 +213,15 @@ double filmBytesPerPixel(const render::RenderSettings& settings,
 
 namespace {
 
+image::Film::Window cropOf(const render::RenderSettings& settings) {
+    return settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
+}
+
 /// Throws where the image's sums cannot be held, or not written in the end: `writing` are the bytes
 /// of a pixel that encoding takes; `copies`: checkpoints are written of copies.
 void checkMemory(const render::RenderSettings& settings, const scene::SceneDescription& scene,
                  double writing, double possible, bool copies = false) {
-    const auto crop =
-        settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
+    const image::Film::Window crop = cropOf(settings);
     const double kept = filmBytesPerPixel(settings, scene);
     const double needed =
         double(crop.width()) * crop.height() * ((copies ? 2 : 1) * kept + writing);
@@ -221,6 +239,15 @@ void checkMemory(const render::RenderSettings& settings, const scene::SceneDescr
 
 }  // namespace
 
+double writingBytesPerPixel(const render::RenderSettings& settings,
+                            const scene::SceneDescription& scene, const image::Outputs& outputs) {
+    if (scene.render.denoise != scene::Denoise::Always) return outputs.bytesPerPixel();
+    constexpr double denoised = 3 * sizeof(float);
+    const image::Film::Window crop = cropOf(settings);
+    const double pixels = double(crop.width()) * crop.height();
+    return std::max(denoised + outputs.bytesPerPixel(), denoise::bytesToDenoise(pixels) / pixels);
+}
+
 void checkMemoryLeft(const render::RenderSettings& settings, const scene::SceneDescription& scene,
                      const image::Outputs& outputs, bool copies) {
     // Stacks and buffers of the threads, and what libraries take to write.
@@ -229,7 +256,8 @@ void checkMemoryLeft(const render::RenderSettings& settings, const scene::SceneD
                             ? settings.threads
                             : static_cast<int>(std::thread::hardware_concurrency());
     const double left = static_cast<double>(memoryLeft()) - ofThread * threads - ofAll;
-    checkMemory(settings, scene, outputs.bytesPerPixel(), std::max(left, 0.0), copies);
+    checkMemory(settings, scene, writingBytesPerPixel(settings, scene, outputs),
+                std::max(left, 0.0), copies);
 }
 
 image::Film::Window pictureOf(const scene::RenderDescription& render,
@@ -267,6 +295,20 @@ void checkCompositing(const scene::SceneDescription& scene, const RenderOptions&
         throw usageError("{}", flaw);
 }
 
+std::optional<denoise::Denoiser> denoiserOf(scene::SceneDescription& scene,
+                                            const RenderOptions& options,
+                                            std::vector<std::string>* notes) {
+    scene::Denoise& denoise = scene.render.denoise;
+    if (options.drawsPart() && denoise == scene::Denoise::Always)
+        throw usageError(
+            "{}: {} draws a part of a picture, and only a whole picture is denoised. Render the "
+            "parts with --no-denoise --layers albedo,normal, and put them together by woodcock "
+            "merge --denoise",
+            scene::findPlace(scene.places, placeOfDenoise(scene.render)), keepingOption(options));
+    if (options.drawsPart()) denoise = scene::Denoise::Never;
+    return scene::settleDenoising(scene, notes);
+}
+
 render::RenderSettings renderSettings(const scene::SceneDescription& scene,
                                       const RenderOptions& options) {
     const scene::RenderDescription& render = scene.render;
@@ -287,7 +329,7 @@ render::RenderSettings renderSettings(const scene::SceneDescription& scene,
     settings.firstSample = samples.first;
     settings.endSample = samples.end;
     settings.threads = options.threads.value_or(0);
-    settings.layers = image::needsOf(layersOf(scene), scene::lightGroups(scene));
+    settings.layers = scene::inPlace("--layers", [&] { return scene::layerNeeds(scene); });
     settings.mattes = mattesOf(scene);
     if (!scene.output.deep.empty()) settings.deepError = scene.output.deepError;
     constexpr double encoded = 32;  // of a pixel in an image file with all layers, about

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/render/options.h"
+#include "woodcock/denoise/denoiser.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/description.h"
@@ -41,6 +42,11 @@ std::vector<image::MatteLayer> mattesOf(const scene::SceneDescription& scene,
 /// Refuses mattes and deep pixels that could not be right, or would go nowhere.
 void checkCompositing(const scene::SceneDescription& scene, const RenderOptions& options);
 
+/// The denoiser of a scene's pictures, as of scene::settleDenoising(). Parts of pictures have none.
+std::optional<denoise::Denoiser> denoiserOf(scene::SceneDescription& scene,
+                                            const RenderOptions& options,
+                                            std::vector<std::string>* notes = nullptr);
+
 /// Throws where the image's sums would not fit into memory.
 render::RenderSettings renderSettings(const scene::SceneDescription& scene,
                                       const RenderOptions& options);
@@ -51,6 +57,10 @@ image::Film::Window pictureOf(const scene::RenderDescription& render, const Rend
 /// Memory that the film holds for each pixel.
 double filmBytesPerPixel(const render::RenderSettings& settings,
                          const scene::SceneDescription& scene);
+
+/// Memory for each pixel that denoising and writing take beside that.
+double writingBytesPerPixel(const render::RenderSettings& settings,
+                            const scene::SceneDescription& scene, const image::Outputs& outputs);
 
 /// Throws where the sums do not fit into what is left of memory once the scene stands. `copies`:
 /// checkpoints are written of copies.

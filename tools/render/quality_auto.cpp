@@ -65,6 +65,7 @@ std::optional<trade::TradeResult> measure(const scene::SceneDescription& scene,
     settings.threads = options.threads.value_or(0);
     settings.seed = scene.render.seed;
     settings.extent = trade::Extent::Few;
+    settings.denoises = scene.render.timeLimit > 0 && !options.denoise;
     settings.onProgress = [&](double fraction, const std::string&) {
         progress.update(fraction);
         return !interrupted();
@@ -91,6 +92,7 @@ bool chooseQuality(scene::SceneDescription& scene, const RenderOptions& options,
 
     trade::Candidate chosen{"final", "final", {}};
     double allowed = render.noise;
+    double denoising = 0;  // seconds at the end
     // --noise leaves plain background out, and relMSE is a mean over all of the picture.
     const double share = result->reference.noiseShare;
     Goal goal{std::nullopt, render.noise * render.noise / share};
@@ -100,6 +102,7 @@ bool chooseQuality(scene::SceneDescription& scene, const RenderOptions& options,
     if (const auto winner = goal.best(models)) {
         const trade::TradeModel& model = models[winner->best];
         chosen = result->candidates[winner->best].candidate;
+        denoising = result->candidates[winner->best].denoiseSeconds;
         if (limit <= 0) allowed = std::sqrt(share * (goal.error - model.biasError()));
         spdlog::info(
             "'{}' is expected to reach {}, '{}' {} (bias counted with two standard errors; "
@@ -114,8 +117,14 @@ bool chooseQuality(scene::SceneDescription& scene, const RenderOptions& options,
     spdlog::info("the same again: {}", repeated(commandLine, chosen, endless));
 
     scene = trade::withChoices(scene, parser(options)(chosen.overrides()));
+    // Another denoising than was measured: what options say, or none, as noise is that before it.
+    if (options.denoise)
+        scene.render.denoise = *options.denoise ? scene::Denoise::Always : scene::Denoise::Never;
+    else if (limit <= 0)
+        scene.render.denoise = scene::Denoise::Never;
     if (endless) scene.render.spp = endlessSamples;
-    if (limit > 0) scene.render.timeLimit = std::max(0.5 * limit, limit - watch.seconds());
+    if (limit > 0)
+        scene.render.timeLimit = std::max(0.5 * limit, limit - watch.seconds() - denoising);
     scene.render.noise = allowed;
     return true;
 }

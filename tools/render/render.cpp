@@ -44,6 +44,7 @@
 #include "woodcock/render/saved_state.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
+#include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/scene_file.h"
 
 namespace woodcock::tool {
@@ -81,6 +82,8 @@ public:
         catchCheckpointRequests();
         catchInterrupts();  // not while a scene that comes through a pipe is waited for
         checkWhatIsAsked();
+        askedDenoising_ = description_.render.denoise;
+        settleDenoising();
         settings_ = renderSettings(description_, options_);
         if (options_.rendersImages()) tellMatteNames();
         if (isSequence())
@@ -213,9 +216,28 @@ private:
     void saveScene(const Openings& open) const {
         const std::filesystem::path& file = options_.writeScene;
         if (file.empty()) return;
-        writeTextFile(file, scene::writeScene(description_, file.parent_path()));
+        scene::SceneDescription saved = description_;
+        saved.render.denoise = askedDenoising_;
+        writeTextFile(file, scene::writeScene(saved, file.parent_path()));
         if (!isStdout(file))
             spdlog::info("wrote {}: {}", file.string(), describeChoices(open, description_));
+    }
+
+    /// Finds the denoiser, and tells of it in the first frame alone.
+    void settleDenoising() {
+        scene::SceneDescription noisy = description_;
+        noisy.render.denoise = scene::Denoise::Never;
+        std::vector<std::string> notes;
+        if (options_.rendersImages()) {
+            denoiser_ = denoiserOf(description_, options_, &notes);
+            if (denoiser_ &&
+                scene::outputLayers(description_).size() < scene::outputLayers(noisy).size())
+                notes.push_back(
+                    "layers of noise are left out: they would describe the picture before it is "
+                    "denoised");
+        }
+        for (const std::string& note : notes)
+            if (told_.insert(note).second) spdlog::info("{}", note);
     }
 
     /// Names that the scene leaves open.
@@ -232,6 +254,7 @@ private:
         const scene::SceneDescription before = description_;
         if (!chooseQuality(description_, options_, commandLine_)) endWith(exitInterrupted);
         if (!haveSameFields(before, description_)) loaded_ = scene::loadScene(description_);
+        settleDenoising();
         settings_ = renderSettings(description_, options_);
     }
 
@@ -327,7 +350,10 @@ private:
         loadStart_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(
                                         std::chrono::duration<double>(now.seconds));
         description_ = std::move(now.description), loaded_ = std::move(now.loaded);
-        if (hasSceneFiles()) settings_ = renderSettings(description_, options_);
+        if (hasSceneFiles()) {
+            settleDenoising();
+            settings_ = renderSettings(description_, options_);
+        }
         if (options_.choosesQuality() && place_->index == 0) {
             chooseSettings();
             reader_->sequence().render = description_.render;
@@ -385,10 +411,10 @@ private:
         double scenes = 0;
         for (const FrameTrial& trial : trials) scenes = std::max(scenes, trial.sceneBytes);
         // The trials held the scenes that rendering holds, and next to no picture.
-        const double fixed =
-            std::max(0.0, static_cast<double>(peakMemoryBytes()) -
-                              (trials.size() > 1 ? 2 : 1) * scenes) +
-            pixels * (filmBytesPerPixel(settings_, description_) + outputs.bytesPerPixel());
+        const double fixed = std::max(0.0, static_cast<double>(peakMemoryBytes()) -
+                                               (trials.size() > 1 ? 2 : 1) * scenes) +
+                             pixels * (filmBytesPerPixel(settings_, description_) +
+                                       writingBytesPerPixel(settings_, description_, outputs));
         const RenderEstimate estimate = estimateAll(
             std::move(trials), std::max<std::size_t>(1, plan_.drawn.size()), fixed, largest);
         if (options_.reports.json)
@@ -477,20 +503,43 @@ private:
         return metadata;
     }
 
+    /// The picture denoised, where that is asked for. What went wrong is left in `flaw`: hours of
+    /// samples are not lost by it.
+    std::optional<image::DenoisedPicture> denoise(const render::RenderResult& result,
+                                                  std::optional<Error>& flaw) const {
+        if (!denoiser_) return {};
+        try {
+            image::DenoisedPicture picture = denoiser_->denoise(result.film, settings_.threads);
+            spdlog::info("denoised in {} by {}", formatDuration(picture.seconds), picture.denoiser);
+            return picture;
+        } catch (const Error& e) {
+            flaw = Error(e.kind(), fmt::format("{}. The picture is written as it was rendered, "
+                                               "without being denoised",
+                                               e.what()));
+            return {};
+        }
+    }
+
     void write(const render::RenderResult& result, const image::Outputs& outputs,
-               const image::StateFacts& facts) const {
+               const image::StateFacts& facts) {
+        denoiseSeconds_.reset();
         if (result.film.mostSamples() > 0) {
+            std::optional<Error> flaw;
+            const std::optional<image::DenoisedPicture> denoised = denoise(result, flaw);
+            if (denoised) denoiseSeconds_ = denoised->seconds;
             std::optional<render::SavedState> sums;
             if (options_.keepsSums())
                 sums.emplace(result, settings_, pictureOf(description_.render, options_),
                              render::endingOf(result.reason), facts);
             const std::string note = outputs.write(
                 result.film, metadataOf(result, facts.at("scene")),
-                {result.mattes ? &*result.mattes : nullptr, result.deep ? &*result.deep : nullptr},
+                {result.mattes ? &*result.mattes : nullptr, result.deep ? &*result.deep : nullptr,
+                 denoised ? &*denoised : nullptr},
                 sums ? &sums->filmState() : nullptr);
             for (const std::filesystem::path& file : files())
                 spdlog::info("wrote {}", file.string());
             if (!note.empty()) spdlog::info("{}", note);
+            if (flaw) throw *flaw;
         } else if (result.reason != render::StopReason::TimeLimit) {
             spdlog::warn("interrupted before anything was rendered: nothing is written");
         }
@@ -501,6 +550,10 @@ private:
         Json stats = statsJson(
             result, settings_, digest, loadSeconds,
             result.film.mostSamples() > 0 ? files() : std::vector<std::filesystem::path>());
+        if (denoiseSeconds_) {
+            stats["denoiser"] = denoiser_->name();
+            stats["denoise_seconds"] = *denoiseSeconds_;
+        }
         if (!place_) {
             writeStats(options_.stats, stats);
             if (options_.reports.json) writeStats("-", stats);
@@ -524,6 +577,9 @@ private:
     const std::string& commandLine_;
     ProgressStyle style_;
     scene::SceneDescription description_;
+    scene::Denoise askedDenoising_ = scene::Denoise::Never;  // before the denoiser was looked for
+    std::optional<denoise::Denoiser> denoiser_;
+    std::optional<double> denoiseSeconds_;  // of the last picture
     render::RenderSettings settings_;
     scene::LoadedScene loaded_;
     Clock::time_point loadStart_;

@@ -43,6 +43,7 @@ Json candidateJson(const TradeReport& report, const trade::CandidateResult& c) {
            {"command", report.command.of(c.candidate)},
            {"paper", c.candidate.papers()},
            {"load_seconds", c.loadSeconds},
+           {"denoise_seconds", c.denoiseSeconds},
            {"memory", c.bytes},
            {"seconds_per_sample", measured(c.secondsPerSample)},
            {"cpu_seconds_per_sample", measured(c.cpuSecondsPerSample)},

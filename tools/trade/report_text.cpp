@@ -135,11 +135,12 @@ std::string tradeText(const TradeReport& report) {
     text += candidatesText(result) + readingsText(report);
     for (const std::string& note : result.notes) text += wrapped("note: " + note);
     text += "\n";
-    for (const trade::TradeReading& reading : result.equalTime)
-        text += fmt::format(
-            "{}: {}\n", formatDuration(reading.target),
-            report.command.ofSeconds(result.candidates[reading.winner.recommended].candidate,
-                                     reading.target));
+    for (const trade::TradeReading& reading : result.equalTime) {
+        const trade::CandidateResult& c = result.candidates[reading.winner.recommended];
+        text +=
+            fmt::format("{}: {}\n", formatDuration(reading.target),
+                        report.command.ofSeconds(c.candidate, reading.target - c.denoiseSeconds));
+    }
     return text;
 }
 

@@ -60,6 +60,13 @@ Layer light(LightKind kind, std::string doc) {
         [kind](const Film& film, int x, int y, float* to) { copy(film.light(kind, x, y), to); }};
 }
 
+Layer noise(std::string name, std::string doc, Rgb (Film::*value)(int, int) const) {
+    Layer layer = colour(
+        std::move(name), std::move(doc), "RGB", true, [](LayerNeeds&) {}, value);
+    layer.ofNoise = true;
+    return layer;
+}
+
 Layer motion() {
     return {"motion",
             "by how many pixels what the camera rays meet first moves, right and down, until the "
@@ -110,8 +117,9 @@ std::vector<Layer> makeTable() {
                [](const Film& film, int x, int y) {
                    return static_cast<float>(film.at(x, y).samples);
                }),
-        colour("error", "standard error of R, G and B", "RGB", true, nothing, &Film::standardError),
-        colour("variance", "the square of that", "RGB", true, nothing, &Film::variance),
+        noise("error", "standard error of R, G and B; not of denoised pictures",
+              &Film::standardError),
+        noise("variance", "the square of that", &Film::variance),
     };
 }
 
@@ -256,6 +264,14 @@ LayerList layersFromNames(const std::vector<std::string>& names,
     }
     request.requireGroups(list, known);
     return list;
+}
+
+std::vector<std::string> dropLayersOfNoise(LayerList& layers) {
+    std::vector<std::string> dropped;
+    for (const ChosenLayer& chosen : layers)
+        if (chosen.layer.ofNoise) dropped.push_back(chosen.layer.name);
+    std::erase_if(layers, [](const ChosenLayer& chosen) { return chosen.layer.ofNoise; });
+    return dropped;
 }
 
 LayerNeeds needsOf(const LayerList& layers, const std::vector<std::string>& groups) {

@@ -23,6 +23,7 @@ struct Layer {
     bool exact = false;
     std::function<void(LayerNeeds&)> need;                           ///< adds what it needs
     std::function<void(const Film&, int x, int y, float* to)> fill;  ///< its channels of a pixel
+    bool ofNoise = false;  ///< it describes the noise of R, G and B, so not of a denoised picture
 
     std::string nameInPart(const std::string& channel) const;
 };
@@ -57,6 +58,9 @@ using LayerList = std::vector<ChosenLayer>;
 /// exact. Throws Error{Usage} as above, and on groups that the scene does not have.
 LayerList layersFromNames(const std::vector<std::string>& names,
                           const std::vector<std::string>& groups = {}, bool half = false);
+
+/// Takes out the layers that say nothing of a denoised picture, and returns their names.
+std::vector<std::string> dropLayersOfNoise(LayerList& layers);
 
 /// What these layers need; `groups` as above.
 LayerNeeds needsOf(const LayerList& layers, const std::vector<std::string>& groups = {});

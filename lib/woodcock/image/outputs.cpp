@@ -40,8 +40,12 @@ Outputs::Outputs(OutputSettings settings) : settings_(std::move(settings)) {
 }
 
 ExrSettings Outputs::exrSettings() const {
-    return {settings_.half, settings_.layers, settings_.colour.chromaticities(),
-            settings_.colour.interopId(), settings_.multipart};
+    return {settings_.half,
+            settings_.layers,
+            settings_.colour.chromaticities(),
+            settings_.colour.interopId(),
+            settings_.multipart,
+            settings_.denoised};
 }
 
 double Outputs::bytesPerPixel() const {
@@ -58,30 +62,31 @@ double Outputs::bytesPerPixel() const {
 
 /// Returns the share of pixels of which alpha was raised; see writeDisplay().
 double Outputs::write(const std::filesystem::path& file, const Film& film,
-                      const RenderMetadata& metadata, const CompositingFilms& more,
+                      const RenderMetadata& metadata, const BesideFilm& beside,
                       const FilmState* state) const {
     if (file == settings_.deepFile) {
-        writeDeep(file, *more.deep, film, metadata, settings_.colour.chromaticities());
+        writeDeep(file, *beside.deep, film, metadata, settings_.colour.chromaticities());
     } else if (file == settings_.matteFile) {
-        writeCryptomatte(file, *more.mattes, film, metadata);
+        writeCryptomatte(file, *beside.mattes, film, metadata);
     } else if (imageFormat(file) == ImageFormat::Exr) {
-        writeExr(file, film, metadata, exrSettings(), state, ofExr(more.mattes));
+        writeExr(file, film, metadata, exrSettings(), state, ofExr(beside));
     } else {
         return writeDisplay(file, film, *transform_,
-                            {settings_.withAlpha, settings_.glows, settings_.display.exposure});
+                            {settings_.withAlpha, settings_.glows, settings_.display.exposure},
+                            beside.denoised);
     }
     return 0;
 }
 
 std::string Outputs::write(const Film& film, const RenderMetadata& metadata,
-                           const CompositingFilms& more, const FilmState* state) const {
+                           const BesideFilm& beside, const FilmState* state) const {
     std::string failures, note;
     std::vector<std::filesystem::path> files = settings_.files;
-    if (more.mattes && !settings_.matteFile.empty()) files.push_back(settings_.matteFile);
-    if (more.deep && !settings_.deepFile.empty()) files.push_back(settings_.deepFile);
+    if (beside.mattes && !settings_.matteFile.empty()) files.push_back(settings_.matteFile);
+    if (beside.deep && !settings_.deepFile.empty()) files.push_back(settings_.deepFile);
     for (const std::filesystem::path& file : files) {
         try {
-            const double raised = write(file, film, metadata, more, state);
+            const double raised = write(file, film, metadata, beside, state);
             if (raised > 0 && note.empty())
                 note = fmt::format(
                     "{}: {:.2g} % of the pixels emit more light than their alpha covers, as fire "

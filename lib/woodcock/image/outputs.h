@@ -6,19 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "woodcock/image/deep_film.h"
 #include "woodcock/image/display.h"
 #include "woodcock/image/film.h"
-#include "woodcock/image/matte_film.h"
 #include "woodcock/image/write_exr.h"
 
 namespace woodcock::image {
-
-/// What compositing asks for beside a film, of the same samples; null: nothing.
-struct CompositingFilms {
-    const MatteFilm* mattes = nullptr;
-    const DeepFilm* deep = nullptr;
-};
 
 struct OutputSettings {
     std::vector<std::filesystem::path> files = {};  ///< each in the format of its extension
@@ -28,6 +20,7 @@ struct OutputSettings {
     bool half = false;                              ///< EXR colour in half instead of float
     LayerList layers = {};                          ///< of the EXR files
     bool multipart = false;                         ///< their layers are parts of their own
+    bool denoised = false;                          ///< write() gets a denoised picture
     DisplaySettings display = {};                   ///< of all others, which are pictures
     ColorConfig colour;                             ///< for those, and for the EXR's chromaticities
     bool withAlpha = false;  ///< pictures keep alpha; for renders whose environment is not visible
@@ -50,22 +43,24 @@ public:
     /// Writes every file. If some fail, it writes the others and then throws Error{Failure} that
     /// names those. Returns a note for the user; may be empty. With `state`, EXR files keep that.
     std::string write(const Film& film, const RenderMetadata& metadata,
-                      const CompositingFilms& more = {}, const FilmState* state = nullptr) const;
+                      const BesideFilm& beside = {}, const FilmState* state = nullptr) const;
 
-    /// Writes an EXR of the same kind. Throws Error{Failure}.
+    /// Writes an EXR of the same kind, of the film as it is. Throws Error{Failure}.
     void writeCheckpoint(const std::filesystem::path& file, const Film& film,
                          const RenderMetadata& metadata, const FilmState& state,
                          const MatteFilm* mattes = nullptr) const {
-        writeExr(file, film, metadata, exrSettings(), &state, ofExr(mattes));
+        writeExr(file, film, metadata, exrSettings(), &state, ofExr({.mattes = mattes}));
     }
 
 private:
     ExrSettings exrSettings() const;
-    const MatteFilm* ofExr(const MatteFilm* mattes) const {
-        return settings_.matteFile.empty() ? mattes : nullptr;
+    /// Without what has a file of its own.
+    BesideFilm ofExr(BesideFilm beside) const {
+        if (!settings_.matteFile.empty()) beside.mattes = nullptr;
+        return beside;
     }
     double write(const std::filesystem::path& file, const Film& film,
-                 const RenderMetadata& metadata, const CompositingFilms& more,
+                 const RenderMetadata& metadata, const BesideFilm& beside,
                  const FilmState* state) const;
 
     OutputSettings settings_;

@@ -43,7 +43,8 @@ struct ScenePixels {
 };
 
 /// Colours are not multiplied by alpha where alpha is kept.
-ScenePixels scenePixels(const Film& film, bool straight, const DisplayFileSettings& settings) {
+ScenePixels scenePixels(const Film& film, bool straight, const DisplayFileSettings& settings,
+                        const DenoisedPicture* denoised) {
     ScenePixels pixels;
     const Film::Window crop = film.crop();
     pixels.rgba.reserve(4 * static_cast<std::size_t>(crop.width()) *
@@ -51,7 +52,7 @@ ScenePixels scenePixels(const Film& film, bool straight, const DisplayFileSettin
     const double gain = std::exp2(settings.exposure);
     for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
-            const Rgb radiance = film.radiance(x, y);
+            const Rgb radiance = denoised ? denoised->radiance(x, y) : film.radiance(x, y);
             float alpha = film.alpha(x, y);
             const double light = std::min(1.0, gain * double{radiance.maximum()});
             if (straight && settings.glows && light > double{alpha})
@@ -74,10 +75,11 @@ std::vector<float> withoutAlpha(const std::vector<float>& rgba) {
 }  // namespace
 
 double writeDisplay(const std::filesystem::path& file, const Film& film,
-                    const DisplayTransform& transform, const DisplayFileSettings& settings) {
+                    const DisplayTransform& transform, const DisplayFileSettings& settings,
+                    const DenoisedPicture* denoised) {
     const Encoding encoding = encodingOf(imageFormat(file));
     const bool alpha = settings.withAlpha && encoding.holdsAlpha;
-    ScenePixels pixels = scenePixels(film, alpha, settings);
+    ScenePixels pixels = scenePixels(film, alpha, settings, denoised);
     transform.apply(pixels.rgba);
 
     // These formats have no window in a larger image: the crop is the whole picture.

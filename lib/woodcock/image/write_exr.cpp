@@ -27,16 +27,31 @@ struct ChannelGroup {
     std::function<void(const Film&, int x, int y, float* to)> fill;
 };
 
-std::vector<ChannelGroup> channelGroups(const ExrSettings& settings) {
+void putColour(const Rgb& from, float* to) { std::copy(from.c.begin(), from.c.end(), to); }
+
+/// The film's own R, G and B, beside the denoised ones.
+ChannelGroup noisyGroup(const ExrSettings& settings) {
+    ChannelGroup group{
+        settings.multipart ? noisyLayer : "",
+        {"R", "G", "B"},
+        settings.half,
+        [](const Film& film, int x, int y, float* to) { putColour(film.radiance(x, y), to); }};
+    if (!settings.multipart)
+        for (std::string& name : group.names) name = fmt::format("{}.{}", noisyLayer, name);
+    return group;
+}
+
+std::vector<ChannelGroup> channelGroups(const ExrSettings& settings,
+                                        const DenoisedPicture* denoised) {
     std::vector<ChannelGroup> groups;
     groups.push_back({settings.multipart ? "rgba" : "",
                       {"R", "G", "B", "A"},
                       settings.half,
-                      [](const Film& film, int x, int y, float* to) {
-                          const Rgb radiance = film.radiance(x, y);
-                          std::copy(radiance.c.begin(), radiance.c.end(), to);
+                      [denoised](const Film& film, int x, int y, float* to) {
+                          putColour(denoised ? denoised->radiance(x, y) : film.radiance(x, y), to);
                           to[3] = film.alpha(x, y);
                       }});
+    if (settings.denoised) groups.push_back(noisyGroup(settings));
     for (const auto& [layer, half] : settings.layers) {
         ChannelGroup group{"", layer.channels, half, layer.fill};
         if (settings.multipart) {
@@ -51,12 +66,11 @@ std::vector<ChannelGroup> channelGroups(const ExrSettings& settings) {
 /// In float, whatever the colour is in: ids are bits.
 void addMattes(const MatteFilm& mattes, bool multipart, std::vector<ChannelGroup>& groups) {
     for (std::size_t layer = 0; layer < mattes.layers().size(); ++layer)
-        groups.push_back({multipart ? mattes.layers()[layer].name : "",
-                          matteChannels(mattes.layers()[layer]), false,
-                          [&mattes, layer](const Film& film, int x, int y, float* to) {
-                              mattes.ranks(layer, x, y, film.at(x, y).samples,
-                                           {to, 2 * matteRanks});
-                          }});
+        groups.push_back(
+            {multipart ? mattes.layers()[layer].name : "", matteChannels(mattes.layers()[layer]),
+             false, [&mattes, layer](const Film& film, int x, int y, float* to) {
+                 mattes.ranks(layer, x, y, film.at(x, y).samples, {to, 2 * matteRanks});
+             }});
 }
 
 ImageHeader headerOfAnyPart(const Film& film, const ExrSettings& settings) {
@@ -89,7 +103,8 @@ void describeShot(ImageHeader& h, const RenderMetadata& metadata, const ExrSetti
 }
 
 /// How the picture was made.
-void describeRender(ImageHeader& h, const Film& film, const RenderMetadata& metadata) {
+void describeRender(ImageHeader& h, const Film& film, const RenderMetadata& metadata,
+                    const DenoisedPicture* denoised) {
     const auto set = [&](const char* name, ImageAttribute value) {
         h.attributes.emplace_back(name, std::move(value));
     };
@@ -105,7 +120,13 @@ void describeRender(ImageHeader& h, const Film& film, const RenderMetadata& meta
     if (metadata.adaptive) set("woodcock/adaptive", 1);
     set("woodcock/samplesMean", static_cast<float>(film.meanSamples()));
     if (const double noise = film.noise(); std::isfinite(noise))
-        set("woodcock/noise", static_cast<float>(noise));
+        set(denoised ? "woodcock/noiseBeforeDenoising" : "woodcock/noise",
+            static_cast<float>(noise));
+    if (denoised) {
+        set("woodcock/denoiser", denoised->denoiser);
+        set("woodcock/denoised",
+            fmt::format("R, G and B: {}. As rendered: the layer {}", denoised->method, noisyLayer));
+    }
     // EXR has no integer of 64 bits.
     set("woodcock/seed", fmt::format("{}", metadata.seed));
     set("woodcock/nonFinite", fmt::format("{}", film.nonFiniteCount()));
@@ -137,14 +158,17 @@ std::vector<float> pixelsOf(const Film& film, std::span<const ChannelGroup> grou
 
 double exrBytesPerPixel(const ExrSettings& settings) {
     double bytes = 0;
-    for (const ChannelGroup& group : channelGroups(settings))
+    for (const ChannelGroup& group : channelGroups(settings, nullptr))
         bytes += double(group.names.size()) * (sizeof(float) + (group.half ? 2 : sizeof(float)));
     return bytes;
 }
 
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
-              const ExrSettings& settings, const FilmState* state, const MatteFilm* mattes) {
-    std::vector<ChannelGroup> groups = channelGroups(settings);
+              const ExrSettings& settings, const FilmState* state, const BesideFilm& beside) {
+    const MatteFilm* const mattes = beside.mattes;
+    ExrSettings written = settings;
+    written.denoised = beside.denoised != nullptr;
+    std::vector<ChannelGroup> groups = channelGroups(written, beside.denoised);
     if (mattes) addMattes(*mattes, settings.multipart, groups);
     std::vector<ExrPart> parts;
     for (auto first = groups.begin(); first != groups.end();) {
@@ -153,7 +177,7 @@ void writeExr(const std::filesystem::path& file, const Film& film, const RenderM
         });
         ImageHeader header = headerOfAnyPart(film, settings);
         describeShot(header, metadata, settings);
-        if (first == groups.begin()) describeRender(header, film, metadata);
+        if (first == groups.begin()) describeRender(header, film, metadata, beside.denoised);
         if (mattes)
             for (const MatteLayer& layer : mattes->layers())
                 if (!settings.multipart || first->part == layer.name)

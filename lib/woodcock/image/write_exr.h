@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "woodcock/image/chromaticities.h"
+#include "woodcock/image/deep_film.h"
+#include "woodcock/image/denoised_picture.h"
 #include "woodcock/image/encode_image.h"
 #include "woodcock/image/film.h"
 #include "woodcock/image/film_state.h"
@@ -32,6 +34,13 @@ struct RenderMetadata {
     double shutter = 0;
 };
 
+/// What may belong to a film, of the same samples; null: nothing.
+struct BesideFilm {
+    const MatteFilm* mattes = nullptr;
+    const DeepFilm* deep = nullptr;
+    const DenoisedPicture* denoised = nullptr;  ///< in place of the film's radiance
+};
+
 struct ExrSettings {
     bool half = false;  ///< R, G, B, A in half, clamped to its largest number; else float
     LayerList layers = {};
@@ -40,17 +49,21 @@ struct ExrSettings {
     /// Each layer in a part of its own, after the part "rgba" with R, G, B and A; else all channels
     /// in one part.
     bool multipart = false;
+    bool denoised = false;  ///< R, G, B are of a DenoisedPicture, and the film's own are a layer
 };
 
 /// Bytes of a pixel that writeExr() takes while it works: as floats, and as the file holds it.
 double exrBytesPerPixel(const ExrSettings& settings);
 
 /// Writes the film's means, premultiplied by alpha, with the crop as data window; with `state`,
-/// also that; with `mattes`, of the same samples, their layers of Cryptomatte. Whole or not at all;
-/// throws Error{Failure}.
+/// also that; with mattes, their layers of Cryptomatte; with a denoised picture, that as R, G and
+/// B, and the film's own as the layer `noisy`. Whole or not at all; throws Error{Failure}.
 void writeExr(const std::filesystem::path& file, const Film& film, const RenderMetadata& metadata,
               const ExrSettings& settings, const FilmState* state = nullptr,
-              const MatteFilm* mattes = nullptr);
+              const BesideFilm& beside = {});
+
+/// The layer of a denoised picture's file that holds the picture as it was rendered.
+inline constexpr const char* noisyLayer = "noisy";
 
 /// Writes the image `from`, of flat pixels in any format that is read, as an EXR of floats. It has
 /// the same channels, and these attributes in place of its own. Whole or not at all. Throws

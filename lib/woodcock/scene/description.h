@@ -321,6 +321,9 @@ struct CameraDescription {
     bool operator==(const CameraDescription&) const = default;
 };
 
+/// Whether finished pictures are denoised; see denoise::Denoiser.
+enum class Denoise { Never, IfInstalled, Always };
+
 struct RenderDescription {
     int width = 960, height = 540;
     double fps = 24;  ///< frames per second, of what moves by so much in a second
@@ -337,6 +340,7 @@ struct RenderDescription {
     /// Samples go where the error is largest; absent: as false. Told apart, as what a scene says is
     /// written again.
     std::optional<bool> adaptive;
+    Denoise denoise = Denoise::Never;
     double timeLimit = 0;      ///< seconds; 0: none
     double noise = 0;          ///< Film::noise() to stop at; 0: none
     double majorantScale = 1;  ///< 1 to 1000; loosens the majorants: for experiments

@@ -69,11 +69,16 @@ std::string groupOfMaterial(const SceneDescription& scene, const MaterialDescrip
 }
 
 image::LayerList outputLayers(const SceneDescription& scene) {
-    return image::layersFromNames(scene.output.layers, lightGroups(scene), scene.output.half);
+    image::LayerList layers =
+        image::layersFromNames(scene.output.layers, lightGroups(scene), scene.output.half);
+    if (scene.render.denoise == Denoise::Always) image::dropLayersOfNoise(layers);
+    return layers;
 }
 
 image::LayerNeeds layerNeeds(const SceneDescription& scene) {
-    return image::needsOf(outputLayers(scene), lightGroups(scene));
+    image::LayerNeeds needs = image::needsOf(outputLayers(scene), lightGroups(scene));
+    needs.features |= scene.render.denoise == Denoise::Always;
+    return needs;
 }
 
 void checkLightGroups(const SceneDescription& scene) {

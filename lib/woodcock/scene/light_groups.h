@@ -22,9 +22,10 @@ std::uint8_t groupNumber(std::span<const std::string> groups, const std::string&
 /// emits.
 std::string groupOfMaterial(const SceneDescription& scene, const MaterialDescription& material);
 
-/// The layers that the scene's output asks for. Throws Error{Usage} as image::layersFromNames().
+/// The layers that the scene's output asks for, but for those that say nothing of a denoised
+/// picture, where it is one. Throws Error{Usage} as image::layersFromNames().
 image::LayerList outputLayers(const SceneDescription& scene);
-/// What these need of a render.
+/// What these, and the denoiser, need of a render.
 image::LayerNeeds layerNeeds(const SceneDescription& scene);
 
 /// Throws Error{Input} with the place where there are more groups than can be told apart, where a

@@ -54,7 +54,8 @@ const std::vector<RenderChoice>& qualityChoices(Quality quality) {
          {{"similarity_after", "4"},
           {"storage", "\"half\""},
           {"transparent_shadows", "true"},
-          {"adaptive", "true"}},
+          {"adaptive", "true"},
+          {"denoise", "\"if_installed\""}},
          {{"adaptive", "true"}},
          {{"storage", "\"float\""}, {"adaptive", "false"}}}};
     return choices[static_cast<std::size_t>(quality)];

@@ -100,6 +100,7 @@ std::vector<Candidate> builtInCandidates(const SceneFacts& facts, Extent extent)
     std::vector<Candidate> list{{"as the scene says", "", {}}};
     for (const std::string& quality : scene::qualityNames) list.push_back({quality, quality, {}});
     add(list, "adaptive", "render.adaptive=true");
+    if (facts.denoiser) add(list, "denoised", "render.denoise=true");
     if (facts.grids) addMarching(list, extent);
     if (facts.scattering) addScatteringChoices(list, facts, extent);
     if (facts.grids) addFieldChoices(list, facts, extent);

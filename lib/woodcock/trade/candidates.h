@@ -32,6 +32,7 @@ struct SceneFacts {
     bool dielectrics = false;   ///< that shadow rays meet
     bool cameraInside = false;  ///< the media's box
     double meanRadiance = 0;    ///< of the picture, roughly
+    bool denoiser = false;      ///< there is one
 };
 /// The facts, but for the mean radiance, of a complete description and its scene.
 SceneFacts sceneFacts(const scene::SceneDescription& description, const render::Scene& scene);

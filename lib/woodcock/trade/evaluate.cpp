@@ -106,16 +106,43 @@ private:
         r.model.secondsPerSample = r.secondsPerSample.value;
         r.model.biased = m.biased;
         if (m.biased) r.model.squaredBias = r.squaredBias;
+        if (m.denoised) weighDenoising(m, r);
         for (std::size_t stage = 0; stage <= last; ++stage) r.points.push_back(point(m, stage));
         return r;
+    }
+
+    /// Seconds at the full size.
+    double denoising(const Stage& stage) const {
+        if (stage.denoiseSeconds == 0) return 0;
+        const double start = std::min(m_.denoiserStart, stage.denoiseSeconds);
+        return start + scale_ * (stage.denoiseSeconds - start);
+    }
+
+    /// How long it takes, and how the bias, which is that of the last stage, falls until then.
+    void weighDenoising(const OfCandidate& m, CandidateResult& r) const {
+        const std::size_t last = m.seeds.front().size() - 1;
+        r.denoiseSeconds = overSeeds(m, last, [&](const Stage& s) { return denoising(s); }).value;
+        r.model.fixedSeconds = r.denoiseSeconds;
+        r.model.biasSeconds =
+            overSeeds(m, last, [&](const Stage& s) { return scale_ * s.seconds; }).value;
+        const Measured first =
+            trade::squaredBias(meanOfSeeds(picturesAt(m, 0)), reference_, weights_);
+        const Measured& end = r.squaredBias;
+        if (last == 0 || first.value <= 3 * first.se || end.value <= 3 * end.se) return;
+        const double samples =
+            double(m.seeds.front()[last].samples) / double(m.seeds.front()[0].samples);
+        // Faster than noise falls, noise made it.
+        r.model.biasPower =
+            std::clamp(std::log(first.value / end.value) / std::log(samples), 0.0, 1.0);
     }
 
     TradePoint point(const OfCandidate& m, std::size_t stage) const {
         TradePoint point;
         const std::vector<Pixels> pictures = picturesAt(m, stage);
         point.samples = m.seeds.front()[stage].samples;
-        point.seconds =
-            overSeeds(m, stage, [&](const Stage& s) { return scale_ * s.seconds; }).value;
+        point.seconds = overSeeds(m, stage, [&](const Stage& s) {
+                            return scale_ * s.seconds + denoising(s);
+                        }).value;
         point.relMse = meanOf(errorsOfSeeds(pictures, reference_, weights_));
         std::vector<double> flips;
         for (const Pixels& picture : pictures) {
@@ -217,6 +244,16 @@ void noteTies(TradeResult& result) {
             fmt::format("no bias was found beyond noise in {}", namesOf(result, unresolved)));
 }
 
+void noteDenoising(TradeResult& result) {
+    for (const CandidateResult& c : result.candidates)
+        if (c.denoiseSeconds > 0)
+            result.notes.push_back(fmt::format(
+                "'{}' is denoised, in {}: variance and bias are those of {} samples. With fewer, "
+                "the squared bias is taken to rise as samples^-{:.2g}; with more, to stay",
+                c.candidate.name, formatDuration(c.denoiseSeconds), c.points.back().samples,
+                c.model.biasPower));
+}
+
 }  // namespace
 
 void TradeMeasurements::dropRound(int k) {
@@ -231,7 +268,7 @@ std::vector<TradeModel> TradeResult::models(Counted counted) const {
     std::vector<TradeModel> all;
     for (const CandidateResult& c : candidates) {
         all.push_back(c.model);
-        if (counted == Counted::LoadingToo) all.back().loadSeconds = c.loadSeconds;
+        if (counted == Counted::LoadingToo) all.back().fixedSeconds += c.loadSeconds;
     }
     return all;
 }
@@ -242,6 +279,7 @@ TradeResult evaluateTrade(const TradeMeasurements& measurements, double flipSeco
     readErrors(result);
     readFront(result);
     noteTies(result);
+    noteDenoising(result);
     return result;
 }
 

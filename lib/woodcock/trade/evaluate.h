@@ -15,10 +15,12 @@ struct TradeMeasurements {
         double loadSeconds = 0;
         std::size_t bytes = 0;
         std::vector<std::vector<Stage>> seeds;  ///< the same stages of each
+        bool denoised = false;
     };
     PictureSize full, measured;
     std::vector<OfCandidate> candidates;
     std::vector<Stage> reference;  ///< one for each seed
+    double denoiserStart = 0;      ///< seconds that denoising takes however small a picture is
 
     /// Removes the pictures of round k, from 0.
     void dropRound(int k);

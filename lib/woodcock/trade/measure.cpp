@@ -82,6 +82,7 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
     settings.seed = seed;
     settings.threads = threads;
     settings.timeLimit = settings.noise = 0;
+    settings.layers.features = subject.denoiser.has_value();
     std::vector<Stage> stages;
     std::optional<image::Film> film;
     double seconds = 0, cpuSeconds = 0;
@@ -104,7 +105,14 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
         else
             film = std::move(result.film);
         done = count;
-        stages.push_back({count, pixelsOf(*film), seconds, cpuSeconds, film->noise()});
+        stages.push_back({count, {}, seconds, cpuSeconds, film->noise()});
+        if (subject.denoiser) {
+            image::DenoisedPicture denoised = subject.denoiser->denoise(*film, threads);
+            stages.back().pixels = std::move(denoised.colour);
+            stages.back().denoiseSeconds = denoised.seconds;
+        } else {
+            stages.back().pixels = pixelsOf(*film);
+        }
     }
     return stages;
 }

@@ -6,8 +6,10 @@
 #include <functional>
 #include <list>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "woodcock/denoise/denoiser.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/trade/estimate.h"
@@ -52,9 +54,11 @@ private:
 struct Subject {
     const render::Scene* scene = nullptr;
     scene::RenderDescription render;
+    std::optional<denoise::Denoiser> denoiser;  ///< of its pictures; absent: none
     Subject() = default;
-    Subject(const BuiltScene& built, const scene::SceneDescription& description, PictureSize size)
-        : scene(&built.scene), render(description.render) {
+    Subject(const BuiltScene& built, const scene::SceneDescription& description, PictureSize size,
+            std::optional<denoise::Denoiser> pictureDenoiser = {})
+        : scene(&built.scene), render(description.render), denoiser(std::move(pictureDenoiser)) {
         render.width = size.width, render.height = size.height;
     }
 };
@@ -67,7 +71,8 @@ struct Stage {
     int samples = 0;  ///< per pixel, or as much work
     Pixels pixels;
     double seconds = 0, cpuSeconds = 0;
-    double noise = 0;  ///< Film::noise()
+    double noise = 0;           ///< Film::noise()
+    double denoiseSeconds = 0;  ///< of this picture alone; not in `seconds`
 };
 /// Renders `samples` samples per pixel; the stages are at these counts, which rise. Absent where
 /// `goOn` returned false.

@@ -35,17 +35,37 @@ std::optional<Winner> leastOf(const std::vector<TradeModel>& models, Among among
     return winner;
 }
 
-/// Seconds without loading; absent where the bias alone exceeds the error.
-std::optional<Measured> renderingTo(const TradeModel& model, double error) {
-    const double room = error - model.biasError();
+/// When noise and a bias that falls reach the error, which they do until biasSeconds.
+double fallingTo(const TradeModel& model, double error) {
+    double low = std::log(model.secondsPerSample), high = std::log(model.biasSeconds);
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings && low < high; ++i) {
+        const double middle = (low + high) / 2, t = std::exp(middle);
+        (model.biasErrorAfter(t) + model.cost() / t > error ? low : high) = middle;
+    }
+    return std::exp(high);
+}
+
+/// Seconds of sampling; absent where the bias alone exceeds the error.
+std::optional<Measured> samplingTo(const TradeModel& model, double error) {
+    double room = error - model.biasError();
     if (model.costs.empty() || !(room > 0)) return std::nullopt;
     const Measured n = model.noise();
-    const double seconds = n.value / room;
+    double seconds = n.value / room;
+    if (model.biasPower > 0 && seconds < model.biasSeconds) {
+        seconds = fallingTo(model, error);
+        room = n.value / seconds;
+    }
     return Measured{std::max(model.secondsPerSample, seconds),
                     std::hypot(n.se / room, seconds * model.squaredBias.se / room)};
 }
 
 }  // namespace
+
+double TradeModel::biasErrorAfter(double sampling) const {
+    if (biasPower == 0) return biasError();
+    return biasError() * std::pow(std::max(1.0, biasSeconds / sampling), biasPower);
+}
 
 TradeModel TradeModel::careful() const {
     TradeModel model = *this;
@@ -54,32 +74,32 @@ TradeModel TradeModel::careful() const {
 }
 
 double TradeModel::samplesIn(double seconds) const {
-    return std::max(0.0, std::floor((seconds - loadSeconds) / secondsPerSample));
+    return std::max(0.0, std::floor((seconds - fixedSeconds) / secondsPerSample));
 }
 
 std::optional<Measured> TradeModel::errorAt(double seconds) const {
-    const double rendering = seconds - loadSeconds;
-    if (costs.empty() || rendering < secondsPerSample) return std::nullopt;
+    const double sampling = seconds - fixedSeconds;
+    if (costs.empty() || sampling < secondsPerSample) return std::nullopt;
     const Measured n = noise();
-    return Measured{biasError() + n.value / rendering,
-                    std::hypot(squaredBias.se, n.se / rendering)};
+    return Measured{biasErrorAfter(sampling) + n.value / sampling,
+                    std::hypot(squaredBias.se, n.se / sampling)};
 }
 
 std::optional<Measured> TradeModel::secondsTo(double error) const {
-    std::optional<Measured> seconds = renderingTo(*this, error);
-    if (seconds) seconds->value += loadSeconds;
+    std::optional<Measured> seconds = samplingTo(*this, error);
+    if (seconds) seconds->value += fixedSeconds;
     return seconds;
 }
 
 std::optional<double> TradeModel::samplesTo(double error) const {
-    const std::optional<Measured> rendering = renderingTo(*this, error);
-    if (!rendering) return std::nullopt;
-    return std::ceil(rendering->value / secondsPerSample);
+    const std::optional<Measured> sampling = samplingTo(*this, error);
+    if (!sampling) return std::nullopt;
+    return std::ceil(sampling->value / secondsPerSample);
 }
 
 Measured errorDifference(const TradeModel& a, const TradeModel& b, double seconds) {
-    const double bias = a.biasError() - b.biasError();
-    const double ofA = seconds - a.loadSeconds, ofB = seconds - b.loadSeconds;
+    const double ofA = seconds - a.fixedSeconds, ofB = seconds - b.fixedSeconds;
+    const double bias = a.biasErrorAfter(ofA) - b.biasErrorAfter(ofB);
     std::vector<double> noise;
     for (std::size_t k = 0; k < std::min(a.costs.size(), b.costs.size()); ++k)
         noise.push_back(a.costs[k] / ofA - b.costs[k] / ofB);

@@ -10,7 +10,8 @@ namespace woodcock::trade {
 
 // How the error of a picture falls with time: error(t) = bias^2 + variance x seconds per sample /
 // t. Errors are relative squares (relMSE), see estimate.h. Time is that of rendering, as
-// --time-limit counts it, unless a model says what its loading takes, too.
+// --time-limit counts it, and of denoising, unless a model says what its loading takes, too. The
+// bias of a denoised picture falls with its noise.
 
 struct TradeModel {
     double secondsPerSample = 0;  ///< of every pixel once
@@ -19,18 +20,23 @@ struct TradeModel {
     /// with the same seeds side by side are compared seed by seed. Empty where nothing was
     /// measured: such a candidate takes part in nothing.
     std::vector<double> costs;
-    bool biased = false;     ///< by construction, whatever was measured
-    double loadSeconds = 0;  ///< that pass before the first sample, where they count
+    bool biased = false;      ///< by construction, whatever was measured
+    double fixedSeconds = 0;  ///< that pass beside sampling: denoising, and loading where it counts
+    /// The squared bias falls with this power of the time, until `biasSeconds` of sampling, when it
+    /// was measured; from then on it is taken to stay. 0: it is the same from the start.
+    double biasPower = 0, biasSeconds = 0;
 
     Measured noise() const { return meanOf(costs); }
     double cost() const { return noise().value; }
     /// The bias's part of the error; estimates below zero are noise and count as 0.
     double biasError() const { return squaredBias.value > 0 ? squaredBias.value : 0; }
+    /// The same after so many seconds of sampling.
+    double biasErrorAfter(double sampling) const;
     /// The error with the bias raised by two standard errors: a safe choice without a second
     /// measurement.
     TradeModel careful() const;
     /// When the first sample of every pixel ends.
-    double firstSample() const { return loadSeconds + secondsPerSample; }
+    double firstSample() const { return fixedSeconds + secondsPerSample; }
     /// Whole samples of every pixel within `seconds`; 0 where there is no time for one.
     double samplesIn(double seconds) const;
     /// Absent where there is no time for a sample.

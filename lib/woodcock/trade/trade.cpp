@@ -9,6 +9,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/memory.h"
 #include "woodcock/base/parse.h"
+#include "woodcock/scene/denoising.h"
 #include "woodcock/scene/quality.h"
 #include "woodcock/trade/evaluate.h"
 
@@ -19,6 +20,7 @@ constexpr double mostPixels = 40000;  // more samples are worth more than more p
 constexpr double fewestPixels = 256;
 constexpr int leastSamples = 4;
 constexpr int pilotSeeds = 2, pilotSamples = 2;
+constexpr int stagesOfSeed = 3;  ///< at most; see stageCounts()
 // Shares of the budget.
 constexpr double loadingShare = 0.25, renderingShare = 0.88, cropShare = 0.05, hardShare = 1.05;
 constexpr double unbiasedWeight = 0.25;  // whose squared bias decides nothing
@@ -123,9 +125,17 @@ private:
         if (given.empty()) {
             SceneFacts facts = sceneFacts(reference_, store_.get(reference_).scene);
             facts.meanRadiance = meanRadiance_;
+            facts.denoiser = settings_.denoises && isDenoiserInstalled();
             candidates = builtInCandidates(facts, settings_.extent);
         }
         resolved_ = resolveCandidates(candidates, complete_, parse_, !given.empty());
+        for (ResolvedCandidate& r : resolved_) settleDenoising(r);
+        if (denoiser_) {
+            const image::Film::Window least{0, 0, 16, 16};
+            const image::Film black(least.x1, least.y1, least,
+                                    {.surfaces = false, .features = true});
+            measurements_.denoiserStart = denoiser_->denoise(black, settings_.threads).seconds;
+        }
         const double most = loadingShare * settings_.budget;
         const auto memory = static_cast<double>(memoryLimit()) / 2;
         std::vector<std::string> slow;
@@ -148,6 +158,28 @@ private:
         if (resolved_.empty()) throw tooSmall(watch_.seconds() / loadingShare);
     }
 
+    static bool isDenoiserInstalled() {
+        try {
+            return denoise::Denoiser::find().has_value();
+        } catch (const Error&) {
+            return false;  // it does not work
+        }
+    }
+
+    void settleDenoising(ResolvedCandidate& r) {
+        if (!settings_.denoises) r.scene.render.denoise = scene::Denoise::Never;
+        try {
+            if (const auto denoiser = scene::settleDenoising(r.scene)) denoiser_ = denoiser;
+        } catch (const Error& e) {
+            throw Error(e.kind(), fmt::format("candidate '{}': {}", r.candidate.name, e.what()));
+        }
+    }
+
+    /// The pictures of a settled scene.
+    std::optional<denoise::Denoiser> denoiserOf(const scene::SceneDescription& scene) const {
+        return scene.render.denoise == scene::Denoise::Always ? denoiser_ : std::nullopt;
+    }
+
     static std::string joined(const std::vector<std::string>& names) {
         return fmt::format("{}", fmt::join(names, ", "));
     }
@@ -162,7 +194,7 @@ private:
             left(renderingShare) / (goodSamplesPerPixel(resolved_.size()) * perPixel);
         size_ = sizeOfPixels(full_, std::clamp(pixels, smallest, mostPixels));
         for (const ResolvedCandidate& r : resolved_)
-            subjects_.emplace_back(store_.get(r.scene), r.scene, size_);
+            subjects_.emplace_back(store_.get(r.scene), r.scene, size_, denoiserOf(r.scene));
         referenceSubject_ = Subject(store_.get(reference_), reference_, size_);
         if (size_.pixels() < full_.pixels())
             notes_.push_back(
@@ -176,6 +208,7 @@ private:
         for (int k = 0; k < pilotSeeds; ++k)
             stages.push_back(render(subject, Use::Pilot, k, {pilotSamples}).back());
         const double samples = stages[0].samples;
+        denoiseSeconds_ += tradeSeeds * stagesOfSeed * stages.back().denoiseSeconds;
         return {(stages[0].seconds + stages[1].seconds) / 2 / samples,
                 pilotVariance(stages[0].pixels, stages[1].pixels) * samples, 1};
     }
@@ -195,7 +228,7 @@ private:
     }
 
     TradePlan plan(const std::vector<PilotCost>& costs) {
-        double available = left(renderingShare);
+        double available = left(renderingShare) - denoiseSeconds_;
         if (settings_.crops) available -= cropShare * settings_.budget;
         const TradePlan made = planTrade(costs, referenceCost_, available, leastSamples);
         if (made.seconds > 1.2 * available)
@@ -224,7 +257,8 @@ private:
                                     isBiased(resolved_[i].scene),
                                     built.loadSeconds,
                                     built.bytes,
-                                    {}});
+                                    {},
+                                    subjects_[i].denoiser.has_value()});
         }
         double longestRound = 0;
         for (int k = 0; k < mostTradeSeeds; ++k) {
@@ -298,6 +332,8 @@ private:
     scene::SceneDescription reference_;
     SceneStore store_;
     double referenceLoad_ = 0, meanRadiance_ = 0, secondsPerPixel_ = 0;
+    std::optional<denoise::Denoiser> denoiser_;  // of the candidates that are denoised
+    double denoiseSeconds_ = 0;                  // that it will take, of all pictures
     std::vector<ResolvedCandidate> resolved_;
     std::vector<Subject> subjects_;
     Subject referenceSubject_;

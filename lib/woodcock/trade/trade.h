@@ -23,6 +23,7 @@ struct TradeSettings {
     int threads = 0;      ///< 0: all cores
     std::uint64_t seed = 0;
     Extent extent = Extent::All;  ///< of the built-in candidates
+    bool denoises = true;         ///< candidates may be denoised
     bool crops = false;           ///< also render pictures of equal time to look at
     /// Called with the fraction that is done, and what is being measured; returning false stops.
     std::function<bool(double fraction, const std::string& what)> onProgress = {};
@@ -44,6 +45,7 @@ struct CandidateResult {
     Measured bias;         ///< of the mean of the picture, relative
     Measured squaredBias;  ///< relative, mean over pixels; below zero by noise alone
     Measured variance;     ///< of one sample, relative: relMSE = variance / samples + squaredBias
+    double denoiseSeconds = 0;  ///< of a picture; 0: it is not denoised
     std::vector<TradePoint> points;
     TradeModel model;
     bool onFront = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/base/parse.h"
+#include "woodcock/base/printable.h"
 #include "woodcock/image/write_exr.h"
 #include "woodcock/scene/keys/sections.h"
 #include "woodcock/scene/keys/values.h"
@@ -40,6 +41,22 @@ Value<std::uint64_t> seed() {
                     throw usageError("the seed {} is larger than a scene file can hold (2^63 - 1)",
                                      v);
                 return std::to_string(v);
+            }};
+}
+
+Value<Denoise> denoise() {
+    const std::string condition = "if_installed";
+    return {fmt::format("`true`, `false` or `\"{}\"`", condition),
+            {"true", tomlText(condition)},
+            [=](const TomlValue& v, Base) {
+                if (!v.isText()) return v.flag() ? Denoise::Always : Denoise::Never;
+                if (v.text() == condition) return Denoise::IfInstalled;
+                throw v.error("is '{}'; expected true, false or \"{}\"", shown(v.text(), 60),
+                              condition);
+            },
+            [=](const Denoise& value, const SceneWriter&) -> std::string {
+                if (value == Denoise::IfInstalled) return tomlText(condition);
+                return value == Denoise::Always ? "true" : "false";
             }};
 }
 
@@ -191,6 +208,14 @@ std::vector<Key<R>> effortKeys() {
              .inDigest = false,
              .choice = true},
             &R::adaptive, flag()),
+        biasedWhenSaid(key(
+            {.name = "denoise",
+             .doc =
+                 "biased. The finished picture is denoised by Open Image Denoise, which has to be "
+                 "installed; `\"if_installed\"` does so only where it is. See \"Denoising\"",
+             .inDigest = false,
+             .choice = true},
+            &R::denoise, denoise())),
         key({.name = "time_limit",
              .doc = "in seconds, or a text such as `\"90s\"`, `\"2m\"`, `\"1.5h\"`. 0: none. The "
                     "first sample of all pixels may take twice as long. Pixels that still have no "
