@@ -24,7 +24,7 @@ using Words = std::vector<std::string>;
 
 class DenoiseOption : public testing::Test {
 protected:
-    void SetUp() override { writeWholeFile(dir / "fog.toml", fogScene); }
+    void SetUp() override { writeWholeFile(dir / "fog.toml", fogScene()); }
 
     std::string file(const std::string& name) const { return (dir / name).string(); }
     ProgramResult run(Words words, const Words& more) const {
@@ -138,7 +138,7 @@ TEST_F(DenoiseOption, ACropIsDenoisedInItsPlace) {
 }
 
 TEST_F(DenoiseOption, AdaptiveSamplesMattesAndGroupsAreAsTheyWere) {
-    writeWholeFile(dir / "fog.toml", std::string(fogScene) + "[output]\nmattes = [\"object\"]\n");
+    writeWholeFile(dir / "fog.toml", std::string(fogScene()) + "[output]\nmattes = [\"object\"]\n");
     const Words both{"--adaptive", "--layers", "volume_direct,samples"};
     Words with = both;
     with.insert(with.end(), {"--denoise", "-o", file("a.exr")});
@@ -169,7 +169,7 @@ TEST_F(DenoiseOption, WithoutALibraryNothingIsRendered) {
     const EnvironmentVariable none("WOODCOCK_OIDN", file("none"));
     const std::string said = "WOODCOCK_OIDN names '" + file("none") + "', which is not there\n";
     expectRefused(render({"-o", file("a.exr"), "--denoise"}), 2, "error: --denoise: " + said);
-    writeWholeFile(dir / "fog.toml", std::string(fogScene) + "denoise = true\n");
+    writeWholeFile(dir / "fog.toml", std::string(fogScene()) + "denoise = true\n");
     expectRefused(render({"-o", file("a.exr")}), 2,
                   "error: " + file("fog.toml") + ":15:11: " + said);
     expectDone(render({"-o", file("a.exr"), "--no-denoise"}));

@@ -20,7 +20,7 @@ namespace {
 TEST(RenderStages, OfADenoisedSubjectAreDenoisedEach) {
     const EnvironmentVariable library("WOODCOCK_OIDN", fakeOidn().string());
     scene::SceneDescription fog =
-        scene::parseSceneText(std::string(fogScene) + "denoise = true\n", "fog.toml", ".");
+        scene::parseSceneText(std::string(fogScene()) + "denoise = true\n", "fog.toml", ".");
     const auto denoiser = scene::settleDenoising(fog);
     ASSERT_TRUE(denoiser);
     SceneStore store;

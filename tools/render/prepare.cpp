@@ -304,7 +304,8 @@ std::optional<denoise::Denoiser> denoiserOf(scene::SceneDescription& scene,
             "{}: {} draws a part of a picture, and only a whole picture is denoised. Render the "
             "parts with --no-denoise --layers albedo,normal, and put them together by woodcock "
             "merge --denoise",
-            scene::findPlace(scene.places, placeOfDenoise(scene.render)), keepingOption(options));
+            scene::findPlace(scene.places, placeOfDenoise(scene.render)),
+            options.tile ? "--tile" : "--samples");
     if (options.drawsPart()) denoise = scene::Denoise::Never;
     return scene::settleDenoising(scene, notes);
 }
