@@ -14,6 +14,20 @@ bool flightsMeetLight(const Scene& scene, const Needs& needs) {
 
 }  // namespace
 
+bool thickAndPeaked(const MediumSummary& medium) {
+    constexpr double thick = 30, peaked = 8;
+    if (medium.medium->parts.empty() ||
+        medium.meanExtinction * length(medium.bounds.size()) < thick)
+        return false;
+    // How much the density of a sampled direction varies: its mean over that of isotropic light.
+    const medium::PhaseFunction& phase = medium.medium->parts.front().phase();
+    constexpr int points = 64;
+    double mean = 0;
+    for (int i = 0; i < points; ++i)
+        mean += phase.sample({0, 0, 1}, (i + 0.5) / points, 0.5).pdf / points;
+    return 4 * pi * mean > peaked;
+}
+
 MediaTable::MediaTable(const Scene& scene, const Needs& needs, const Approximations& approximations,
                        const ApproximateMedia* approximate)
     : similarityAfter_(approximations.similarityAfter), octaves_(approximations.octaves) {

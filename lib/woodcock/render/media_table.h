@@ -12,6 +12,10 @@
 
 namespace woodcock::render {
 
+/// Whether paths in a medium are long, and a single next event is noisy as the phase function has a
+/// peak: see several_events.h. Elsewhere several events cost more than they bring.
+bool thickAndPeaked(const MediumSummary& medium);
+
 /// The media of a scene by number. They come in sets, each of as many: first the scene's own,
 /// outside and then what surfaces hold; then those that approximations use in their place. Paths
 /// and shadow rays carry the number of a set. 0 is the scene's own.

@@ -46,7 +46,10 @@ struct PathState {
     std::int64_t scatterings = 0;
     light::ScatterPoint from{};  ///< the last event, for MIS at what its direction hits
     double phasePdf = 0;         ///< of that direction
-    double flight = 1;           ///< draws the next optical depth
+    /// Of the light of suns with depth grids, what the next event is to bring: see
+    /// several_events.h.
+    float sunShare = 1;
+    double flight = 1;  ///< draws the next optical depth
     /// Draw the flight's equiangular point, and the light for it.
     double equiangular = 0, localLightPick = 0;
     bool alive = true;

@@ -19,6 +19,7 @@ struct TracedScene {
     const camera::CameraRays cameraRays;
     const float typicalRadiance;  ///< in the scene's media; what roulette compares with
     const MediaTable media;
+    const bool severalEvents;  ///< near suns: see several_events.h
     // Where there are surfaces:
     std::optional<NestedMedia> surfaces;
     /// Where all camera rays start at one point of a scene at rest.
@@ -30,7 +31,8 @@ struct TracedScene {
           options(o),
           cameraRays(s.camera, o.width, o.height),
           typicalRadiance(s.lights.typicalRadiance(s.bounds())),
-          media(s, n, o.approximations, o.approximateMedia) {
+          media(s, n, o.approximations, o.approximateMedia),
+          severalEvents(o.sunDepths && !media.replaces() && thickAndPeaked(media[0])) {
         if (!n.surfaces) return;
         surfaces.emplace(s);
         if (s.camera.kind == camera::Camera::Kind::Perspective && !s.camera.motion &&

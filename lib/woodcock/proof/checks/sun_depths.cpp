@@ -80,8 +80,19 @@ void transmittances(Lab& lab) {
     }
 }
 
+struct Subject {
+    const char* name;
+    double thickness, g;
+    bool surfaces;
+    int effort;  ///< one over it, against the others'
+};
+/// In the last one, several next events are drawn near the suns.
+constexpr Subject subjects[]{{"of fog", 1, 0.5, false, 1},
+                             {"with surfaces", 1, 0.5, true, 1},
+                             {"of a thick cloud", 20, 0.85, false, 9}};
+
 /// Fog under a delta sun and a disc; with surfaces above a floor and around a glass ball.
-std::string foggyScene(double density, double shift, bool surfaces) {
+std::string foggyScene(const Subject& subject, double density, double shift) {
     const char* const solid =
         "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.4\n"
         "[[surface]]\nmaterial = \"glass\"\n"
@@ -89,15 +100,15 @@ std::string foggyScene(double density, double shift, bool surfaces) {
         "[[surface]]\nplane = {}\ntransform = { translate = [0, -1, 0] }\n";
     return fmt::format(
         "[[volume]]\nbox = {{ min = [{1}, -1, -1], max = [{2}, 1.2, 1] }}\n"
-        "sigma_a = [{3}, {4}, {5}]\nsigma_s = {6}\ng = 0.5\n"
+        "sigma_a = [{3}, {4}, {5}]\nsigma_s = {6}\ng = {8}\n"
         "[[volume]]\nbox = {{ min = [-0.5, -0.2, -2], max = [0.4, 0.9, 0.3] }}\n"
         "transform = {{ translate = [{0}, 0, 0], rotate = [0, 30, 10] }}\nsigma_s = {6}\n"
         "[[light]]\ntype = \"sun\"\ndirection = [0.5, -1, -0.3]\nirradiance = [2, 1, 1]\n"
         "[[light]]\ntype = \"sun\"\ndirection = [-0.2, -1, 0.3]\nirradiance = [0.5, 1, 2]\n"
         "angular_diameter = 0.5\n"
         "[camera]\neye = [0, 0.5, 5]\nlook_at = [0, 0, 0]\nfov = 30\n{7}",
-        shift, -1 + shift, 1 + shift, 0.2 * density, 0.5 * density, density, 1.5 * density,
-        surfaces ? solid : "");
+        shift, -1 + shift, 1 + shift, 0.2 * density, 0.5 * density, density,
+        1.5 * density * subject.thickness, subject.surfaces ? solid : "", subject.g);
 }
 
 /// Mean radiance of a small picture by so many seeds.
@@ -129,22 +140,23 @@ std::array<Moments, 3> pictures(const render::Scene& scene, const render::SunDep
 
 /// Pictures by right and by wrong grids against shadow rays that are tracked.
 void comparePictures(Lab& lab) {
-    for (const bool surfaces : {false, true}) {
-        const render::Scene scene = sceneIn(lab, foggyScene(1, 0, surfaces));
-        const int seeds = lab.pick(800, 12000);
+    for (const Subject& subject : subjects) {
+        const render::Scene scene = sceneIn(lab, foggyScene(subject, 1, 0));
+        const int seeds = lab.pick(800, 12000) / subject.effort;
         const auto tracked = pictures(scene, nullptr, lab.seed("tracked"), seeds);
         for (const Wrong& wrong : kinds) {
-            const render::Scene other =
-                sceneIn(lab, foggyScene(wrong.density, wrong.shift.x / 4, surfaces));
+            const render::Scene other = sceneIn(
+                lab, foggyScene(subject, wrong.density, wrong.shift.x / (4 * subject.thickness)));
             const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
-            const std::string name = fmt::format("picture {} by a grid that is {}",
-                                                 surfaces ? "with surfaces" : "of fog", wrong.what);
+            const std::string name =
+                fmt::format("picture {} by a grid that is {}", subject.name, wrong.what);
             const auto means = pictures(scene, &depths, lab.seed(name), seeds);
             for (std::size_t c = 0; c < 3; ++c) {
                 const double error =
                     std::hypot(means[c].standardError(), tracked[c].standardError());
                 Case one = caseOf(fmt::format("{}, channel {}", name, c), tracked[c].mean(),
-                                  {means[c].mean(), error}, {lab.pick(6e-2, 1.5e-2), 0});
+                                  {means[c].mean(), error},
+                                  {lab.pick(6e-2, 1.5e-2) * std::sqrt(subject.effort), 0});
                 one.note = "by tracked shadow rays";
                 lab.add(one);
             }

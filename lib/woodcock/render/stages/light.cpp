@@ -45,35 +45,51 @@ void addSunlight(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState
           group);
 }
 
-}  // namespace
-
+/// Adds a sample of the chosen light.
 template <int N, bool Surfaces>
-void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
-                  const EventNumbers& u, const FlightShare& share) {
+void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                const LightChoice::Chosen& chosen, const EventNumbers& u,
+                const FlightShare& share) {
     PathState<N, Surfaces>& p = batch.paths[i];
     const light::LightSet& lights = traced.scene.lights;
-    const auto chosen = batch.choice.choose(p.from, u.pick);
-    if (!chosen) return;
     light::LightSample s =
-        lights.sample(chosen->light, p.from.position, u.light[0], u.light[1], p.time);
+        lights.sample(chosen.light, p.from.position, u.light[0], u.light[1], p.time);
     if (!(s.weight.maximum() > 0)) return;
     const double phase = phaseDensity(p, dot(p.from.forward, s.direction), s.weight);
-    double weight = phase / chosen->probability;
-    if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen->probability, phase);
-    weight *= share(lights, chosen->light);
-    const medium::DepthGrid* const depths = traced.sunDepth(p.mediumSet, chosen->light);
+    double weight = phase / chosen.probability;
+    if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen.probability, phase);
+    weight *= share(lights, chosen.light);
+    const medium::DepthGrid* const depths = traced.sunDepth(p.mediumSet, chosen.light);
     if (!Surfaces && depths) {
-        const Rgb light = s.weight * tint(p) * static_cast<float>(weight);
+        const Rgb light = s.weight * tint(p) * (static_cast<float>(weight) * p.sunShare);
         addSunlight(traced, batch, p, *depths, s.direction, light,
-                    lights.group(chosen->light, s.emitter));
+                    lights.group(chosen.light, s.emitter));
         return;
     }
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
                      s.weight * static_cast<float>(weight), true)) {
         batch.shadows.back().emitter = s.emitter;
         if constexpr (Surfaces) batch.shadows.back().sunDepth = depths;
-        noteOrigin(batch, lights.group(chosen->light, s.emitter), 1);
+        noteOrigin(batch, lights.group(chosen.light, s.emitter), 1);
     }
+}
+
+}  // namespace
+
+template <int N>
+void addSunlight(const TracedScene& traced, Batch<N, false>& batch, std::size_t i,
+                 const EventNumbers& u) {
+    PathState<N, false>& p = batch.paths[i];
+    const auto chosen = batch.choice.choose(p.from, u.pick);
+    if (!chosen || !traced.sunDepth(p.mediumSet, chosen->light)) return;
+    addSampled(traced, batch, i, *chosen, u, FlightShare());
+}
+
+template <int N, bool Surfaces>
+void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
+                  const EventNumbers& u, const FlightShare& share) {
+    const auto chosen = batch.choice.choose(batch.paths[i].from, u.pick);
+    if (chosen) addSampled(traced, batch, i, *chosen, u, share);
 }
 
 template <int N, bool Surfaces>
@@ -138,5 +154,7 @@ INSTANTIATE(1, true)
 INSTANTIATE(3, false)
 INSTANTIATE(3, true)
 #undef INSTANTIATE
+template void addSunlight(const TracedScene&, Batch<1, false>&, std::size_t, const EventNumbers&);
+template void addSunlight(const TracedScene&, Batch<3, false>&, std::size_t, const EventNumbers&);
 
 }  // namespace woodcock::render

@@ -12,6 +12,11 @@ template <int N, bool Surfaces>
 void addNextEvent(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
                   const EventNumbers& u, const FlightShare& share);
 
+/// The same for the suns alone of which grids know the optical depth, where there are no surfaces.
+template <int N>
+void addSunlight(const TracedScene& traced, Batch<N, false>& batch, std::size_t i,
+                 const EventNumbers& u);
+
 /// Adds lights that the new direction meets, with the weight of multiple importance sampling that
 /// next-event estimation leaves. Where `share` is null, the camera sees them.
 template <int N, bool Surfaces>

@@ -4,6 +4,8 @@
 #include "woodcock/medium/phase.h"
 #include "woodcock/render/stages/light.h"
 #include "woodcock/render/stages/roulette.h"
+#include "woodcock/render/stages/several_events.h"
+#include "woodcock/render/stages/turn.h"
 
 namespace woodcock::render {
 
@@ -23,22 +25,6 @@ void enterMediumSet(const TracedScene& traced, PathState<N, Surfaces>& p) {
     const MediaTable::Onward onward = traced.media.onward(p.scatterings, p.random);
     p.mediumSet = onward.mediumSet;
     p.throughput *= static_cast<float>(onward.amount);
-}
-
-/// Samples the path's next direction. Weights the path where the phase function differs between the
-/// channels.
-template <int N, bool Surfaces>
-medium::PhaseSample turn(PathState<N, Surfaces>& p, const medium::PhaseFunction& phase,
-                         const EventNumbers& u) {
-    if constexpr (N == 3)
-        if (phase.chromatic()) {
-            const Rgb before = toRgb(p.throughput);
-            const medium::PhaseSample s =
-                phase.sampleMixed(p.direction, before, u.phase[0], u.phase[1]);
-            p.throughput *= phase.mixed(dot(p.direction, s.direction), before).weight;
-            return s;
-        }
-    return phase.sample(p.direction, u.phase[0], u.phase[1]);
 }
 
 }  // namespace
@@ -90,7 +76,10 @@ void scatter(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i
     }
     if (needs.lightSampling) addNextEvent(traced, batch, i, u, share);
 
-    const medium::PhaseSample s = turn(p, *phase, u);
+    if constexpr (!Surfaces)
+        if (traced.severalEvents) drawSeveralEvents(traced, batch, i);
+
+    const medium::PhaseSample s = turn(p, *phase, u.phase);
     p.origin = position, p.direction = s.direction, p.phasePdf = s.pdf;
     p.flight = u.flight;
     ++p.scatterings;
