@@ -132,6 +132,9 @@ TEST_F(Frames, OneFailureDoesNotStopTheRest) {
     EXPECT_EQ(json.at("frames")[1].at("frame"), 11);
     EXPECT_EQ(json.at("frames")[1].at("files")[0], file("x.0011.exr"));
     EXPECT_EQ(json.at("failed"), nlohmann::json({8, 10}));
+    // One frame has a code of its own.
+    expectSaid(renderScene(sequence(), {"--frames", "10", "-o", file("x.####.exr")}), 3,
+               {"s.0010.vdb is not a VDB file"});
 }
 
 TEST_F(Frames, ThatAreThereAreLeftOut) {

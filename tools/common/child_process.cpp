@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <utility>
 
@@ -21,7 +20,6 @@ namespace {
 
 constexpr std::size_t keptLines = 20;
 constexpr std::size_t longestLine = 4096;
-constexpr std::chrono::seconds patience(3);  // from a polite end to the other one
 
 class Pipe {
 public:
@@ -101,7 +99,7 @@ bool readSome(int from, Lines& lines, int milliseconds) {
 
 ChildResult runChild(const std::vector<std::string>& command,
                      const std::function<void(const std::string&)>& onLine,
-                     const std::function<bool()>& shouldStop) {
+                     const std::function<bool()>& shouldStop, std::chrono::seconds patience) {
     std::vector<char*> argv;
     for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);

@@ -193,23 +193,28 @@ FrameReport forEachFrame(const std::vector<int>& frames,
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::Usage && frame == frames.front()) throw;
             tell(frame, error.what());
+            code = exitCodeOf(error.kind());
         } catch (const CLI::RuntimeError& end) {  // of endIfInterrupted()
             if (end.get_exit_code() != exitInterrupted) throw;
             code = exitInterrupted;
         } catch (const std::bad_alloc&) {
             tell(frame, "out of memory");
         }
-        if (code == exitInterrupted)
+        if (code == exitInterrupted) {
             report.interrupted = true;
-        else
-            (code == exitDone ? report.done : report.failed).push_back(frame);
+        } else if (code == exitDone) {
+            report.done.push_back(frame);
+        } else {
+            report.failed.push_back(frame);
+            report.code = code;
+        }
     }
     return report;
 }
 
 void endUnlessDone(const FrameReport& report) {
     const std::size_t all = report.done.size() + report.failed.size();
-    if (!report.failed.empty())
+    if (!report.failed.empty() && all > 1)
         spdlog::error("{} of {} frames failed: {}", report.failed.size(), all,
                       frameRangeText(report.failed));
     if (report.interrupted) {
@@ -220,7 +225,8 @@ void endUnlessDone(const FrameReport& report) {
                          report.done.size() == 1 ? " is" : "s are", frameRangeText(report.done));
         endWith(exitInterrupted);
     }
-    if (!report.failed.empty()) endWith(exitFailed);
+    if (!report.failed.empty())
+        endWith(all == 1 && report.code != exitDone ? report.code : exitFailed);
 }
 
 }  // namespace woodcock::tool

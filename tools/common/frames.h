@@ -47,6 +47,7 @@ bool allExist(const std::vector<std::filesystem::path>& files);
 /// How frames went.
 struct FrameReport {
     std::vector<int> done, failed;
+    ExitCode code = exitDone;  ///< of the last that failed
     bool interrupted = false;
 };
 
@@ -57,7 +58,8 @@ struct FrameReport {
 FrameReport forEachFrame(const std::vector<int>& frames,
                          const std::function<ExitCode(int frame)>& work);
 
-/// Ends the command with exitInterrupted or exitFailed, and says why, unless all went well.
+/// Ends the command with exitInterrupted or exitFailed, and says why, unless all went well; with
+/// the code of its failure where there was one frame.
 void endUnlessDone(const FrameReport& report);
 
 }  // namespace woodcock::tool

@@ -15,8 +15,9 @@ namespace {
 std::atomic<bool> requested = false, checkpointRequested = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch nothing else");
 
-extern "C" void onInterrupt(int) {
-    if (requested.exchange(true)) _exit(exitInterrupted);
+// Farms send SIGTERM to all processes of a task, and again: it means the same each time.
+extern "C" void onInterrupt(int signal) {
+    if (requested.exchange(true) && signal != SIGTERM) _exit(exitInterrupted);
 }
 
 extern "C" void onCheckpointRequest(int) { checkpointRequested = true; }

@@ -3,8 +3,8 @@
 
 namespace woodcock::tool {
 
-/// From now on the first SIGINT, SIGTERM or SIGHUP (where it was not ignored) is remembered, and a
-/// second one ends the program at once with exit code exitInterrupted.
+/// From now on the first SIGINT, SIGTERM or SIGHUP (where it was not ignored) is remembered. A
+/// second one ends the program at once with exit code exitInterrupted, unless it is a SIGTERM.
 void catchInterrupts();
 
 bool interrupted();

@@ -74,21 +74,28 @@ std::string suggestOption(const std::string& word, const CLI::App& command,
                            : fmt::format("; did you mean '{}'?", nearest);
 }
 
-/// The program is called without a command, or with one that there is not.
-Error explainWithoutCommand(const CLI::App& app) {
+/// The program, or a command that consists of others, is called without one of these, or with one
+/// that there is not. `name`: by which it is called.
+Error explainWithoutCommand(const CLI::App& app, const std::string& name) {
     std::vector<std::string> known;
     for (const CLI::App* command : app.get_subcommands(nullptr))
         known.push_back(command->get_name());
+    const std::string where = name == "woodcock" ? "" : name + ": ";
     const std::vector<std::string> words = app.remaining();
-    if (words.empty()) return usageError("no command is given; there are: {}", joinNames(known));
+    if (words.empty())
+        return usageError("{}no command is given; there are: {}", where, joinNames(known));
     const std::string& word = words.front();
     if (word.starts_with("-"))
-        return usageError("unknown option '{}'{}", word, suggestOption(word, app, "woodcock"));
-    return usageError("unknown command '{}'{}", word, suggestName(word, "known", known));
+        return usageError("{}unknown option '{}'{}", where, word, suggestOption(word, app, name));
+    return usageError("{}unknown command '{}'{}", where, word, suggestName(word, "known", known));
 }
 
-Error explainIn(const CLI::App& command, const CLI::ParseError& error) {
-    const std::string name = "woodcock " + command.get_name();
+/// `before`: the words before the command's name.
+Error explainIn(const std::string& before, const CLI::App& command, const CLI::ParseError& error) {
+    const std::string name = before + " " + command.get_name();
+    if (const auto inner = command.get_subcommands(); !inner.empty())
+        return explainIn(name, *inner.front(), error);
+    if (!command.get_subcommands(nullptr).empty()) return explainWithoutCommand(command, name);
     const std::vector<std::string> left = command.remaining();
     for (const std::string& word : left)
         if (word.starts_with("-"))
@@ -104,7 +111,8 @@ Error explainIn(const CLI::App& command, const CLI::ParseError& error) {
 
 Error explain(const CLI::ParseError& error, const CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
-    return commands.empty() ? explainWithoutCommand(app) : explainIn(*commands.front(), error);
+    return commands.empty() ? explainWithoutCommand(app, "woodcock")
+                            : explainIn("woodcock", *commands.front(), error);
 }
 
 }  // namespace woodcock::tool
