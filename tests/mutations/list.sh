@@ -167,7 +167,7 @@ defect "g sampled, isotropic evaluated" 'Slab.*:Furnace.*' "table of slabs" \
 
 defect "MIS forgets how a light was picked" 'Furnace*:LocalLights.*' "" \
     $light \
-    'powerHeuristic(s.pdf * chosen->probability, phase)' 'powerHeuristic(s.pdf, phase)'
+    'powerHeuristic(s.pdf * chosen.probability, phase)' 'powerHeuristic(s.pdf, phase)'
 
 defect "local lights counted by both samplings" 'PointLight.*:SphereLight.*' "airlight" \
     $lookAhead \

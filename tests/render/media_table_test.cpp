@@ -16,7 +16,8 @@ namespace {
 bool pays(double sigma, double g) {
     const Scene scene =
         proof::sceneFrom(fmt::format("[[volume]]\nbox = {{ min = [-1, -1, -1], max = [1, 1, 1] }}\n"
-                                     "sigma_s = {}\ng = {}\n",
+                                     "sigma_s = {}\ng = {}\n"
+                                     "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n",
                                      sigma, g));
     return thickAndPeaked(MediumSummary(scene.medium));
 }

@@ -80,14 +80,14 @@ TEST(CyclesScene, RefusesByNameWhatCyclesCannotExpress) {
     };
     std::string forward = fog;
     forward.replace(forward.find("g = 0.3"), 7, "g = 0.9999");
-    refused(forward, {"test.toml:5:", "Cycles cannot express", "0.9999", "0.999"});
+    refused(forward, {"test.toml:6:", "Cycles cannot express", "0.9999", "0.999"});
     forward.replace(forward.find("g = 0.9999"), 10,
                     "phase = { type = \"two_lobe\", g = 0.5, g2 = -0.5, mix = 0.5 }");
-    refused(forward, {"test.toml:5:", "Cycles cannot express", "type two_lobe"});
+    refused(forward, {"test.toml:6:", "Cycles cannot express", "type two_lobe"});
     refused(
         fog + "[[light]]\ntype = \"sun\"\nelevation = 40\nangular_diameter = 5\nvisible = true\n",
-        {"test.toml:19:", "a sun that the camera sees"});
-    refused(fog + "transparent_shadows = true\n", {"test.toml:15:", "transparent shadows"});
+        {"test.toml:20:", "a sun that the camera sees"});
+    refused(fog + "transparent_shadows = true\n", {"test.toml:16:", "transparent shadows"});
     refused(fog + "[[surface]]\nplane = {}\n", {"an infinite plane"});
     refused(fog + "[[surface]]\nsphere = {}\nmatte = true\n", {"matte"});
     refused(fog +

@@ -171,7 +171,7 @@ TEST_F(DenoiseOption, WithoutALibraryNothingIsRendered) {
     expectRefused(render({"-o", file("a.exr"), "--denoise"}), 2, "error: --denoise: " + said);
     writeWholeFile(dir / "fog.toml", std::string(fogScene()) + "denoise = true\n");
     expectRefused(render({"-o", file("a.exr")}), 2,
-                  "error: " + file("fog.toml") + ":15:11: " + said);
+                  "error: " + file("fog.toml") + ":16:11: " + said);
     expectDone(render({"-o", file("a.exr"), "--no-denoise"}));
     EXPECT_FALSE(readBack(file("a.exr")).has("noisy.R"));
 }

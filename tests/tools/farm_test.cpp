@@ -30,7 +30,7 @@ using Words = std::vector<std::string>;
 class Farm : public testing::Test {
 protected:
     void SetUp() override {
-        writeText(dir / "fog.toml", std::string(fogScene) + "max_scatterings = 4\n");
+        writeText(dir / "fog.toml", fogScene() + "max_scatterings = 4\n");
         fs::create_directory(dir / "bin");
         const std::string folder = dir.path().string();
         writeScript("bin/sbatch",
@@ -393,7 +393,7 @@ TEST_F(Farm, WrongSubmissionsLeaveNothing) {
     wrong({"--frames", "1", "--sbatch", "qos=x"}, 2, {"is no option"});
     wrong({"--frames", "1", "--set", "light[0].image=none.exr"}, 3, {"none.exr"});
     wrong({"--frames", "1", "-o", file("no/y.####.exr")}, 2, {"--mkdir"});
-    writeText(dir / "fog.toml", std::string(fogScene) + "[[volume]]\nfile = \"s.####.vdb\"\n");
+    writeText(dir / "fog.toml", fogScene() + "[[volume]]\nfile = \"s.####.vdb\"\n");
     wrong({"--frames", "1"}, 3, {"s.####.vdb"});
 
     fs::create_directory(dir / "j");

@@ -22,7 +22,7 @@ constexpr double voxelsToNode = 2;
 /// And at most.
 constexpr double coarsest = 16;
 /// What is deeper is stored as this, so that interpolation stays finite.
-constexpr double deepest = 1e30;
+constexpr double deepestStored = 1e30;
 
 /// The shortest edge of a voxel, in world units; of a medium without fields a part of its shortest
 /// edge.
@@ -203,7 +203,7 @@ void DepthGrid::fillLine(Vec3d start, float* nodes) const {
         for (int k = steps; k >= 0; --k) {
             const auto i = static_cast<std::size_t>(k * channels_ + c);
             sum += depth[i];
-            nodes[i] = static_cast<float>(std::min(sum, deepest));
+            nodes[i] = static_cast<float>(std::min(sum, deepestStored));
         }
     }
 }
