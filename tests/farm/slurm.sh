@@ -114,12 +114,13 @@ processes_of() { # processes_of JOB render|runner|script|whole
     done
 }
 
-# No part and no picture was written twice.
+# No part and no picture was finished twice. What is killed just after it wrote its file, and before
+# its end is noted, is drawn again: it does not count as finished.
 check_once() { # check_once JOB PICTURES
-    local twice
-    twice=$(cat "$1"/logs/*.log | grep -E '^info: wrote .*\.exr$' | grep -v checkpoint |
-        sort | uniq -d)
-    [[ -z $twice ]] || fail "done twice: $twice"
+    local log
+    for log in "$1"/logs/*.log; do
+        (($(grep -c '^--- .* exit code 0 after' "$log") <= 1)) || fail "finished twice: $log"
+    done
     [[ $(field "$1" frames_merged) == "$2" ]] || fail "not all is merged"
     [[ -z $(ls "$1/parts") ]] || fail "parts are left: $(ls "$1/parts")"
 }
