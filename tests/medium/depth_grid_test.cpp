@@ -132,6 +132,7 @@ TEST(DepthGrid, IsNotForMediaWithoutEnd) {
     EXPECT_TRUE(makes(tintedGlass().medium()));
     EXPECT_FALSE(makes(hazyMedium().medium()));
     EXPECT_FALSE(makes(Medium{}));
+    EXPECT_FALSE(makes(PlainMedium({{.grid = {}, .box = {{-1, 0, -1}, {1, 0, 1}}}}).medium()));
     EXPECT_FALSE(makes(
         PlainMedium({{.grid = mixedGrid(1), .worldFromIndex = Affine3d::scale({1e6, 1, 1e6})}})
             .medium()));

@@ -67,6 +67,7 @@ std::unique_ptr<const DepthGrid> DepthGrid::make(const Medium& medium, Vec3d tow
                                                  std::size_t mostBytes) {
     if (!bounded(medium)) return nullptr;
     const double finest = finestDetail(medium);
+    if (!(finest > 0)) return nullptr;  // a box without thickness
     std::unique_ptr<DepthGrid> grid(new DepthGrid(medium, towards));
     grid->layOut(finest, mostBytes);
     if (!(grid->spacing() <= coarsest * finest)) return nullptr;

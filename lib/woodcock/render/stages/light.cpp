@@ -28,9 +28,9 @@ double phaseDensity(const PathState<N, Surfaces>& p, double cosine, Rgb& light) 
 
 /// Adds the light of a sun whose optical depth is in a grid, where no surface can be in its way.
 template <int N, bool Surfaces>
-void addSunlight(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, Surfaces>& p,
-                 const medium::DepthGrid& depths, Vec3d direction, Rgb light,
-                 image::LightGroup group) {
+void bringSunlight(const TracedScene& traced, Batch<N, Surfaces>& batch, PathState<N, Surfaces>& p,
+                   const medium::DepthGrid& depths, Vec3d direction, Rgb light,
+                   image::LightGroup group) {
     const float brightest = light.maximum();
     const Spectrum<N> contribution = p.throughput * brightest;
     if (!(contribution.maximum() > 0)) return;
@@ -62,8 +62,8 @@ void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_
     const medium::DepthGrid* const depths = traced.sunDepth(p.mediumSet, chosen.light);
     if (!Surfaces && depths) {
         const Rgb light = s.weight * tint(p) * (static_cast<float>(weight) * p.sunShare);
-        addSunlight(traced, batch, p, *depths, s.direction, light,
-                    lights.group(chosen.light, s.emitter));
+        bringSunlight(traced, batch, p, *depths, s.direction, light,
+                      lights.group(chosen.light, s.emitter));
         return;
     }
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
