@@ -8,7 +8,7 @@ packages=(
     libopenvdb-dev libopenvdb-ax-dev libboost-iostreams-dev libeigen3-dev zlib1g-dev
     libopenimageio-dev libopencolorio-dev libopenexr-dev libimath-dev
     libembree-dev libassimp-dev libnanovdb-dev libblosc-dev
-    libtbb-dev libfmt-dev libspdlog-dev
+    libhwy-dev libtbb-dev libfmt-dev libspdlog-dev
     libtomlplusplus-dev libmuparser-dev nlohmann-json3-dev libcli11-dev
     libgtest-dev libbenchmark-dev
     clang libclang-rt-14-dev

@@ -28,6 +28,8 @@ pkg_check_modules(OpenColorIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 # order either. The hash of Cryptomatte is OpenEXR's too. OpenImageIO brings it along.
 find_package(OpenEXR 3.1 CONFIG QUIET REQUIRED)
 
+# Vectors of any processor, chosen when the program runs.
+pkg_check_modules(Highway REQUIRED IMPORTED_TARGET libhwy>=1.0)
 find_package(TBB 2021 REQUIRED COMPONENTS tbb)
 find_package(fmt REQUIRED)
 find_package(tomlplusplus REQUIRED)

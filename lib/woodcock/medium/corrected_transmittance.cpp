@@ -10,10 +10,6 @@ namespace woodcock::medium {
 
 namespace {
 
-/// Corrections are made at least so often, also where the grid seems sure: what it cannot see, such
-/// as a gap between its lines, must not come back as a rare spark.
-constexpr float rarest = 1.0f / 256;
-
 /// exp(-depth). The library's function takes long where the result is no normal float.
 float decay(float depth) { return depth < 87 ? std::exp(-depth) : 0.0f; }
 
@@ -25,7 +21,7 @@ Spectrum<N> correctedTransmittance(const Medium& medium, const DepthGrid& grid, 
                                    TrackingCounters& counters) {
     const auto depths = grid.at<N>(origin);
     Spectrum<N> transmittance;
-    float probability = rarest;
+    float probability = rarestCorrection;
     for (int c = 0; c < N; ++c) {
         const DepthGrid::Depth& d = depths[static_cast<std::size_t>(c)];
         transmittance[c] = decay(d.depth);

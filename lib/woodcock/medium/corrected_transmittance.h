@@ -8,6 +8,10 @@ namespace woodcock::medium {
 
 struct TrackingCounters;
 
+/// Corrections are made at least so often, also where the grid seems sure: what it cannot see, such
+/// as a gap between its lines, must not come back as a rare spark.
+inline constexpr float rarestCorrection = 1.0f / 256;
+
 /// An unbiased estimate of the transmittance of a medium from a point to infinity, by a grid of the
 /// optical depth as control variate:
 ///

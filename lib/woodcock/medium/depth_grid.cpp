@@ -128,11 +128,19 @@ DepthGrid::Place DepthGrid::find(Vec3d world) const {
     const float u = place(dot(p, across_[0]), columnCount_[0] * columnCells, i);
     const float v = place(dot(p, across_[1]), columnCount_[1] * columnCells, j);
     const float w = place(dot(p, towards_), length_ - 1, k);
-    const int line = j % columnCells * columnNodes + i % columnCells;
-    return {column(static_cast<std::size_t>(j / columnCells * columnCount_[0] + i / columnCells)) +
-                static_cast<std::size_t>(line) * lineFloats() +
-                static_cast<std::size_t>(k * channels_),
-            u, v, w};
+    return {nodes(i, j, k), u, v, w};
+}
+
+Affine3d DepthGrid::latticeFromWorld() const {
+    const Vec3d axes[3] = {across_[0] * perSpacing_, across_[1] * perSpacing_,
+                           towards_ * perSpacing_};
+    Affine3d map;
+    for (int row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column)
+            map.column[column][row] = axes[row][static_cast<int>(column)];
+        map.translation[row] = -dot(axes[row], base_);
+    }
+    return map;
 }
 
 DepthGrid::Depth DepthGrid::read(const Place& place, int channel) const {

@@ -55,6 +55,29 @@ public:
         return depths;
     }
 
+    // For readers that interpolate by themselves, as at() does:
+
+    /// From the world to the lattice, whose nodes have whole numbers.
+    Affine3d latticeFromWorld() const;
+    /// How many cells there are along each axis. Outside, the nearest one counts.
+    Vec3i cells() const {
+        return {columnCount_[0] * columnCells, columnCount_[1] * columnCells, length_ - 1};
+    }
+    /// The first node of a cell. The next ones along the axes are strides() floats further.
+    const float* nodes(int i, int j, int k) const {
+        const int line = j % columnCells * columnNodes + i % columnCells;
+        return column(static_cast<std::size_t>(j / columnCells * columnCount_[0] +
+                                               i / columnCells)) +
+               static_cast<std::size_t>(line) * lineFloats() +
+               static_cast<std::size_t>(k * channels_);
+    }
+    std::array<std::size_t, 3> strides() const {
+        return {lineFloats(), columnNodes * lineFloats(), static_cast<std::size_t>(channels_)};
+    }
+    /// Floats of a node: one, which colour() is to be multiplied with, or three.
+    int channels() const { return channels_; }
+    const Rgb& colour() const { return colour_; }
+
 private:
     DepthGrid(const Medium& medium, Vec3d towards);
     void layOut(double finest, std::size_t mostBytes);

@@ -23,7 +23,8 @@ struct ShadowPiece {
 /// What the stages of one thread work on. The vectors keep their memory from batch to batch.
 template <int N, bool Surfaces>
 struct Batch {
-    static constexpr std::size_t size = 256;  ///< paths at a time
+    static constexpr std::size_t size = 256;       ///< paths at a time
+    static constexpr std::size_t laneSize = 1024;  ///< where they are traced to their ends
 
     explicit Batch(const light::LightSet& lights) : choice(lights) {}
 

@@ -2,6 +2,7 @@
 #include "woodcock/render/path_tracer.h"
 
 #include "woodcock/render/batch.h"
+#include "woodcock/render/lanes/trace_lanes.h"
 #include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/light.h"
 #include "woodcock/render/stages/look_ahead.h"
@@ -56,7 +57,9 @@ template <int N, bool Surfaces>
 class BatchTracer final : public PathTracer {
 public:
     BatchTracer(const Scene& scene, const Needs& needs, const Options& options)
-        : traced_(scene, needs, options), batch_(scene.lights) {}
+        : traced_(scene, needs, options),
+          lanes_(Surfaces ? std::nullopt : LaneScene::make(traced_)),
+          batch_(scene.lights) {}
 
     bool trace(std::span<const PathJob> jobs, std::span<PathResult> results,
                const PathLayers& layers, const std::function<bool()>& stop,
@@ -66,12 +69,17 @@ public:
         std::size_t next = 0;
         while (true) {
             if (stop()) return false;
-            for (; batch_.paths.size() < batch_.size && next < jobs.size(); ++next)
+            const std::size_t size = lanes_ ? batch_.laneSize : batch_.size;
+            for (; batch_.paths.size() < size && next < jobs.size(); ++next)
                 spawn(traced_, batch_, jobs[next], results[next]);
             if (batch_.paths.empty()) break;
-            lookAhead(traced_, batch_);
-            walk(traced_, batch_);
-            for (std::size_t i = 0; i < batch_.paths.size(); ++i) shade(i);
+            if (lanes_) {
+                if constexpr (!Surfaces) traceLanes(*lanes_, batch_);
+            } else {
+                lookAhead(traced_, batch_);
+                walk(traced_, batch_);
+                for (std::size_t i = 0; i < batch_.paths.size(); ++i) shade(i);
+            }
             shadowWalk(traced_, batch_);
             retire(traced_, batch_);
         }
@@ -109,6 +117,7 @@ private:
     }
 
     const TracedScene traced_;
+    const std::optional<LaneScene> lanes_;  // where paths are traced in lanes
     Batch<N, Surfaces> batch_;
 };
 

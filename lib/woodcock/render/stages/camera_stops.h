@@ -39,8 +39,8 @@ template <int N, bool Surfaces>
 std::vector<medium::FlightCollision>* collisionsToNote(const TracedScene& traced,
                                                        Batch<N, Surfaces>& batch, std::size_t i) {
     if (!isToBeNoted(traced, batch.paths[i])) return nullptr;
-    batch.collisions.resize(Batch<N, Surfaces>::size);
-    batch.depths.resize(Batch<N, Surfaces>::size);
+    batch.collisions.resize(std::max(batch.collisions.size(), batch.paths.size()));
+    batch.depths.resize(batch.collisions.size());
     batch.collisions[i].clear(), batch.depths[i].clear();
     return &batch.collisions[i];
 }

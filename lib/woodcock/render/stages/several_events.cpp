@@ -13,11 +13,6 @@ namespace woodcock::render {
 
 namespace {
 
-/// How many more events are drawn, and below which optical depth to a sun. Of 2, 4 and 6 events,
-/// and of depths 3 and 6, these measured best.
-constexpr int more = 4;
-constexpr float nearSun = 6;
-
 /// The least optical depth from a point to a sun, over suns and channels.
 template <int N>
 float depthToSun(const TracedScene& traced, const PathState<N, false>& p) {
@@ -32,15 +27,20 @@ float depthToSun(const TracedScene& traced, const PathState<N, false>& p) {
 }  // namespace
 
 template <int N>
+bool drawsSeveralEvents(const TracedScene& traced, const PathState<N, false>& p) {
+    return traced.mayScatter(p.scatterings + 1) && depthToSun(traced, p) <= nearSun;
+}
+
+template <int N>
 void drawSeveralEvents(const TracedScene& traced, Batch<N, false>& batch, std::size_t i) {
     PathState<N, false>& p = batch.paths[i];
     p.sunShare = 1;
-    if (!traced.mayScatter(p.scatterings + 1) || depthToSun(traced, p) > nearSun) return;
-    p.sunShare = 1.0f / (1 + more);
+    if (!drawsSeveralEvents(traced, p)) return;
+    p.sunShare = severalEventsShare;
     const medium::Medium& medium = *traced.media[p.medium].medium;
     const PathState<N, false> path = p;
     RandomStream random(p.random.bits());
-    for (int k = 0; k < more; ++k) {
+    for (int k = 0; k < severalEvents; ++k) {
         p.throughput = path.throughput, p.random = random;
         const medium::PhaseSample s =
             turn(p, *path.from.phase, {p.random.uniform(), p.random.uniform()});
@@ -69,6 +69,8 @@ void drawSeveralEvents(const TracedScene& traced, Batch<N, false>& batch, std::s
     p.from = path.from, p.scatterings = path.scatterings;
 }
 
+template bool drawsSeveralEvents(const TracedScene&, const PathState<1, false>&);
+template bool drawsSeveralEvents(const TracedScene&, const PathState<3, false>&);
 template void drawSeveralEvents(const TracedScene&, Batch<1, false>&, std::size_t);
 template void drawSeveralEvents(const TracedScene&, Batch<3, false>&, std::size_t);
 

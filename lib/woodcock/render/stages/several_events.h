@@ -21,4 +21,13 @@ namespace woodcock::render {
 template <int N>
 void drawSeveralEvents(const TracedScene& traced, Batch<N, false>& batch, std::size_t i);
 
+/// Whether they are drawn at p.from, how many beside the path's own, and the share of each.
+template <int N>
+bool drawsSeveralEvents(const TracedScene& traced, const PathState<N, false>& p);
+/// Of 2, 4 and 6 events, and of optical depths to the sun of 3 and 6 below which they are drawn,
+/// these measured best.
+inline constexpr int severalEvents = 4;
+inline constexpr float nearSun = 6;
+inline constexpr float severalEventsShare = 1.0f / (1 + severalEvents);
+
 }  // namespace woodcock::render

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/lanes/lane_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace woodcock::render {
+
+namespace {
+
+/// More overlapping parts gain nothing by lanes.
+constexpr std::size_t mostParts = 8;
+/// The optical depth of a voxel up to which tentative collisions are few in a cell. Deeper media
+/// need RefinedWalk.
+constexpr double deepestVoxel = 32;
+
+/// The longest edge of a voxel in the world.
+double longestEdge(const Affine3d& worldFromIndex) {
+    double longest = 0;
+    for (const Vec3d& axis : worldFromIndex.column) longest = std::max(longest, length(axis));
+    return longest;
+}
+
+bool ordinaryNumber(double v) { return v > 1e-12 && v < 1e12; }
+
+/// Whether lanes can walk through a part: it stands still, has an end, and its numbers are such
+/// that floats within a cell are exact enough.
+bool walkable(const medium::MediumPart& part) {
+    const grid::Field* field = part.field();
+    if (!field || part.albedo() || part.readElsewhere() || part.description().movement ||
+        part.moved() || part.extinctionVaries() || part.limits() || part.background().min != 0 ||
+        part.background().max != 0 || part.support().empty())
+        return false;
+    const double edge = longestEdge(part.description().worldFromIndex);
+    const double densest = double{field->range().max} * part.largestExtinction();
+    return ordinaryNumber(edge) && (densest == 0 || ordinaryNumber(densest)) &&
+           densest * edge < deepestVoxel;
+}
+
+}  // namespace
+
+LanePart::LanePart(const medium::MediumPart& p) : part(&p) {
+    const Affine3d map = p.description().worldFromIndex.inverse();
+    for (int row = 0; row < 3; ++row)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            indexFromWorld[row][axis] = static_cast<float>(map.column[axis][row]);
+    for (int i = 0; i < 3; ++i) {
+        low[i] = static_cast<int>(p.support().lower[i]);
+        high[i] = static_cast<int>(p.support().upper[i]);
+    }
+    const auto* kind = std::get_if<medium::HenyeyGreenstein>(&p.phase().kind());
+    henyeyGreenstein = kind;
+    g = kind ? static_cast<float>(kind->g()) : 0;
+}
+
+void LanePart::setLattice(const medium::DepthGrid& grid) {
+    const Affine3d map = grid.latticeFromWorld() * part->description().worldFromIndex *
+                         Affine3d::translate(low.as<double>());
+    for (int row = 0; row < 3; ++row) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            latticeFromIndex[row][axis] = static_cast<float>(map.column[axis][row]);
+        latticeFromIndex[row][3] = static_cast<float>(map.translation[row]);
+    }
+}
+
+std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
+    const Needs& needs = traced.needs;
+    const Approximations& approximations = traced.options.approximations;
+    if (needs.surfaces || needs.emission || needs.localLights || needs.motion ||
+        !needs.scattering || approximations.marchStep > 0 || traced.media.replaces() ||
+        !traced.scene.lights.meetable().empty())
+        return {};
+    const auto& parts = traced.scene.medium.parts;
+    if (parts.empty() || parts.size() > mostParts || !std::ranges::all_of(parts, walkable))
+        return {};
+    LaneScene scene(traced);
+    for (const medium::MediumPart& part : parts) scene.parts.emplace_back(part);
+    const auto sampled = traced.scene.lights.sampled();
+    if (sampled.size() == 1 && traced.sunDepth(0, sampled[0])) {
+        scene.sun = sampled[0];
+        scene.sunDepth = traced.sunDepth(0, scene.sun);
+        for (LanePart& part : scene.parts) part.setLattice(*scene.sunDepth);
+        scene.delta = !traced.scene.lights.traits(scene.sun).distant;
+    }
+    return scene;
+}
+
+}  // namespace woodcock::render

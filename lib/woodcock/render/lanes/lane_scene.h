@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "woodcock/render/traced_scene.h"
+
+namespace woodcock::render {
+
+/// One part of the medium, as lanes read it.
+struct LanePart {
+    const medium::MediumPart* part;
+    float indexFromWorld[3][3];  ///< of vectors; by rows
+    Vec3i low, high;             ///< voxels of the support, both ends included
+    bool henyeyGreenstein;       ///< else its phase function is sampled path by path
+    float g;                     ///< of Henyey-Greenstein
+    /// From voxels, of which `low` is the first, to the sun's lattice; by rows.
+    float latticeFromIndex[3][4] = {};
+
+    explicit LanePart(const medium::MediumPart& part);
+    void setLattice(const medium::DepthGrid& grid);
+};
+
+/// A scene whose paths are traced in the lanes of vectors: see trace_lanes.h. It refers to the
+/// TracedScene, which must outlive it.
+struct LaneScene {
+    const TracedScene& traced;
+    std::vector<LanePart> parts;
+    /// Where the only light that is sampled is a sun whose optical depth is in a grid: that grid,
+    /// and the sun. Else null.
+    const medium::DepthGrid* sunDepth = nullptr;
+    int sun = -1;
+    bool delta = false;  ///< the sun has no disc
+
+    /// Nothing where the scene needs more than lanes can do; its paths are then traced one by one.
+    static std::optional<LaneScene> make(const TracedScene& traced);
+
+private:
+    explicit LaneScene(const TracedScene& t) : traced(t) {}
+};
+
+}  // namespace woodcock::render
