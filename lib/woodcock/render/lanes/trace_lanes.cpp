@@ -39,7 +39,7 @@ constexpr int widestLog2 = 7;
 template <class T>
 struct alignas(64) Row {
     static constexpr hn::ScalableTag<T> tag{};
-    T lane[laneCount] = {};
+    T lane[laneCount];
 
     T& operator[](std::size_t i) { return lane[i]; }
     hn::Vec<hn::ScalableTag<T>> get() const { return hn::Load(tag, lane); }
@@ -285,9 +285,9 @@ private:
             scattering_[c][lane] = N == 1 ? channels<N>(medium.scattering())[0] : medium.scattering()[c];
             channelWeight_[c][lane] = medium.channelWeight()[c];
         }
-        g_[lane] = scene_.parts[part].g;
+        g_[lane] = scene_.parts[part].g, extinction_[lane] = medium.largestExtinction();
         for (int i = 0; i < 3; ++i) {
-            low_[i][lane] = scene_.parts[part].low[i];
+            low_[i][lane] = scene_.parts[part].low[i], high_[i][lane] = scene_.parts[part].high[i];
             for (int k = 0; k < 4; ++k) lattice_[i][k][lane] = scene_.parts[part].latticeFromIndex[i][k];
         }
         const bool nearest = medium.field()->lookup() == grid::Lookup::Nearest;
@@ -347,19 +347,18 @@ private:
             u_[i].set(walking, hn::Max(zero, hn::Min(size, u_[i].get() + d_[i].get() * length)));
         t_.set(walking, t_.get() + length);
         depth_.set(walking, hn::Max(zero, depth_.get() - length * mu_.get()));
-        const I x = hn::Zero(lanesI), y = hn::Set(lanesI, 1), z = hn::Set(lanesI, 2);
-        axis_.set(hn::IfThenElse(hn::RebindMask(lanesI, face[0] == toFace), x,
-                                 hn::IfThenElse(hn::RebindMask(lanesI, face[1] == toFace), y, z)));
-        const std::uint32_t pausing = several_ ? bitsOf(pauses) : 0;
         const std::uint32_t colliding = bitsOf(collides);
-        forEachLane(bitsOf(walking) & ~colliding & ~pausing, [&](std::size_t i) { cross(i); });
+        counters_.collisions += static_cast<unsigned>(std::popcount(colliding));
+        const M alongX = face[0] == toFace, alongY = hn::AndNot(alongX, face[1] == toFace);
+        const M along[3] = {alongX, alongY, hn::Not(hn::Or(alongX, alongY))};
         if (!several_) {
-            counters_.collisions += static_cast<unsigned>(std::popcount(colliding));
             state_.set(hn::RebindMask(lanesI, collides), hn::Set(lanesI, Colliding));
+            cross(hn::AndNot(collides, walking), along);
             return;
         }
+        const std::uint32_t pausing = bitsOf(pauses);
+        cross(hn::AndNot(hn::Or(collides, pauses), walking), along);
         forEachLane(colliding, [&](std::size_t i) {
-            ++counters_.collisions;
             Lane& l = lanes_[i];
             Process& process = l.processes[l.part];
             take(i, process);
@@ -376,40 +375,56 @@ private:
         if (!findNearest(lane)) end(lane, false);
     }
 
-    /// Enters the next cell, or leaves the part's support.
-    HWY_INLINE void cross(std::size_t lane) {
-        const LanePart& part = scene_.parts[lanes_[lane].part];
-        const int along = axis_[lane], width = static_cast<int>(size_[lane]);
-        Vec3i voxel;
+    /// Lanes that have come to a face ahead enter the next cell, or leave the part's support. `along`:
+    /// whether that face lies across each axis.
+    template <class M>
+    HWY_INLINE void cross(M crossing, const M along[3]) {
+        const I one = hn::Set(lanesI, 1), width = hn::ConvertTo(lanesI, size_.get());
+        Row<std::int32_t> voxel[3];
+        I room = one;  // negative outside
         for (int i = 0; i < 3; ++i) {
-            const int corner = corner_[i][lane];
-            voxel[i] = i == along ? corner + (d_[i][lane] >= 0 ? width : -1)
-                                  : std::max(part.low[i], corner + std::min(static_cast<int>(u_[i][lane]), width - 1));
+            const I corner = corner_[i].get(), low = low_[i].get();
+            const auto forward = hn::RebindMask(lanesI, d_[i].get() >= hn::Zero(lanesF));
+            const I within =
+                hn::Max(low, corner + hn::Min(hn::ConvertTo(lanesI, u_[i].get()), width - one));
+            const I next = hn::IfThenElse(hn::RebindMask(lanesI, along[i]),
+                                          corner + hn::IfThenElse(forward, width, hn::Zero(lanesI) - one),
+                                          within);
+            voxel[i].set(next);
+            room = hn::Min(room, hn::Min(next - low, high_[i].get() - next));
         }
-        if (std::min({voxel.x - part.low.x, voxel.y - part.low.y, voxel.z - part.low.z,
-                      part.high.x - voxel.x, part.high.y - voxel.y, part.high.z - voxel.z}) < 0) {
+        const auto leaves = hn::And(crossing, hn::RebindMask(lanesF, room < hn::Zero(lanesI)));
+        const std::uint32_t entering = bitsOf(hn::AndNot(leaves, crossing));
+        counters_.segments += static_cast<unsigned>(std::popcount(entering));
+        Row<std::int32_t> size;
+        size.set(one);
+        forEachLane(entering, [&](std::size_t i) {
+            const grid::MajorantGrid::Cell cell = scene_.parts[lanes_[i].part].part->majorants().find(
+                {voxel[0][i], voxel[1][i], voxel[2][i]});
+            size[i] = 1 << std::min(cell.log2Size, widestLog2);
+            lower_[i] = cell.range.min, upper_[i] = cell.range.max;
+        });
+        const auto enters = hn::AndNot(leaves, crossing);
+        const F edge = hn::ConvertTo(lanesF, size.get()), zero = hn::Zero(lanesF);
+        for (int i = 0; i < 3; ++i) {
+            const I corner = hn::And(voxel[i].get(), hn::Zero(lanesI) - size.get());
+            const F moved = hn::ConvertTo(lanesF, corner_[i].get() - corner) + u_[i].get();
+            const F face = hn::IfThenZeroElse(d_[i].get() >= zero, edge);
+            u_[i].set(enters, hn::IfThenElse(along[i], face, hn::Max(zero, hn::Min(edge, moved))));
+            corner_[i].set(hn::RebindMask(lanesI, enters), corner);
+        }
+        size_.set(enters, edge);
+        const F mu = upper_.get() * extinction_.get();
+        mu_.set(enters, mu);
+        perMu_.set(enters, hn::IfThenElse(mu > zero, all(1) / mu, all(huge)));
+        forEachLane(bitsOf(leaves), [&](std::size_t i) {
             if (several_) {
-                lanes_[lane].processes[lanes_[lane].part].ended = true;
-                nextPart(lane);
+                lanes_[i].processes[lanes_[i].part].ended = true;
+                nextPart(i);
             } else {
-                end(lane, false);
+                end(i, false);
             }
-            return;
-        }
-        ++counters_.segments;
-        const grid::MajorantGrid::Cell cell = part.part->majorants().find(voxel);
-        const int log2Size = std::min(cell.log2Size, widestLog2), size = 1 << log2Size;
-        const auto edge = static_cast<float>(size);
-        for (int i = 0; i < 3; ++i) {
-            const int corner = voxel[i] & -size;
-            const float u = static_cast<float>(corner_[i][lane] - corner) + u_[i][lane];
-            u_[i][lane] = i == along ? (d_[i][lane] >= 0 ? 0 : edge) : std::clamp(u, 0.0f, edge);
-            corner_[i][lane] = corner;
-        }
-        size_[lane] = edge;
-        lower_[lane] = cell.range.min, upper_[lane] = cell.range.max;
-        const float mu = cell.range.max * part.part->largestExtinction();
-        mu_[lane] = mu, perMu_[lane] = mu > 0 ? 1 / mu : huge;
+        });
     }
 
     // ---- collisions
@@ -691,7 +706,7 @@ private:
         F passes[N], probability = all(medium::rarestCorrection);
         for (int c = 0; c < N; ++c) {
             passes[c] = hn::IfThenZeroElse(deep, decay(depths.depth[c]));
-            const F unsure = decay(depths.least[c]) * hn::Min(all(1), depths.most[c] - depths.least[c]);
+            const F unsure = decay(depths.least[c]) * hn::Min(all(0.5f), all(0.5f) * (depths.most[c] - depths.least[c]));
             const F weight = w_[c].get() * light.get() * all(1 / traced_.typicalRadiance);
             probability = hn::Max(probability, hn::IfThenZeroElse(deep, weight * unsure));
         }
@@ -861,20 +876,21 @@ private:
     std::array<Lane, laneCount> lanes_;
     std::array<bool, laneCount> ready_{};
 
-    Row<std::int32_t> state_, axis_, corner_[3];
-    Floats u_[3], d_[3], inverse_[3];  // in the cell, and of the ray, in voxels
-    Floats size_, lower_, upper_, mu_, perMu_;  // of the cell
-    Floats depth_, t_, limit_;  // what is left to the next collision; along the flight
-    Floats w_[N], v_[3], density_;
-    Floats absorption_[N], scattering_[N], channelWeight_[N], g_, jitterUnit_, firstJitter_;
-    Row<std::int32_t> low_[3];
-    Floats lattice_[3][4];  // of the sun, from voxels
-    Floats share_;          // see PathState::sunShare
+    Row<std::int32_t> state_{}, corner_[3]{};
+    Floats u_[3]{}, d_[3]{}, inverse_[3]{};  // in the cell, and of the ray, in voxels
+    Floats size_{}, lower_{}, upper_{}, mu_{}, perMu_{};  // of the cell
+    Floats depth_{}, t_{}, limit_{};  // what is left to the next collision; along the flight
+    Floats w_[N]{}, v_[3]{}, density_{};
+    Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{},
+        jitterUnit_{}, firstJitter_{};
+    Row<std::int32_t> low_[3]{}, high_[3]{};
+    Floats lattice_[3][4]{};  // of the sun, from voxels
+    Floats share_{};         // see PathState::sunShare
     light::LightSample sunSample_;  // of a delta sun
     std::array<EventNumbers, laneCount> numbers_{};
     std::array<Rgb, laneCount> sunLight_{};
     std::array<Vec3d, laneCount> sunDirections_{};
-    Row<std::uint32_t> key_[2], count_;
+    Row<std::uint32_t> key_[2]{}, count_{};
 
 public:
     const medium::TrackingCounters& counters() const { return counters_; }
