@@ -82,6 +82,13 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
         for (LanePart& part : scene.parts) part.setLattice(*scene.sunDepth);
         scene.delta = !traced.scene.lights.traits(scene.sun).distant;
     }
+    const light::LightSet& lights = traced.scene.lights;
+    for (const int light : lights.distant()) {
+        if (lights.traits(light).sampled) continue;
+        if (scene.environmentLight < 0) scene.environmentLight = light;
+        scene.environment += lights.distantRadiance(light, {0, 0, 1}, false);
+        scene.environmentSeen |= lights.traits(light).visible;
+    }
     return scene;
 }
 

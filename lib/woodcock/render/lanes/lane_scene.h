@@ -32,6 +32,11 @@ struct LaneScene {
     const medium::DepthGrid* sunDepth = nullptr;
     int sun = -1;
     bool delta = false;  ///< the sun has no disc
+    /// Radiance that comes from everywhere alike, of constant environments, and the first of these
+    /// lights; -1: there is none.
+    Rgb environment{};
+    int environmentLight = -1;
+    bool environmentSeen = false;  ///< by camera rays
 
     /// Nothing where the scene needs more than lanes can do; its paths are then traced one by one.
     static std::optional<LaneScene> make(const TracedScene& traced);

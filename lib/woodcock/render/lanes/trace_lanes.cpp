@@ -87,7 +87,7 @@ class LaneTracer {
 public:
     LaneTracer(const LaneScene& scene, Batch<N, false>& batch)
         : scene_(scene), traced_(scene.traced), batch_(batch), several_(scene.parts.size() > 1) {
-        if (scene.delta) sunSample_ = traced_.scene.lights.sample(scene.sun, {}, 0, 0);
+        if (scene.sunDepth) sunSample_ = traced_.scene.lights.sample(scene.sun, {}, 0, 0);
     }
 
     void run() {
@@ -122,7 +122,7 @@ private:
         bool quasiRandom = false;   ///< the flight ahead has numbers_
         Process vertex;             ///< from which they start
         std::array<float, 3> direction;
-        Spectrum<N> throughput;
+        Spectrum<N> throughput, chance;
         std::size_t vertexPart = 0;
         Vec3d position;
         std::vector<Process> processes;  ///< of each part; only where there are several
@@ -160,7 +160,8 @@ private:
             key_[0][lane] = static_cast<std::uint32_t>(key);
             key_[1][lane] = static_cast<std::uint32_t>(key >> 32);
             count_[lane] = 0;
-            density_[lane] = 0, share_[lane] = 1;
+            density_[lane] = 0, share_[lane] = 1, events_[lane] = 0;
+            for (int c = 0; c < N; ++c) chance_[c][lane] = control_[c][lane] = predicted_[c][lane] = 0;
             if (collisions(lane)) collisions(lane)->clear();
             if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
             leave(lane);
@@ -199,7 +200,24 @@ private:
         } else {
             leave(lane);
         }
+        settleControls(lane);
         load(lane);
+    }
+
+    /// Adds what the control variates have come to.
+    void settleControls(std::size_t lane) {
+        PathState<N, false>& p = pathOf(lane);
+        const light::LightSet& lights = traced_.scene.lights;
+        using image::LightKind;
+        const auto of = [&](Floats* row) {
+            return toRgb(Spectrum<N>::map([&](int c) { return row[c][lane]; }));
+        };
+        if (scene_.environmentLight >= 0)
+            bring(batch_, p, of(chance_) * scene_.environment * -1.0f, LightKind::VolumeIndirect,
+                  lights.group(scene_.environmentLight));
+        if (scene_.sunDepth)
+            bring(batch_, p, of(control_) * sunSample_.weight, LightKind::VolumeIndirect,
+                  lights.group(scene_.sun));
     }
 
     void endCameraFlight(std::size_t lane, bool scattered) {
@@ -284,6 +302,13 @@ private:
             absorption_[c][lane] = N == 1 ? channels<N>(medium.absorption())[0] : medium.absorption()[c];
             scattering_[c][lane] = N == 1 ? channels<N>(medium.scattering())[0] : medium.scattering()[c];
             channelWeight_[c][lane] = medium.channelWeight()[c];
+        }
+        for (int c = 0; c < N; ++c) {
+            const float whole = absorption_[c][lane] + scattering_[c][lane];
+            const float albedo = whole > 0 ? scattering_[c][lane] / whole : 0;
+            albedo_[c][lane] = albedo;
+            static const float bb = getenv("BB") ? float(atof(getenv("BB"))) : 1;
+            beta_[c][lane] = bb * (1 - std::sqrt((1 - albedo) / (1 - scene_.parts[part].g * albedo)));
         }
         g_[lane] = scene_.parts[part].g, extinction_[lane] = medium.largestExtinction();
         for (int i = 0; i < 3; ++i) {
@@ -409,7 +434,8 @@ private:
         for (int i = 0; i < 3; ++i) {
             const I corner = hn::And(voxel[i].get(), hn::Zero(lanesI) - size.get());
             const F moved = hn::ConvertTo(lanesF, corner_[i].get() - corner) + u_[i].get();
-            const F face = hn::IfThenZeroElse(d_[i].get() >= zero, edge);
+            const I ahead = corner_[i].get() + hn::IfThenElseZero(hn::RebindMask(lanesI, d_[i].get() >= zero), width);
+            const F face = hn::ConvertTo(lanesF, ahead - corner);
             u_[i].set(enters, hn::IfThenElse(along[i], face, hn::Max(zero, hn::Min(edge, moved))));
             corner_[i].set(hn::RebindMask(lanesI, enters), corner);
         }
@@ -466,8 +492,14 @@ private:
             const F p = hn::IfThenElseZero(all_ > zero, weight / all_);
             scatters = random < p;
             const F perSum = one / (mu * hn::IfThenElse(scatters, p, one - p));
-            for (int c = 0; c < N; ++c)
-                w_[c].set(colliding, w_[c].get() * hn::IfThenElse(scatters, scattering[c], null[c]) * perSum);
+            const auto counts = scene_.environmentSeen ? colliding : hn::And(colliding, all(0) < events_.get());
+            for (int c = 0; c < N; ++c) {
+                const F before = w_[c].get();
+                const F after = before * hn::IfThenElse(scatters, scattering[c], null[c]) * perSum;
+                const F expected = before * (one - absorption_[c].get() * f[c] / mu);
+                chance_[c].set(counts, chance_[c].get() + beta_[c].get() * (after - expected));
+                w_[c].set(colliding, after);
+            }
         }
         F most = w_[0].get();
         for (int c = 1; c < N; ++c) most = hn::Max(most, w_[c].get());
@@ -567,6 +599,7 @@ private:
             if (seen(p)) endCameraFlight(lane, true);
             if (!traced_.mayScatter(p.scatterings)) {
                 p.alive = false;
+                settleControls(lane);
                 load(lane);
                 return false;
             }
@@ -597,14 +630,17 @@ private:
     void goOn(std::size_t lane, bool near) {
         Lane& l = lanes_[lane];
         PathState<N, false>& p = pathOf(lane);
-        const bool many = near && traced_.severalEvents && traced_.mayScatter(p.scatterings + 1);
+        static const bool noMany = getenv("NM");
+        const bool many = !noMany && near && traced_.severalEvents && traced_.mayScatter(p.scatterings + 1);
         p.sunShare = many ? severalEventsShare : 1;
         share_[lane] = p.sunShare;
         l.quasiRandom = p.scatterings < quasiRandomOrders;
         ++p.scatterings;
+        events_[lane] = 1;
         if (p.scatterings >= firstOrderRoulette) {
             takeThroughput(lane, p);
             if (!surviveOrder(p, false)) {
+                settleControls(lane);
                 load(lane);
                 return;
             }
@@ -616,6 +652,7 @@ private:
         l.vertexPart = l.part;
         for (std::size_t i = 0; i < 3; ++i) l.direction[i] = v_[i][lane];
         l.throughput = Spectrum<N>::map([&](int c) { return w_[c][lane]; });
+        l.chance = Spectrum<N>::map([&](int c) { return chance_[c][lane]; });
         l.probe = true, l.probesLeft = severalEvents;
     }
 
@@ -675,10 +712,10 @@ private:
     }
 
     /// The phase function towards a delta sun, where it is Henyey-Greenstein's.
-    F phaseTowardsSun() {
+    F phaseTowardsSun(F g) {
         const Vec3d sun = sunSample_.direction;
         const F x = all(static_cast<float>(sun.x)), y = all(static_cast<float>(sun.y)), z = all(static_cast<float>(sun.z));
-        const F g = g_.get(), one = all(1);
+        const F one = all(1);
         const V3 minus = {v_[0].get() - x, v_[1].get() - y, v_[2].get() - z};
         const V3 plus = {v_[0].get() + x, v_[1].get() + y, v_[2].get() + z};
         // 2 (1 - cosine) and 2 (1 + cosine), without cancellation.
@@ -698,7 +735,7 @@ private:
         const std::uint32_t shallow = lit & ~bitsOf(deep);
         // What a next event brings, times the phase function, where nothing is in its way.
         Floats light;
-        if (scene_.delta) light.set(phaseTowardsSun() * all(sunSample_.weight.maximum()) * share_.get());
+        if (scene_.delta) light.set(phaseTowardsSun(g_.get()) * all(sunSample_.weight.maximum()) * share_.get());
         forEachLane(shallow, [&](std::size_t i) {
             if (!scene_.delta || !scene_.parts[lanes_[i].part].henyeyGreenstein)
                 light[i] = sampleSun(i).maximum();
@@ -710,6 +747,7 @@ private:
             const F weight = w_[c].get() * light.get() * all(1 / traced_.typicalRadiance);
             probability = hn::Max(probability, hn::IfThenZeroElse(deep, weight * unsure));
         }
+        predictNextEvent(lit, depths);
         U words[4];
         draw(maskOf(lit), words);
         const std::uint32_t corrected = lit & bitsOf(uniform(words[0]) < probability);
@@ -736,6 +774,26 @@ private:
             bring(batch_, p, arrives * toRgb(w * t), kindOfLight(p, 1), traced_.scene.lights.group(scene_.sun));
         });
         return depth;
+    }
+
+    /// A control variate on the direction in which a path goes on.
+    void predictNextEvent(std::uint32_t lit, const SunDepths& depths) {
+        std::uint32_t bits = 0;
+        forEachLane(lit, [&](std::size_t i) {
+            if (lanes_[i].probe) return;
+            const bool may = traced_.mayScatter(pathOf(i).scatterings + 1) && scene_.parts[lanes_[i].part].henyeyGreenstein;
+            bits |= std::uint32_t{may} << i;
+        });
+        const auto main = maskOf(bits);
+        const F phase = phaseTowardsSun(g_.get() * g_.get()), zero = hn::Zero(lanesF);
+        static const float lambda = getenv("LA") ? float(atof(getenv("LA"))) : 1;
+        for (int c = 0; c < N; ++c) {
+            const F depth = depths.depth[c];
+            const F expected = w_[c].get() * albedo_[c].get() * depth * decay(depth) * all(lambda);
+            const auto near = hn::And(main, depth < all(8));
+            predicted_[c].set(main, hn::IfThenElse(near, expected, zero));
+            control_[c].set(near, control_[c].get() + expected * phase);
+        }
     }
 
     Vec3d sunDirection(std::size_t lane) {
@@ -777,7 +835,7 @@ private:
         Lane& l = lanes_[lane];
         put(lane, l.vertexPart, l.vertex);
         for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = l.direction[i];
-        for (int c = 0; c < N; ++c) w_[c][lane] = l.throughput[c];
+        for (int c = 0; c < N; ++c) w_[c][lane] = l.throughput[c], chance_[c][lane] = l.chance[c];
         l.probe = --l.probesLeft > 0;
         setState(lane, Departing);
     }
@@ -823,7 +881,16 @@ private:
         const F survival = most * all(1 / pathRoulette);
         const auto plays = hn::And(departing, survival < all(1));
         const auto dies = hn::And(plays, uniform(words[3]) >= survival);
-        for (int c = 0; c < N; ++c) w_[c].set(hn::AndNot(dies, plays), w_[c].get() / survival);
+        for (int c = 0; c < N; ++c) {
+            const F before = w_[c].get(), after = hn::IfThenZeroElse(dies, before / survival);
+            chance_[c].set(plays, chance_[c].get() + beta_[c].get() * (after - before));
+            w_[c].set(plays, after);
+        }
+        if (scene_.sunDepth) {
+            const F phase = phaseTowardsSun(g_.get());
+            for (int c = 0; c < N; ++c)
+                control_[c].set(departing, control_[c].get() - predicted_[c].get() * share_.get() * phase);
+        }
         const std::uint32_t dead = bitsOf(dies);
         if (!several_) {
             const LanePart& part = scene_.parts.front();
@@ -853,6 +920,7 @@ private:
             return;
         }
         pathOf(lane).alive = false;
+        settleControls(lane);
         load(lane);
     }
 
@@ -885,6 +953,7 @@ private:
         jitterUnit_{}, firstJitter_{};
     Row<std::int32_t> low_[3]{}, high_[3]{};
     Floats lattice_[3][4]{};  // of the sun, from voxels
+    Floats beta_[N]{}, albedo_[N]{}, chance_[N]{}, control_[N]{}, predicted_[N]{}, events_{};
     Floats share_{};         // see PathState::sunShare
     light::LightSample sunSample_;  // of a delta sun
     std::array<EventNumbers, laneCount> numbers_{};
