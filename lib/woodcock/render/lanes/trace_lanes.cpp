@@ -117,8 +117,10 @@ private:
         std::uint32_t path;
         std::size_t part = 0;       ///< that walks now
         std::size_t nearest = none; ///< the part with the nearest collision so far
-        int probesLeft = 0;         ///< of several events
-        bool probe = false;         ///< it is one of them
+        // Of several flights in one direction:
+        bool probe = false;         ///< this is one of them, and not the path's own
+        int flights = 1, probesLeft = 0, ownStratum = 0;
+        float ownDepth = 0;
         bool quasiRandom = false;   ///< the flight ahead has numbers_
         Process vertex;             ///< from which they start
         std::array<float, 3> direction;
@@ -570,9 +572,8 @@ private:
     void arrive(std::uint32_t arrived) {
         std::uint32_t lit = 0;
         forEachLane(arrived, [&](std::size_t i) { lit |= std::uint32_t{mayGoOn(i)} << i; });
-        Floats depth;  // to the sun
         if (scene_.sunDepth) {
-            depth.set(addSunlight(lit));
+            addSunlight(lit);
         } else if (traced_.needs.lightSampling) {
             forEachLane(lit, [&](std::size_t i) {
                 takeThroughput(i, pathOf(i));
@@ -586,8 +587,7 @@ private:
             if (lanes_[i].probe)
                 endProbe(i);
             else
-                goOn(i, scene_.sunDepth ? depth[i] <= nearSun
-                                        : drawsSeveralEvents(traced_, pathOf(i)));
+                goOn(i);
         });
     }
 
@@ -626,15 +626,10 @@ private:
              double{u_[2][lane]} + corner_[2][lane]});
     }
 
-    /// Gives a path that has scattered its next direction and flight; `near`: to a sun.
-    void goOn(std::size_t lane, bool near) {
-        Lane& l = lanes_[lane];
+    /// Has a path that has scattered draw its next direction and flight.
+    void goOn(std::size_t lane) {
         PathState<N, false>& p = pathOf(lane);
-        static const bool noMany = getenv("NM");
-        const bool many = !noMany && near && traced_.severalEvents && traced_.mayScatter(p.scatterings + 1);
-        p.sunShare = many ? severalEventsShare : 1;
-        share_[lane] = p.sunShare;
-        l.quasiRandom = p.scatterings < quasiRandomOrders;
+        lanes_[lane].quasiRandom = p.scatterings < quasiRandomOrders;
         ++p.scatterings;
         events_[lane] = 1;
         if (p.scatterings >= firstOrderRoulette) {
@@ -646,14 +641,8 @@ private:
             }
             for (int c = 0; c < N; ++c) w_[c][lane] = p.throughput[c];
         }
+        share_[lane] = 1;
         setState(lane, Departing);
-        if (!many) return;
-        take(lane, l.vertex);
-        l.vertexPart = l.part;
-        for (std::size_t i = 0; i < 3; ++i) l.direction[i] = v_[i][lane];
-        l.throughput = Spectrum<N>::map([&](int c) { return w_[c][lane]; });
-        l.chance = Spectrum<N>::map([&](int c) { return chance_[c][lane]; });
-        l.probe = true, l.probesLeft = severalEvents;
     }
 
     // ---- the sun
@@ -724,13 +713,11 @@ private:
         return (one - g) * (one + g) / (all(12.5663706f) * denominator * hn::Sqrt(denominator));
     }
 
-    /// Next-event estimation of the sun, by correctedTransmittance(). Returns the optical depths to
-    /// it, of the channel that has the least.
-    F addSunlight(std::uint32_t lit) {
+    /// Next-event estimation of the sun, by correctedTransmittance().
+    void addSunlight(std::uint32_t lit) {
         const SunDepths depths = readSunDepths(lit);
-        F least = depths.least[0], depth = depths.depth[0];
-        for (int c = 1; c < N; ++c)
-            least = hn::Min(least, depths.least[c]), depth = hn::Min(depth, depths.depth[c]);
+        F least = depths.least[0];
+        for (int c = 1; c < N; ++c) least = hn::Min(least, depths.least[c]);
         const auto deep = least > all(deepest);
         const std::uint32_t shallow = lit & ~bitsOf(deep);
         // What a next event brings, times the phase function, where nothing is in its way.
@@ -773,7 +760,6 @@ private:
             const Spectrum<N> w = Spectrum<N>::map([&](int c) { return w_[c][i]; });
             bring(batch_, p, arrives * toRgb(w * t), kindOfLight(p, 1), traced_.scene.lights.group(scene_.sun));
         });
-        return depth;
     }
 
     /// A control variate on the direction in which a path goes on.
@@ -830,14 +816,49 @@ private:
         return u;
     }
 
-    /// One of several events is done: back to where it started from.
+    /// A path has turned into a direction from which much sunlight may come: follows that direction
+    /// several times for the light at the end of each flight, the path's own flight last. Their first
+    /// optical depths are stratified.
+    void fly(std::size_t lane, int more, float depth) {
+        Lane& l = lanes_[lane];
+        share_[lane] = 1.0f / static_cast<float>(more + 1);
+        l.ownDepth = depth, l.flights = more + 1, l.probesLeft = more, l.probe = true;
+        l.ownStratum = std::min(more, static_cast<int>(std::exp(-depth) * static_cast<float>(l.flights)));
+        take(lane, l.vertex);
+        l.vertexPart = l.part;
+        for (std::size_t i = 0; i < 3; ++i) l.direction[i] = v_[i][lane];
+        l.throughput = Spectrum<N>::map([&](int c) { return w_[c][lane]; });
+        l.chance = Spectrum<N>::map([&](int c) { return chance_[c][lane]; });
+        nextProbe(lane);
+    }
+
+    void nextProbe(std::size_t lane) {
+        Lane& l = lanes_[lane];
+        for (; l.probesLeft > 0; --l.probesLeft) {
+            const int stratum = l.probesLeft - (l.probesLeft <= l.ownStratum);
+            const double u = (stratum + pathOf(lane).random.uniformOpenLow()) / l.flights;
+            if (takeOff(lane, static_cast<float>(-std::log(u)))) return;
+        }
+        l.probe = false;
+        if (!takeOff(lane, l.ownDepth)) end(lane, false);
+    }
+
+    /// Begins a flight from where the lane's path turned; false: it leaves the medium at once.
+    bool takeOff(std::size_t lane, float depth) {
+        if (several_) return begin(lane, lanes_[lane].position, depth);
+        depth_[lane] = depth;
+        setState(lane, Walking);
+        return true;
+    }
+
+    /// One of several flights is done: back to where they start.
     void endProbe(std::size_t lane) {
         Lane& l = lanes_[lane];
         put(lane, l.vertexPart, l.vertex);
         for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = l.direction[i];
         for (int c = 0; c < N; ++c) w_[c][lane] = l.throughput[c], chance_[c][lane] = l.chance[c];
-        l.probe = --l.probesLeft > 0;
-        setState(lane, Departing);
+        --l.probesLeft;
+        nextProbe(lane);
     }
 
     /// Draws the turns and the next flights.
@@ -852,7 +873,7 @@ private:
         given[0].set(u[0]), given[1].set(u[1]), given[2].set(depth);
         forEachLane(bits, [&](std::size_t i) {
             const Lane& l = lanes_[i];
-            if (l.probe || !l.quasiRandom) return;
+            if (!l.quasiRandom) return;
             const EventNumbers& n = numbers_[i];
             given[0][i] = belowOne(n.phase[0]), given[1][i] = belowOne(n.phase[1]);
             given[2][i] = static_cast<float>(-std::log(n.flight));
@@ -886,10 +907,19 @@ private:
             chance_[c].set(plays, chance_[c].get() + beta_[c].get() * (after - before));
             w_[c].set(plays, after);
         }
+        Floats more;
+        more.set(hn::Zero(lanesF));
         if (scene_.sunDepth) {
             const F phase = phaseTowardsSun(g_.get());
-            for (int c = 0; c < N; ++c)
-                control_[c].set(departing, control_[c].get() - predicted_[c].get() * share_.get() * phase);
+            F expected = hn::Zero(lanesF);
+            for (int c = 0; c < N; ++c) {
+                const F p = predicted_[c].get() * phase;
+                control_[c].set(departing, control_[c].get() - p);
+                expected = hn::Max(expected, p);
+            }
+            static const float thr = getenv("THR") ? float(atof(getenv("THR"))) : .1f;
+            more.set(hn::IfThenElseZero(departing, hn::Floor(hn::Min(all(4), expected * all(sunSample_.weight.maximum() / (thr * traced_.typicalRadiance))))));
+            static bool once = (fprintf(stderr, "typical %g sun %g opt %g\n", traced_.typicalRadiance, sunSample_.weight.maximum(), traced_.media[0].meanExtinction * woodcock::length(traced_.media[0].bounds.size())), true); (void)once;
         }
         const std::uint32_t dead = bitsOf(dies);
         if (!several_) {
@@ -910,15 +940,14 @@ private:
                 endDead(i);
                 return;
             }
-            if (several_ && !begin(i, lanes_[i].position, given[2][i])) end(i, false);
+            if (more[i] > 0)
+                fly(i, static_cast<int>(more[i]), given[2][i]);
+            else if (!takeOff(i, given[2][i]))
+                end(i, false);
         });
     }
 
     void endDead(std::size_t lane) {
-        if (lanes_[lane].probe) {
-            endProbe(lane);
-            return;
-        }
         pathOf(lane).alive = false;
         settleControls(lane);
         load(lane);
