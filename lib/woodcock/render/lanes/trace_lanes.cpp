@@ -112,6 +112,17 @@ private:
     /// So many lanes wait until what happens at a scattering is worth doing.
     static constexpr std::size_t enough = (laneCount + 1) / 2;
 
+    /// Copies of a path that wait at a scattering until the one before them has ended.
+    struct Branch {
+        Process vertex;
+        std::size_t part;
+        std::array<float, 3> direction;
+        Spectrum<N> throughput, predicted;
+        std::int64_t scatterings;
+        float share;
+        int copies;
+    };
+
     /// A lane's path, as it is not needed in vectors.
     struct Lane {
         std::uint32_t path;
@@ -128,6 +139,9 @@ private:
         std::size_t vertexPart = 0;
         Vec3d position;
         std::vector<Process> processes;  ///< of each part; only where there are several
+        std::vector<Branch> branches;    ///< of the path that are still to be followed
+        bool first = true;               ///< this is the branch with the quasi-random numbers
+        float events = 0;                ///< of the branches so far, by their share
     };
     static constexpr std::size_t none = ~std::size_t{0};
 
@@ -152,7 +166,7 @@ private:
         while (next_ < batch_.paths.size()) {
             Lane& l = lanes_[lane];
             l.path = static_cast<std::uint32_t>(next_++);
-            l.probesLeft = 0, l.probe = false;
+            l.probesLeft = 0, l.probe = false, l.first = true, l.events = 0;
             PathState<N, false>& p = pathOf(lane);
             p.medium = 0;
             for (int i = 0; i < 3; ++i)
@@ -162,8 +176,9 @@ private:
             key_[0][lane] = static_cast<std::uint32_t>(key);
             key_[1][lane] = static_cast<std::uint32_t>(key >> 32);
             count_[lane] = 0;
+            branchShare_[lane] = 1;
             density_[lane] = 0, share_[lane] = 1, events_[lane] = 0;
-            for (int c = 0; c < N; ++c) chance_[c][lane] = control_[c][lane] = predicted_[c][lane] = 0;
+            for (int c = 0; c < N; ++c) chance_[c][lane] = window_[c][lane] = control_[c][lane] = predicted_[c][lane] = 0;
             if (collisions(lane)) collisions(lane)->clear();
             if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
             leave(lane);
@@ -198,12 +213,10 @@ private:
         if (lost) {
             takeThroughput(lane, p);
             if (seen(p)) endCameraFlight(lane, false);
-            p.alive = false;
         } else {
             leave(lane);
         }
-        settleControls(lane);
-        load(lane);
+        endBranch(lane);
     }
 
     /// Adds what the control variates have come to.
@@ -214,6 +227,8 @@ private:
         const auto of = [&](Floats* row) {
             return toRgb(Spectrum<N>::map([&](int c) { return row[c][lane]; }));
         };
+        static const float we = getenv("WC") ? float(atof(getenv("WC"))) : 1;
+        bring(batch_, p, of(window_) * (scene_.environment + sunSample_.weight * (we / (4 * 3.14159265f))) * -1.0f, LightKind::VolumeIndirect, 0);
         if (scene_.environmentLight >= 0)
             bring(batch_, p, of(chance_) * scene_.environment * -1.0f, LightKind::VolumeIndirect,
                   lights.group(scene_.environmentLight));
@@ -572,8 +587,10 @@ private:
     void arrive(std::uint32_t arrived) {
         std::uint32_t lit = 0;
         forEachLane(arrived, [&](std::size_t i) { lit |= std::uint32_t{mayGoOn(i)} << i; });
+        Floats depth;
+        depth.set(hn::Zero(lanesF));
         if (scene_.sunDepth) {
-            addSunlight(lit);
+            depth.set(addSunlight(lit));
         } else if (traced_.needs.lightSampling) {
             forEachLane(lit, [&](std::size_t i) {
                 takeThroughput(i, pathOf(i));
@@ -587,7 +604,7 @@ private:
             if (lanes_[i].probe)
                 endProbe(i);
             else
-                goOn(i);
+                goOn(i, depth[i]);
         });
     }
 
@@ -598,9 +615,7 @@ private:
         if (!l.probe) {
             if (seen(p)) endCameraFlight(lane, true);
             if (!traced_.mayScatter(p.scatterings)) {
-                p.alive = false;
-                settleControls(lane);
-                load(lane);
+                endBranch(lane);
                 return false;
             }
             if (several_) l.position = positionOf(lane);
@@ -627,21 +642,82 @@ private:
     }
 
     /// Has a path that has scattered draw its next direction and flight.
-    void goOn(std::size_t lane) {
+    void goOn(std::size_t lane, float depth) {
         PathState<N, false>& p = pathOf(lane);
-        lanes_[lane].quasiRandom = p.scatterings < quasiRandomOrders;
+        lanes_[lane].quasiRandom = lanes_[lane].first && p.scatterings < quasiRandomOrders;
         ++p.scatterings;
         events_[lane] = 1;
         if (p.scatterings >= firstOrderRoulette) {
             takeThroughput(lane, p);
             if (!surviveOrder(p, false)) {
-                settleControls(lane);
-                load(lane);
+                endBranch(lane);
                 return;
             }
             for (int c = 0; c < N; ++c) w_[c][lane] = p.throughput[c];
         }
+        static const float ws = getenv("WS") ? float(atof(getenv("WS"))) : 0, we = getenv("WE") ? float(atof(getenv("WE"))) : .7f;
+        if (ws > 0 && scene_.sunDepth && !keepWindow(lane, ws * std::pow(1 + depth / 4, we))) {
+            endBranch(lane);
+            return;
+        }
         share_[lane] = 1;
+        setState(lane, Departing);
+    }
+
+    /// Splits a path whose weight is above the window around `target`, or plays Russian roulette
+    /// where it is below. False: it ends.
+    bool keepWindow(std::size_t lane, float target) {
+        constexpr float above = 1.6f, below = 0.6f;
+        constexpr int most = 8;
+        float weight = 0;
+        for (int c = 0; c < N; ++c) weight = std::max(weight, w_[c][lane]);
+        PathState<N, false>& p = pathOf(lane);
+        Lane& l = lanes_[lane];
+        float factor = 1;
+        int copies = 1;
+        if (weight > above * target) {
+            copies = std::min(most, static_cast<int>(weight / target + 0.5f));
+            factor = 1 / static_cast<float>(copies);
+        } else if (weight < below * target) {
+            const bool dies = static_cast<float>(p.random.uniform()) * target >= weight;
+            factor = dies ? 0 : target / weight;
+            for (int c = 0; c < N; ++c) window_[c][lane] += w_[c][lane] * (factor - 1);
+            if (dies) return false;
+        } else {
+            return true;
+        }
+        for (int c = 0; c < N; ++c) w_[c][lane] *= factor, predicted_[c][lane] *= factor;
+        branchShare_[lane] *= factor;
+        if (copies == 1) return true;
+        Branch& b = l.branches.emplace_back();
+        take(lane, b.vertex);
+        b.part = l.part, b.scatterings = p.scatterings, b.share = branchShare_[lane], b.copies = copies - 1;
+        for (std::size_t i = 0; i < 3; ++i) b.direction[i] = v_[i][lane];
+        b.throughput = Spectrum<N>::map([&](int c) { return w_[c][lane]; });
+        b.predicted = Spectrum<N>::map([&](int c) { return predicted_[c][lane]; });
+        return true;
+    }
+
+    /// A branch of the path has ended: follows the next one, or gives the lane another path.
+    void endBranch(std::size_t lane) {
+        Lane& l = lanes_[lane];
+        PathState<N, false>& p = pathOf(lane);
+        l.events += branchShare_[lane] * static_cast<float>(p.scatterings);
+        if (l.branches.empty()) {
+            p.alive = false;
+            settleControls(lane);
+            load(lane);
+            return;
+        }
+        Branch& b = l.branches.back();
+        put(lane, b.part, b.vertex);
+        for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
+        for (int c = 0; c < N; ++c) w_[c][lane] = b.throughput[c], predicted_[c][lane] = b.predicted[c];
+        branchShare_[lane] = b.share, share_[lane] = 1;
+        p.scatterings = b.scatterings, p.alive = true;
+        l.first = l.quasiRandom = false;
+        if (several_) l.position = positionOf(lane);
+        if (--b.copies == 0) l.branches.pop_back();
         setState(lane, Departing);
     }
 
@@ -714,10 +790,11 @@ private:
     }
 
     /// Next-event estimation of the sun, by correctedTransmittance().
-    void addSunlight(std::uint32_t lit) {
+    F addSunlight(std::uint32_t lit) {
         const SunDepths depths = readSunDepths(lit);
-        F least = depths.least[0];
-        for (int c = 1; c < N; ++c) least = hn::Min(least, depths.least[c]);
+        F least = depths.least[0], depth = depths.depth[0];
+        for (int c = 1; c < N; ++c)
+            least = hn::Min(least, depths.least[c]), depth = hn::Min(depth, depths.depth[c]);
         const auto deep = least > all(deepest);
         const std::uint32_t shallow = lit & ~bitsOf(deep);
         // What a next event brings, times the phase function, where nothing is in its way.
@@ -760,6 +837,7 @@ private:
             const Spectrum<N> w = Spectrum<N>::map([&](int c) { return w_[c][i]; });
             bring(batch_, p, arrives * toRgb(w * t), kindOfLight(p, 1), traced_.scene.lights.group(scene_.sun));
         });
+        return depth;
     }
 
     /// A control variate on the direction in which a path goes on.
@@ -948,9 +1026,7 @@ private:
     }
 
     void endDead(std::size_t lane) {
-        pathOf(lane).alive = false;
-        settleControls(lane);
-        load(lane);
+        endBranch(lane);
     }
 
     /// Turns by a phase function of another kind.
@@ -982,7 +1058,7 @@ private:
         jitterUnit_{}, firstJitter_{};
     Row<std::int32_t> low_[3]{}, high_[3]{};
     Floats lattice_[3][4]{};  // of the sun, from voxels
-    Floats beta_[N]{}, albedo_[N]{}, chance_[N]{}, control_[N]{}, predicted_[N]{}, events_{};
+    Floats beta_[N]{}, albedo_[N]{}, chance_[N]{}, window_[N]{}, branchShare_{}, control_[N]{}, predicted_[N]{}, events_{};
     Floats share_{};         // see PathState::sunShare
     light::LightSample sunSample_;  // of a delta sun
     std::array<EventNumbers, laneCount> numbers_{};
