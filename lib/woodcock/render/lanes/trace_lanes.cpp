@@ -324,6 +324,7 @@ private:
             const float whole = absorption_[c][lane] + scattering_[c][lane];
             const float albedo = whole > 0 ? scattering_[c][lane] / whole : 0;
             albedo_[c][lane] = albedo;
+            kappa_[c][lane] = std::sqrt(3 * (1 - albedo) * (1 - scene_.parts[part].g * albedo));
             static const float bb = getenv("BB") ? float(atof(getenv("BB"))) : 1;
             beta_[c][lane] = bb * (1 - std::sqrt((1 - albedo) / (1 - scene_.parts[part].g * albedo)));
         }
@@ -681,7 +682,7 @@ private:
         } else if (weight < below * target) {
             const bool dies = static_cast<float>(p.random.uniform()) * target >= weight;
             factor = dies ? 0 : target / weight;
-            for (int c = 0; c < N; ++c) window_[c][lane] += w_[c][lane] * (factor - 1);
+            for (int c = 0; c < N; ++c) window_[c][lane] += w_[c][lane] * (factor - 1) * beta_[c][lane] / (1 + kappa_[c][lane] * sunDepths_[c][lane]);
             if (dies) return false;
         } else {
             return true;
@@ -812,6 +813,7 @@ private:
             probability = hn::Max(probability, hn::IfThenZeroElse(deep, weight * unsure));
         }
         predictNextEvent(lit, depths);
+        for (int c = 0; c < N; ++c) sunDepths_[c].set(depths.depth[c]);
         U words[4];
         draw(maskOf(lit), words);
         const std::uint32_t corrected = lit & bitsOf(uniform(words[0]) < probability);
@@ -1058,7 +1060,7 @@ private:
         jitterUnit_{}, firstJitter_{};
     Row<std::int32_t> low_[3]{}, high_[3]{};
     Floats lattice_[3][4]{};  // of the sun, from voxels
-    Floats beta_[N]{}, albedo_[N]{}, chance_[N]{}, window_[N]{}, branchShare_{}, control_[N]{}, predicted_[N]{}, events_{};
+    Floats beta_[N]{}, albedo_[N]{}, chance_[N]{}, kappa_[N]{}, sunDepths_[N]{}, window_[N]{}, branchShare_{}, control_[N]{}, predicted_[N]{}, events_{};
     Floats share_{};         // see PathState::sunShare
     light::LightSample sunSample_;  // of a delta sun
     std::array<EventNumbers, laneCount> numbers_{};
