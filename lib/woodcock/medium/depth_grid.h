@@ -66,8 +66,8 @@ public:
     /// The first node of a cell. The next ones along the axes are strides() floats further.
     const float* nodes(int i, int j, int k) const {
         const int line = j % columnCells * columnNodes + i % columnCells;
-        return column(static_cast<std::size_t>(j / columnCells * columnCount_[0] +
-                                               i / columnCells)) +
+        return column(
+                   static_cast<std::size_t>(j / columnCells * columnCount_[0] + i / columnCells)) +
                static_cast<std::size_t>(line) * lineFloats() +
                static_cast<std::size_t>(k * channels_);
     }

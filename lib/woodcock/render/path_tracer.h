@@ -55,6 +55,7 @@ public:
         const ApproximateMedia* approximateMedia =
             nullptr;                           ///< made from `approximations`; null: no sets
         const SunDepths* sunDepths = nullptr;  ///< null: shadow rays to suns are tracked
+        bool lanes = true;  ///< false: paths are traced one by one, also where lanes/ could
     };
 
     virtual ~PathTracer() = default;

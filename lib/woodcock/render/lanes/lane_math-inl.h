@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each set of instructions: see Highway's foreach_target.h.
+// Compiled once for each set of instructions: see trace_lanes.cpp.
 #if defined(WOODCOCK_LANE_MATH) == defined(HWY_TARGET_TOGGLE)
 #ifdef WOODCOCK_LANE_MATH
 #undef WOODCOCK_LANE_MATH
@@ -52,14 +52,14 @@ inline void threefryRound(const U keys[5], U words[4]) {
 /// (table 2).
 template <int Rounds = 12>
 inline void threefry(const U key[4], const U counter[4], U words[4]) {
-    const U keys[5] = {
-        key[0], key[1], key[2], key[3],
-        hn::Xor(hn::Xor(hn::Xor(key[0], key[1]), hn::Xor(key[2], key[3])),
-                hn::Set(lanesU, 0x1BD11BDAu))};
+    const U keys[5] = {key[0], key[1], key[2], key[3],
+                       hn::Xor(hn::Xor(hn::Xor(key[0], key[1]), hn::Xor(key[2], key[3])),
+                               hn::Set(lanesU, 0x1BD11BDAu))};
     for (int i = 0; i < 4; ++i) words[i] = counter[i] + keys[i];
     [&]<int... Round>(std::integer_sequence<int, Round...>) {
         (threefryRound<Round>(keys, words), ...);
-    }(std::make_integer_sequence<int, Rounds>());
+    }
+    (std::make_integer_sequence<int, Rounds>());
 }
 
 /// Uniform in [0, 1), multiples of 2^-24.
@@ -76,8 +76,8 @@ inline F logarithm(F x) {
     const F rest = hn::BitCast(lanesF, bits - hn::ShiftLeft<23>(exponent));
     const F s = (rest - all(1)) / (rest + all(1)), s2 = s * s;
     const F series =
-        all(1) + s2 * (all(1.0f / 3) +
-                       s2 * (all(1.0f / 5) + s2 * (all(1.0f / 7) + s2 * all(1.0f / 9))));
+        all(1) +
+        s2 * (all(1.0f / 3) + s2 * (all(1.0f / 5) + s2 * (all(1.0f / 7) + s2 * all(1.0f / 9))));
     return hn::ConvertTo(lanesF, exponent) * all(0.693147181f) + all(2) * s * series;
 }
 
@@ -87,9 +87,9 @@ inline F decay(F x) {
     const F r = (y - whole) * all(0.693147181f);
     const F series =
         all(1) +
-        r * (all(1) +
-             r * (all(0.5f) +
-                  r * (all(1.0f / 6) + r * (all(1.0f / 24) + r * (all(1.0f / 120) + r * all(1.0f / 720))))));
+        r * (all(1) + r * (all(0.5f) +
+                           r * (all(1.0f / 6) + r * (all(1.0f / 24) + r * (all(1.0f / 120) +
+                                                                           r * all(1.0f / 720))))));
     const I power = hn::ShiftLeft<23>(hn::ConvertTo(lanesI, whole) + hn::Set(lanesI, 127));
     return hn::IfThenZeroElse(x > all(87), series * hn::BitCast(lanesF, power));
 }
@@ -106,18 +106,18 @@ inline F drawDepth(U bits) {
 inline void sineAndCosine(F u, F& sine, F& cosine) {
     const F quarter = hn::Round(u * all(4));
     const F x = (u - quarter * all(0.25f)) * all(6.283185307f), x2 = x * x;
-    const F s = x * (all(1) + x2 * (all(-1.0f / 6) +
-                                    x2 * (all(1.0f / 120) +
-                                          x2 * (all(-1.0f / 5040) + x2 * all(1.0f / 362880)))));
+    const F s =
+        x * (all(1) +
+             x2 * (all(-1.0f / 6) +
+                   x2 * (all(1.0f / 120) + x2 * (all(-1.0f / 5040) + x2 * all(1.0f / 362880)))));
     const F c =
-        all(1) + x2 * (all(-0.5f) +
-                       x2 * (all(1.0f / 24) +
-                             x2 * (all(-1.0f / 720) +
-                                   x2 * (all(1.0f / 40320) + x2 * all(-1.0f / 3628800)))));
+        all(1) +
+        x2 * (all(-0.5f) +
+              x2 * (all(1.0f / 24) + x2 * (all(-1.0f / 720) +
+                                           x2 * (all(1.0f / 40320) + x2 * all(-1.0f / 3628800)))));
     const I turn = hn::ConvertTo(lanesI, quarter);
     const auto bit = [&](int b) {
-        return hn::RebindMask(
-            lanesF, hn::Ne(hn::And(turn, hn::Set(lanesI, b)), hn::Zero(lanesI)));
+        return hn::RebindMask(lanesF, hn::Ne(hn::And(turn, hn::Set(lanesI, b)), hn::Zero(lanesI)));
     };
     const auto odd = bit(1), back = bit(2);
     const F first = hn::IfThenElse(odd, c, s), second = hn::IfThenElse(odd, all(0) - s, c);
@@ -130,6 +130,8 @@ struct V3 {
     F x, y, z;
 };
 inline F dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline V3 operator*(const V3& a, F s) { return {a.x * s, a.y * s, a.z * s}; }
 
 /// Unit vectors, Henyey-Greenstein with mean cosine `g` around them, by u in [0, 1)^2; and the
@@ -150,10 +152,9 @@ inline V3 sampleHenyeyGreenstein(const V3& forward, F g, F u0, F u1, F& density)
     F sineAround, cosineAround;
     sineAndCosine(u1, sineAround, cosineAround);
     const F x = sine * cosineAround, y = sine * sineAround;
-    const V3 d = {
-        x * (one + sign * forward.x * forward.x * a) + y * b + forward.x * cosine,
-        x * (sign * b) + y * (sign + forward.y * forward.y * a) + forward.y * cosine,
-        forward.z * cosine - x * (sign * forward.x) - y * forward.y};
+    const V3 d = {x * (one + sign * forward.x * forward.x * a) + y * b + forward.x * cosine,
+                  x * (sign * b) + y * (sign + forward.y * forward.y * a) + forward.y * cosine,
+                  forward.z * cosine - x * (sign * forward.x) - y * forward.y};
     return d * (one / hn::Sqrt(dot(d, d)));
 }
 

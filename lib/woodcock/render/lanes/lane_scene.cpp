@@ -13,27 +13,28 @@ constexpr std::size_t mostParts = 8;
 /// The optical depth of a voxel up to which tentative collisions are few in a cell. Deeper media
 /// need RefinedWalk.
 constexpr double deepestVoxel = 32;
+/// The mean optical depth of the medium's diagonal from which paths are long.
+constexpr double thickFrom = 30;
 
-/// The longest edge of a voxel in the world.
-double longestEdge(const Affine3d& worldFromIndex) {
+double longestEdgeOfVoxel(const Affine3d& worldFromIndex) {
     double longest = 0;
     for (const Vec3d& axis : worldFromIndex.column) longest = std::max(longest, length(axis));
     return longest;
 }
 
-bool ordinaryNumber(double v) { return v > 1e-12 && v < 1e12; }
+bool isOrdinary(double v) { return v > 1e-12 && v < 1e12; }
 
 /// Whether lanes can walk through a part: it stands still, has an end, and its numbers are such
 /// that floats within a cell are exact enough.
-bool walkable(const medium::MediumPart& part) {
+bool canBeWalked(const medium::MediumPart& part) {
     const grid::Field* field = part.field();
     if (!field || part.albedo() || part.readElsewhere() || part.description().movement ||
         part.moved() || part.extinctionVaries() || part.limits() || part.background().min != 0 ||
         part.background().max != 0 || part.support().empty())
         return false;
-    const double edge = longestEdge(part.description().worldFromIndex);
+    const double edge = longestEdgeOfVoxel(part.description().worldFromIndex);
     const double densest = double{field->range().max} * part.largestExtinction();
-    return ordinaryNumber(edge) && (densest == 0 || ordinaryNumber(densest)) &&
+    return isOrdinary(edge) && (densest == 0 || isOrdinary(densest)) &&
            densest * edge < deepestVoxel;
 }
 
@@ -51,6 +52,16 @@ LanePart::LanePart(const medium::MediumPart& p) : part(&p) {
     const auto* kind = std::get_if<medium::HenyeyGreenstein>(&p.phase().kind());
     henyeyGreenstein = kind;
     g = kind ? static_cast<float>(kind->g()) : 0;
+    const auto forward = static_cast<float>(p.phase().meanCosine());
+    albedo = Rgb::map([&](int c) {
+        const float whole = p.absorption()[c] + p.scattering()[c];
+        return whole > 0 ? p.scattering()[c] / whole : 0.0f;
+    });
+    equilibrium =
+        Rgb::map([&](int c) { return 1 - std::sqrt((1 - albedo[c]) / (1 - forward * albedo[c])); });
+    diffusion =
+        Rgb::map([&](int c) { return std::sqrt(3 * (1 - albedo[c]) * (1 - forward * albedo[c])); });
+    windowScale = std::clamp(1 - forward, 0.25f, 0.5f);
 }
 
 void LanePart::setLattice(const medium::DepthGrid& grid) {
@@ -65,31 +76,38 @@ void LanePart::setLattice(const medium::DepthGrid& grid) {
 
 std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
     const Needs& needs = traced.needs;
-    const Approximations& approximations = traced.options.approximations;
-    if (needs.surfaces || needs.emission || needs.localLights || needs.motion ||
-        !needs.scattering || approximations.marchStep > 0 || traced.media.replaces() ||
-        !traced.scene.lights.meetable().empty())
+    if (!traced.options.lanes || needs.surfaces || needs.emission || needs.localLights ||
+        needs.motion || !needs.scattering || traced.options.approximations.marchStep > 0 ||
+        traced.media.replaces() || !traced.scene.lights.meetable().empty())
         return {};
     const auto& parts = traced.scene.medium.parts;
-    if (parts.empty() || parts.size() > mostParts || !std::ranges::all_of(parts, walkable))
+    if (parts.empty() || parts.size() > mostParts || !std::ranges::all_of(parts, canBeWalked))
         return {};
     LaneScene scene(traced);
     for (const medium::MediumPart& part : parts) scene.parts.emplace_back(part);
-    const auto sampled = traced.scene.lights.sampled();
-    if (sampled.size() == 1 && traced.sunDepth(0, sampled[0])) {
-        scene.sun = sampled[0];
-        scene.sunDepth = traced.sunDepth(0, scene.sun);
-        for (LanePart& part : scene.parts) part.setLattice(*scene.sunDepth);
-        scene.delta = !traced.scene.lights.traits(scene.sun).distant;
-    }
+    const MediumSummary& medium = traced.media[0];
+    scene.thick = medium.meanExtinction * length(medium.bounds.size()) > thickFrom;
+    scene.addLights();
+    return scene;
+}
+
+void LaneScene::addLights() {
     const light::LightSet& lights = traced.scene.lights;
+    const auto sampled = lights.sampled();
+    if (sampled.size() == 1 && traced.sunDepth(0, sampled[0])) {
+        sun = sampled[0];
+        sunDepth = traced.sunDepth(0, sun);
+        for (LanePart& part : parts) part.setLattice(*sunDepth);
+        delta = !lights.traits(sun).distant;
+        centre = lights.sample(sun, {}, 0, 0);
+        centre.direction = *lights.traits(sun).parallel;
+    }
     for (const int light : lights.distant()) {
         if (lights.traits(light).sampled) continue;
-        if (scene.environmentLight < 0) scene.environmentLight = light;
-        scene.environment += lights.distantRadiance(light, {0, 0, 1}, false);
-        scene.environmentSeen |= lights.traits(light).visible;
+        if (environmentLight < 0) environmentLight = light;
+        environment += lights.distantRadiance(light, {0, 0, 1}, false);
+        environmentSeen |= lights.traits(light).visible;
     }
-    return scene;
 }
 
 }  // namespace woodcock::render

@@ -11,12 +11,18 @@ namespace woodcock::render {
 /// One part of the medium, as lanes read it.
 struct LanePart {
     const medium::MediumPart* part;
-    float indexFromWorld[3][3];  ///< of vectors; by rows
-    Vec3i low, high;             ///< voxels of the support, both ends included
-    bool henyeyGreenstein;       ///< else its phase function is sampled path by path
-    float g;                     ///< of Henyey-Greenstein
-    /// From voxels, of which `low` is the first, to the sun's lattice; by rows.
-    float latticeFromIndex[3][4] = {};
+    float indexFromWorld[3][3];      ///< of vectors; by rows
+    Vec3i low, high;                 ///< voxels of the support, both ends included
+    bool henyeyGreenstein;           ///< else its phase function is sampled path by path
+    float g;                         ///< of Henyey-Greenstein
+    float latticeFromIndex[3][4]{};  ///< from voxels, of which `low` is the first, to those of
+                                     ///< LaneScene::sunDepth; by rows
+    Rgb albedo;                      ///< sigma_s / sigma_t
+    /// What deep inside of the part an even environment loses: 1 - sqrt((1 - albedo) / (1 - g
+    /// albedo)), the similarity parameter of van de Hulst 1980.
+    Rgb equilibrium;
+    Rgb diffusion;      ///< per optical depth: sqrt(3 (1 - albedo)(1 - g albedo))
+    float windowScale;  ///< see LaneTracer::keepWindow()
 
     explicit LanePart(const medium::MediumPart& part);
     void setLattice(const medium::DepthGrid& grid);
@@ -31,18 +37,22 @@ struct LaneScene {
     /// and the sun. Else null.
     const medium::DepthGrid* sunDepth = nullptr;
     int sun = -1;
-    bool delta = false;  ///< the sun has no disc
+    bool delta = false;         ///< the sun has no disc
+    light::LightSample centre;  ///< of the sun: its direction and irradiance
     /// Radiance that comes from everywhere alike, of constant environments, and the first of these
     /// lights; -1: there is none.
     Rgb environment{};
     int environmentLight = -1;
     bool environmentSeen = false;  ///< by camera rays
+    /// Paths are long: it pays to split and to end them by where they are.
+    bool thick = false;
 
     /// Nothing where the scene needs more than lanes can do; its paths are then traced one by one.
     static std::optional<LaneScene> make(const TracedScene& traced);
 
 private:
     explicit LaneScene(const TracedScene& t) : traced(t) {}
+    void addLights();
 };
 
 }  // namespace woodcock::render

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each set of instructions: see trace_lanes.cpp.
+#if defined(WOODCOCK_LANE_PATHS) == defined(HWY_TARGET_TOGGLE)
+#ifdef WOODCOCK_LANE_PATHS
+#undef WOODCOCK_LANE_PATHS
+#else
+#define WOODCOCK_LANE_PATHS
+#endif
+
+#include <cmath>
+
+#include "woodcock/render/lanes/lane_tracer-inl.h"
+#include "woodcock/render/stages/camera_stops.h"
+#include "woodcock/render/stages/light.h"
+#include "woodcock/render/stages/shade_media.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace woodcock::render::HWY_NAMESPACE {
+
+/// Gives a lane the next path.
+template <int N>
+void LaneTracer<N>::load(std::size_t lane) {
+    while (nextPath_ < batch_.paths.size()) {
+        Lane& l = lanes_[lane];
+        l.path = static_cast<std::uint32_t>(nextPath_++);
+        l.extra = false, l.first = true, l.scatterings = 0;
+        PathState<N, false>& p = pathOf(lane);
+        p.medium = 0;
+        for (int i = 0; i < 3; ++i) v_[i][lane] = static_cast<float>(p.direction[i]);
+        const std::uint64_t key = p.random.bits();
+        key_[0][lane] = static_cast<std::uint32_t>(key);
+        key_[1][lane] = static_cast<std::uint32_t>(key >> 32);
+        count_[lane] = 0;
+        density_[lane] = 0, scattered_[lane] = 0, share_[lane] = 1;
+        setLane(w_, lane, p.throughput);
+        for (Floats* rows : {chance_, window_, prediction_, predicted_})
+            setLane(rows, lane, Spectrum<N>());
+        if (auto* noted = collisionsOf(lane)) noted->clear();
+        if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
+        leave(lane);
+    }
+    state_[lane] = Idle;
+}
+
+/// Where the lane's flight is to note its collisions; null: nowhere.
+template <int N>
+std::vector<medium::FlightCollision>* LaneTracer<N>::collisionsOf(std::size_t lane) {
+    return collisionsToNote(traced_, batch_, lanes_[lane].path);
+}
+
+/// The path has left the medium.
+template <int N>
+void LaneTracer<N>::leave(std::size_t lane) {
+    PathState<N, false>& p = pathOf(lane);
+    p.throughput = throughputOf(lane);
+    if (seen(p)) {
+        endCameraFlight(lane, false);
+    } else {
+        p.phasePdf = double{density_[lane]};
+        p.direction = directionOf(lane);
+    }
+    escape(traced_, batch_, p);
+}
+
+/// A flight has ended without an event. `lost`: its light was taken; else it has left the medium.
+template <int N>
+void LaneTracer<N>::end(std::size_t lane, bool lost) {
+    if (lanes_[lane].extra) {
+        endExtra(lane);
+        return;
+    }
+    PathState<N, false>& p = pathOf(lane);
+    if (!lost) {
+        leave(lane);
+    } else if (seen(p)) {
+        p.throughput = {};
+        endCameraFlight(lane, false);
+    }
+    endBranch(lane);
+}
+
+template <int N>
+void LaneTracer<N>::endCameraFlight(std::size_t lane, bool scattered) {
+    PathState<N, false>& p = pathOf(lane);
+    p.result->film.alpha = scattered ? 1 : opacityOf(p);
+    if (!isToBeNoted(traced_, p)) return;
+    noteStops(traced_, batch_, lanes_[lane].path);
+    if (scattered) noteFirstScattering(traced_, p, double{t_[lane]});
+}
+
+/// A branch of the path has ended: follows the next one, or gives the lane another path.
+template <int N>
+void LaneTracer<N>::endBranch(std::size_t lane) {
+    Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    l.scatterings += p.scatterings;
+    if (l.branches.empty()) {
+        p.alive = false, p.scatterings = l.scatterings;  // as a measure of work
+        bringControls(lane);
+        load(lane);
+        return;
+    }
+    Branch& b = l.branches.back();
+    put(lane, b.part, b.vertex);
+    for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
+    setLane(w_, lane, b.throughput), setLane(predicted_, lane, b.predicted);
+    share_[lane] = 1;
+    l.scatterings -= b.scatterings;  // they are the first branch's too
+    p.scatterings = b.scatterings, p.alive = true;
+    l.first = l.quasiRandom = false;
+    if (several_) l.position = positionOf(lane);
+    if (--b.copies == 0) l.branches.pop_back();
+    state_[lane] = Departing;
+}
+
+/// Adds what the control variates have come to. Their means are zero, whatever came before, so
+/// layers may count them as indirect light of the medium.
+template <int N>
+void LaneTracer<N>::bringControls(std::size_t lane) {
+    PathState<N, false>& p = pathOf(lane);
+    const light::LightSet& lights = traced_.scene.lights;
+    constexpr auto kind = image::LightKind::VolumeIndirect;
+    const Rgb window = toRgb(laneOf(window_, lane));
+    if (scene_.environmentLight >= 0)
+        bring(batch_, p, (toRgb(laneOf(chance_, lane)) + window) * scene_.environment * -1.0f, kind,
+              lights.group(scene_.environmentLight));
+    if (scene_.sunDepth)
+        bring(batch_, p,
+              (toRgb(laneOf(prediction_, lane)) - window * static_cast<float>(1 / (4 * pi))) *
+                  scene_.centre.weight,
+              kind, lights.group(scene_.sun));
+}
+
+}  // namespace woodcock::render::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

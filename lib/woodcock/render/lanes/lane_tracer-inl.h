@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each set of instructions: see trace_lanes.cpp.
+#if defined(WOODCOCK_LANE_TRACER) == defined(HWY_TARGET_TOGGLE)
+#ifdef WOODCOCK_LANE_TRACER
+#undef WOODCOCK_LANE_TRACER
+#else
+#define WOODCOCK_LANE_TRACER
+#endif
+
+#include <array>
+#include <vector>
+
+#include "woodcock/render/batch.h"
+#include "woodcock/render/lanes/lane_rows-inl.h"
+#include "woodcock/render/lanes/lane_scene.h"
+#include "woodcock/render/stages/event_numbers.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace woodcock::render::HWY_NAMESPACE {
+
+/// An inverse or a distance that no path has; finite, so that a product with 0 is a number.
+inline constexpr float huge = 1e30f;
+/// Cells are taken to be at most so wide, in voxels, that a float within one is exact enough.
+inline constexpr int widestLog2 = 7;
+
+/// What a lane does.
+enum State : std::int32_t {
+    Idle,       ///< there are no more paths
+    Walking,    ///< from cell to cell
+    Colliding,  ///< a tentative collision is to be decided
+    Arrived,    ///< it has scattered
+    Departing   ///< a turn and a new flight are to be drawn
+};
+
+/// The walk of one part's tentative collisions along a flight, while its lane does something else.
+/// Positions are within the cell, and directions those of its part's voxels.
+struct Process {
+    std::array<float, 3> u, d, inverse;
+    std::array<std::int32_t, 3> corner;
+    float size, mu, perMu, depth, t, lower, upper;
+    bool waits = false;  ///< at a collision, at `t`
+    bool ended = false;
+};
+
+/// Traces the paths of a batch, one in each lane; N: tracked channels. Its methods are in files of
+/// their own, by what they do:
+///
+///     lane_paths-inl.h       gives lanes their paths, and ends them
+///     lane_walk-inl.h        from cell to cell, until a tentative collision
+///     lane_collisions-inl.h  decides tentative collisions
+///     lane_sun-inl.h         brings sunlight to where paths scatter
+///     lane_scattering-inl.h  what else happens there: turns, further flights, splitting, roulette
+///
+/// What all lanes do is done in vectors, and look-ups lane by lane.
+template <int N>
+class LaneTracer {
+public:
+    LaneTracer(const LaneScene& scene, Batch<N, false>& batch)
+        : scene_(scene), traced_(scene.traced), batch_(batch), several_(scene.parts.size() > 1) {}
+
+    void run() {
+        for (std::size_t lane = 0; lane < laneCount; ++lane) load(lane);
+        while (true) {
+            const Mask walking = whoIs(Walking), arrived = whoIs(Arrived),
+                       departing = whoIs(Departing);
+            const std::size_t walkers = hn::CountTrue(lanesF, walking);
+            const std::size_t waiting = hn::CountTrue(lanesF, hn::Or(arrived, departing));
+            if (waiting >= enough || (walkers == 0 && waiting > 0)) {
+                if (const std::uint32_t bits = bitsOf(arrived)) arrive(bits);
+                if (const Mask now = whoIs(Departing); !hn::AllFalse(lanesF, now)) depart(now);
+            } else if (walkers > 0) {
+                step(walking);
+                decideCollisions();
+            } else {
+                return;
+            }
+        }
+    }
+
+    const medium::TrackingCounters& counters() const { return counters_; }
+
+private:
+    /// So many lanes wait until what happens at a scattering is worth doing. Of 3 to 6 of 8, 4 to 6
+    /// measured alike.
+    static constexpr std::size_t enough = (laneCount * 5 + 7) / 8;
+
+    /// Copies of a path that wait at a scattering until the one before them has ended.
+    struct Branch {
+        Process vertex;
+        std::size_t part;
+        std::array<float, 3> direction;
+        Spectrum<N> throughput, predicted;
+        std::int64_t scatterings;
+        int copies;
+    };
+
+    /// What a lane's path has that is not in vectors.
+    struct Lane {
+        std::uint32_t path;
+        std::size_t part = 0;            ///< that walks now
+        std::size_t nearest = none;      ///< the part with the nearest collision so far
+        std::vector<Process> processes;  ///< of each part, where there are several
+        Vec3d position;                  ///< of the last scattering; there
+        std::vector<Branch> branches;    ///< that are still to be followed
+        bool first = true;               ///< this branch has the quasi-random numbers
+        bool quasiRandom = false;        ///< also for the turn and the flight ahead
+        std::int64_t scatterings = 0;    ///< of the branches before
+
+        // Of several flights from where the path has turned:
+        bool extra = false;  ///< this is one of them, and not the path's own
+        int flights = 1, extraLeft = 0, ownStratum = 0;
+        float ownDepth = 0;
+        Process start;
+        std::size_t startPart = 0;
+        std::array<float, 3> direction;
+        Spectrum<N> throughput, chance;
+    };
+    static constexpr std::size_t none = ~std::size_t{0};
+
+    Mask whoIs(State s) const { return hn::RebindMask(lanesF, state_.get() == hn::Set(lanesI, s)); }
+    PathState<N, false>& pathOf(std::size_t lane) { return batch_.paths[lanes_[lane].path]; }
+    const LanePart& partOf(std::size_t lane) const { return scene_.parts[lanes_[lane].part]; }
+    Vec3d directionOf(std::size_t lane) {
+        return {double{v_[0][lane]}, double{v_[1][lane]}, double{v_[2][lane]}};
+    }
+    Vec3d positionOf(std::size_t lane);
+    Spectrum<N> throughputOf(std::size_t lane) { return laneOf(w_, lane); }
+    static Spectrum<N> laneOf(Floats* rows, std::size_t lane) {
+        return Spectrum<N>::map([&](int c) { return rows[c][lane]; });
+    }
+    static void setLane(Floats* rows, std::size_t lane, const Spectrum<N>& s) {
+        for (int c = 0; c < N; ++c) rows[c][lane] = s[c];
+    }
+    F mostThroughput() const {
+        F most = w_[0].get();
+        for (int c = 1; c < N; ++c) most = hn::Max(most, w_[c].get());
+        return most;
+    }
+    /// Four random words for each lane where `where` is true.
+    void draw(Mask where, U words[4]);
+
+    // ---- lane_paths-inl.h
+    void load(std::size_t lane);
+    std::vector<medium::FlightCollision>* collisionsOf(std::size_t lane);
+    void leave(std::size_t lane);
+    void end(std::size_t lane, bool lost);
+    void endCameraFlight(std::size_t lane, bool scattered);
+    void endBranch(std::size_t lane);
+    void bringControls(std::size_t lane);
+
+    // ---- lane_walk-inl.h
+    bool begin(std::size_t lane, Vec3d origin, float depth);
+    void enter(std::size_t part, Vec3d origin, Vec3d direction, float depth, Process& process);
+    void put(std::size_t lane, std::size_t part, const Process& process);
+    void putPart(std::size_t lane, std::size_t part);
+    void take(std::size_t lane, Process& process);
+    bool findNearest(std::size_t lane);
+    void goOnWithNextPart(std::size_t lane);
+    void step(Mask walking);
+    void cross(Mask crossing, const Mask along[3]);
+
+    // ---- lane_collisions-inl.h
+    void decideCollisions();
+    Mask decide(Mask colliding, const F f[N], F random);
+    void lookUp(std::uint32_t bits, const U words[4], F f[N]);
+    void noteCollision(std::size_t lane, bool ends);
+
+    // ---- lane_sun-inl.h
+    struct SunDepths;
+    SunDepths readSunDepths(std::uint32_t bits);
+    F phaseTowardsSun(F g) const;
+    Rgb sampleSun(std::size_t lane);
+    F addSunlight(std::uint32_t lit);
+    void bringSunlight(std::size_t lane, Rgb light, Spectrum<N> passes, float corrected);
+    void predictNextEvent(std::uint32_t lit, const SunDepths& depths);
+    F takePrediction(Mask departing);
+
+    // ---- lane_scattering-inl.h
+    void arrive(std::uint32_t arrived);
+    bool mayGoOn(std::size_t lane);
+    void goOn(std::size_t lane, float sunDepth);
+    bool keepWindow(std::size_t lane, float target);
+    void depart(Mask departing);
+    void turn(Mask departing, std::uint32_t bits, F u0, F u1);
+    void play(Mask departing, F random);
+    void takeDirection(Mask departing);
+    bool takeOff(std::size_t lane, float depth);
+    void flySeveralTimes(std::size_t lane, int more, float depth);
+    void flyAgain(std::size_t lane);
+    void endExtra(std::size_t lane);
+
+    const LaneScene& scene_;
+    const TracedScene& traced_;
+    Batch<N, false>& batch_;
+    const bool several_;  // parts
+    std::size_t nextPath_ = 0;
+    medium::TrackingCounters counters_;
+    std::array<Lane, laneCount> lanes_;
+
+    Ints state_{};
+    Row<std::uint32_t> key_[2]{}, count_{};  // of random numbers
+    // The walk: position and size of the cell, position in it, the ray, and bounds of the field.
+    Ints corner_[3]{};
+    Floats size_{}, u_[3]{}, d_[3]{}, inverse_[3]{}, lower_{}, upper_{};
+    Floats mu_{}, perMu_{};           // rate of tentative collisions, and one over it
+    Floats depth_{}, t_{}, limit_{};  // to the next collision; along the flight; its end
+    Floats v_[3]{}, density_{};       // the direction in the world; how it was drawn
+    Floats w_[N]{};                   // throughput
+    // Of the part that walks:
+    Ints low_[3]{}, high_[3]{};
+    Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
+    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, albedo_[N]{}, equilibrium_[N]{};
+    // Control variates, as throughput: what chance, windows and predictions have brought too much.
+    Floats chance_[N]{}, window_[N]{}, prediction_[N]{}, predicted_[N]{};
+    Floats scattered_{};  // 1 behind the first scattering
+    Floats sunDepth_[N]{}, share_{};
+    std::array<EventNumbers, laneCount> numbers_{};
+    std::array<Rgb, laneCount> sunLight_{};
+    std::array<Vec3d, laneCount> sunDirection_{};
+};
+
+template <int N>
+void LaneTracer<N>::draw(Mask where, U words[4]) {
+    const U zero = hn::Zero(lanesU), count = count_.get();
+    const U key[4] = {key_[0].get(), key_[1].get(), zero, zero};
+    const U counter[4] = {count, zero, zero, zero};
+    threefry(key, counter, words);
+    count_.set(hn::RebindMask(lanesU, where), count + hn::Set(lanesU, 1));
+}
+
+template <int N>
+Vec3d LaneTracer<N>::positionOf(std::size_t lane) {
+    Vec3d at;
+    for (int i = 0; i < 3; ++i) at[i] = double{u_[i][lane]} + corner_[i][lane];
+    return partOf(lane).part->description().worldFromIndex.point(at);
+}
+
+}  // namespace woodcock::render::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
