@@ -7,12 +7,13 @@
 #define WOODCOCK_LANE_PATHS
 #endif
 
+#include <algorithm>
 #include <cmath>
 
 #include "woodcock/render/lanes/lane_tracer-inl.h"
+#include "woodcock/render/light_choice.h"
 #include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/light.h"
-#include "woodcock/render/stages/shade_media.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace woodcock::render::HWY_NAMESPACE {
@@ -38,6 +39,7 @@ void LaneTracer<N>::load(std::size_t lane) {
         if (auto* noted = collisionsOf(lane)) noted->clear();
         if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
         leave(lane);
+        p.alive = false;
     }
     state_[lane] = Idle;
 }
@@ -53,13 +55,35 @@ template <int N>
 void LaneTracer<N>::leave(std::size_t lane) {
     PathState<N, false>& p = pathOf(lane);
     p.throughput = throughputOf(lane);
-    if (seen(p)) {
+    const bool first = seen(p);
+    if (first)
         endCameraFlight(lane, false);
-    } else {
-        p.phasePdf = double{density_[lane]};
+    else
         p.direction = directionOf(lane);
+    const light::LightSet& lights = traced_.scene.lights;
+    for (const int light : lights.distant()) {
+        const Rgb radiance = lights.distantRadiance(light, p.direction, first);
+        if (!(radiance.maximum() > 0)) continue;
+        const Rgb arrived =
+            toRgb(p.throughput) * radiance * static_cast<float>(first ? 1 : hitWeight(lane, light));
+        const image::LightKind kind = first ? image::LightKind::Background : kindOfLight(p, 0);
+        bring(batch_, p, arrived, kind, lights.group(light));
+        if (first) p.result->film.background += arrived;
     }
-    escape(traced_, batch_, p);
+}
+
+/// The weight, by multiple importance sampling, of a light that a scattered path meets.
+template <int N>
+double LaneTracer<N>::hitWeight(std::size_t lane, int light) {
+    const PathState<N, false>& p = pathOf(lane);
+    const auto other = std::ranges::find(scene_.others, light);
+    if (light != scene_.sun && other == scene_.others.end()) return 1;
+    double pdf = traced_.scene.lights.pdf(light, p.from.position, p.direction, p.time);
+    if (pdf > 0 && light != scene_.sun) {
+        findProbabilities(p.from);
+        pdf *= double{probabilities_[static_cast<std::size_t>(other - scene_.others.begin())]};
+    }
+    return powerHeuristic(double{density_[lane]}, pdf);
 }
 
 /// A flight has ended without an event. `lost`: its light was taken; else it has left the medium.

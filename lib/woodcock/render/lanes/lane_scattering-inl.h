@@ -25,12 +25,10 @@ void LaneTracer<N>::arrive(std::uint32_t arrived) {
     forEachLane(arrived, [&](std::size_t i) { lit |= std::uint32_t{mayGoOn(i)} << i; });
     Floats depth;
     depth.set(hn::Zero(lanesF));
-    if (scene_.sunDepth)
-        depth.set(addSunlight(lit));
-    else if (traced_.needs.lightSampling)
+    if (scene_.sunDepth) depth.set(addSunlight(lit));
+    if (!scene_.others.empty())
         forEachLane(lit, [&](std::size_t i) {
-            pathOf(i).throughput = throughputOf(i);
-            addNextEvent(traced_, batch_, lanes_[i].path, numbers_[i], FlightShare());
+            if (!lanes_[i].extra) addOtherLight(i);
         });
     forEachLane(lit, [&](std::size_t i) {
         if (lanes_[i].extra)
@@ -61,12 +59,43 @@ bool LaneTracer<N>::mayGoOn(std::size_t lane) {
     EventNumbers& u = numbers_[lane];
     if (l.quasiRandom) {
         u = drawNumbers(p);
-    } else if (!scene_.delta) {
+    } else if (samplesLights_) {
         u.light = {p.random.uniform(), p.random.uniform()}, u.pick = p.random.uniform();
     }
-    if (!scene_.delta)
+    if (samplesLights_)
         p.from = {positionOf(lane), directionOf(lane), &partOf(lane).part->phase(), p.time};
     return true;
+}
+
+/// Samples one of the lights that are not the sun of the grid.
+template <int N>
+void LaneTracer<N>::addOtherLight(std::size_t lane) {
+    PathState<N, false>& p = pathOf(lane);
+    p.throughput = throughputOf(lane);
+    findProbabilities(p.from);
+    const EventNumbers& numbers = numbers_[lane];
+    double u = numbers.pick;
+    std::size_t k = 0;
+    while (k + 1 < scene_.others.size() && u >= double{probabilities_[k]})
+        u -= double{probabilities_[k++]};
+    if (probabilities_[k] > 0)
+        addSampled(traced_, batch_, lanes_[lane].path,
+                   {scene_.others[k], double{probabilities_[k]}}, numbers, FlightShare());
+}
+
+/// With which addOtherLight() chooses each of the others.
+template <int N>
+void LaneTracer<N>::findProbabilities(const light::ScatterPoint& from) {
+    const light::LightSet& lights = traced_.scene.lights;
+    const auto sampled = lights.sampled();
+    picks_.resize(sampled.size());
+    lights.pickProbabilities(from, picks_);
+    probabilities_.clear();
+    float sum = 0;
+    for (std::size_t i = 0, k = 0; i < sampled.size() && k < scene_.others.size(); ++i)
+        if (sampled[i] == scene_.others[k])
+            probabilities_.push_back(picks_[i]), sum += picks_[i], ++k;
+    for (float& p : probabilities_) p = sum > 0 ? p / sum : 0;
 }
 
 /// Has a path that has scattered draw its next direction and flight, or ends it.

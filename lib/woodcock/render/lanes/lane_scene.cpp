@@ -38,6 +38,23 @@ bool canBeWalked(const medium::MediumPart& part) {
            densest * edge < deepestVoxel;
 }
 
+/// Whether a light is an environment whose radiance differs so little from its mean that sampling
+/// it is not worth the shadow rays.
+bool isEven(const light::LightSet& lights, int light) {
+    const auto* environment = std::get_if<light::Environment>(&lights[light]);
+    if (!environment || !(environment->meanRadiance().mean() > 0)) return false;
+    constexpr int side = 32;
+    constexpr double mostEven = 4;
+    // Of points in proportion to the radiance: the mean of its square over that of itself.
+    double sum = 0;
+    for (int i = 0; i < side * side; ++i) {
+        const light::LightSample s =
+            environment->sample({}, (i % side + 0.5) / side, (i / side + 0.5) / side);
+        sum += environment->radiance(s.direction).mean();
+    }
+    return sum / (side * side) < mostEven * double{environment->meanRadiance().mean()};
+}
+
 }  // namespace
 
 LanePart::LanePart(const medium::MediumPart& p) : part(&p) {
@@ -93,20 +110,26 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
 
 void LaneScene::addLights() {
     const light::LightSet& lights = traced.scene.lights;
-    const auto sampled = lights.sampled();
-    if (sampled.size() == 1 && traced.sunDepth(0, sampled[0])) {
-        sun = sampled[0];
+    for (const int light : lights.sampled()) {
+        if (sun < 0 && traced.sunDepth(0, light))
+            sun = light;
+        else if (!isEven(lights, light))
+            others.push_back(light);
+    }
+    if (sun >= 0) {
         sunDepth = traced.sunDepth(0, sun);
         for (LanePart& part : parts) part.setLattice(*sunDepth);
         delta = !lights.traits(sun).distant;
         centre = lights.sample(sun, {}, 0, 0);
         centre.direction = *lights.traits(sun).parallel;
     }
+    environmentSeen = true;
     for (const int light : lights.distant()) {
-        if (lights.traits(light).sampled) continue;
+        const auto* environment_ = std::get_if<light::Environment>(&lights[light]);
+        if (!environment_ || std::ranges::find(others, light) != others.end()) continue;
         if (environmentLight < 0) environmentLight = light;
-        environment += lights.distantRadiance(light, {0, 0, 1}, false);
-        environmentSeen |= lights.traits(light).visible;
+        environment += environment_->meanRadiance();
+        environmentSeen &= environment_->visible();
     }
 }
 

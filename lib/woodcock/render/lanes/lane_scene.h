@@ -33,17 +33,19 @@ struct LanePart {
 struct LaneScene {
     const TracedScene& traced;
     std::vector<LanePart> parts;
-    /// Where the only light that is sampled is a sun whose optical depth is in a grid: that grid,
-    /// and the sun. Else null.
+    /// The grid of the optical depth to a sun, which every scattering samples; null: there is none.
     const medium::DepthGrid* sunDepth = nullptr;
     int sun = -1;
     bool delta = false;         ///< the sun has no disc
     light::LightSample centre;  ///< of the sun: its direction and irradiance
-    /// Radiance that comes from everywhere alike, of constant environments, and the first of these
-    /// lights; -1: there is none.
+    /// Other lights that are sampled, one for each scattering: not the environments that are so
+    /// even that paths find their light well enough where they leave.
+    std::vector<int> others;
+    /// Mean radiance from all around, of environments that are not among these, and the first of
+    /// them; -1: there is none.
     Rgb environment{};
     int environmentLight = -1;
-    bool environmentSeen = false;  ///< by camera rays
+    bool environmentSeen = false;  ///< by camera rays, of all of these
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
 

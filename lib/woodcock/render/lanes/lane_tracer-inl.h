@@ -56,7 +56,11 @@ template <int N>
 class LaneTracer {
 public:
     LaneTracer(const LaneScene& scene, Batch<N, false>& batch)
-        : scene_(scene), traced_(scene.traced), batch_(batch), several_(scene.parts.size() > 1) {}
+        : scene_(scene),
+          traced_(scene.traced),
+          batch_(batch),
+          several_(scene.parts.size() > 1),
+          samplesLights_(!scene.others.empty() || (scene.sunDepth && !scene.delta)) {}
 
     void run() {
         for (std::size_t lane = 0; lane < laneCount; ++lane) load(lane);
@@ -143,6 +147,7 @@ private:
     void load(std::size_t lane);
     std::vector<medium::FlightCollision>* collisionsOf(std::size_t lane);
     void leave(std::size_t lane);
+    double hitWeight(std::size_t lane, int light);
     void end(std::size_t lane, bool lost);
     void endCameraFlight(std::size_t lane, bool scattered);
     void endBranch(std::size_t lane);
@@ -178,6 +183,8 @@ private:
     // ---- lane_scattering-inl.h
     void arrive(std::uint32_t arrived);
     bool mayGoOn(std::size_t lane);
+    void addOtherLight(std::size_t lane);
+    void findProbabilities(const light::ScatterPoint& from);
     void goOn(std::size_t lane, float sunDepth);
     bool keepWindow(std::size_t lane, float target);
     void depart(Mask departing);
@@ -192,7 +199,9 @@ private:
     const LaneScene& scene_;
     const TracedScene& traced_;
     Batch<N, false>& batch_;
-    const bool several_;  // parts
+    const bool several_;        // parts
+    const bool samplesLights_;  // with numbers, from PathState::from
+    std::vector<float> picks_, probabilities_;
     std::size_t nextPath_ = 0;
     medium::TrackingCounters counters_;
     std::array<Lane, laneCount> lanes_;

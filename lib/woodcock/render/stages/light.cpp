@@ -45,7 +45,8 @@ void bringSunlight(const TracedScene& traced, Batch<N, Surfaces>& batch, PathSta
           group);
 }
 
-/// Adds a sample of the chosen light.
+}  // namespace
+
 template <int N, bool Surfaces>
 void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
                 const LightChoice::Chosen& chosen, const EventNumbers& u,
@@ -73,8 +74,6 @@ void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_
         noteOrigin(batch, lights.group(chosen.light, s.emitter), 1);
     }
 }
-
-}  // namespace
 
 template <int N>
 void addSunlight(const TracedScene& traced, Batch<N, false>& batch, std::size_t i,
@@ -143,6 +142,8 @@ bool addShadowRay(const TracedScene& traced, Batch<N, Surfaces>& batch, std::siz
 }
 
 #define INSTANTIATE(N, SURFACES)                                                                   \
+    template void addSampled(const TracedScene&, Batch<N, SURFACES>&, std::size_t,                 \
+                             const LightChoice::Chosen&, const EventNumbers&, const FlightShare&); \
     template void addNextEvent(const TracedScene&, Batch<N, SURFACES>&, std::size_t,               \
                                const EventNumbers&, const FlightShare&);                           \
     template void addLightHits(const TracedScene&, Batch<N, SURFACES>&, std::size_t,               \
