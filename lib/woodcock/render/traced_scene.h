@@ -59,6 +59,10 @@ struct TracedScene {
         else
             return media[media.number(mediumSet, 0)];
     }
+    /// The medium outside of all surfaces, in a set of media.
+    const medium::Medium& mediumOfSet(std::uint8_t mediumSet) const {
+        return *media[media.number(mediumSet, 0)].medium;
+    }
     /// The grid of a light's optical depth in a set of media; null: there is none.
     const medium::DepthGrid* sunDepth(std::uint8_t mediumSet, int light) const {
         return options.sunDepths ? options.sunDepths->find(mediumSet, light) : nullptr;

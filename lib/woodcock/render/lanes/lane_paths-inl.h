@@ -20,13 +20,13 @@ namespace woodcock::render::HWY_NAMESPACE {
 
 /// Gives a lane the next path.
 template <int N>
-void LaneTracer<N>::load(std::size_t lane) {
+void LaneTracer<N>::nextPath(std::size_t lane) {
     while (nextPath_ < batch_.paths.size()) {
         Lane& l = lanes_[lane];
         l.path = static_cast<std::uint32_t>(nextPath_++);
         l.extra = false, l.first = true, l.scatterings = 0;
         PathState<N, false>& p = pathOf(lane);
-        p.medium = 0;
+        l.set = p.mediumSet, p.medium = traced_.media.number(p.mediumSet, 0);
         for (int i = 0; i < 3; ++i) v_[i][lane] = static_cast<float>(p.direction[i]);
         const std::uint64_t key = p.random.bits();
         key_[0][lane] = static_cast<std::uint32_t>(key);
@@ -121,11 +121,13 @@ void LaneTracer<N>::endBranch(std::size_t lane) {
     if (l.branches.empty()) {
         p.alive = false, p.scatterings = l.scatterings;  // as a measure of work
         bringControls(lane);
-        load(lane);
+        nextPath(lane);
         return;
     }
     Branch& b = l.branches.back();
-    put(lane, b.part, b.vertex);
+    l.set = p.mediumSet = b.set, l.part = b.part;
+    put(lane, b.vertex);
+    l.phase = b.phase, g_[lane] = phaseOf(lane).g;
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
     setLane(w_, lane, b.throughput), setLane(predicted_, lane, b.predicted);
     share_[lane] = 1;
@@ -148,7 +150,7 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
     if (scene_.environmentLight >= 0)
         bring(batch_, p, (toRgb(laneOf(chance_, lane)) + window) * scene_.environment * -1.0f, kind,
               lights.group(scene_.environmentLight));
-    if (scene_.sunDepth)
+    if (scene_.sun >= 0)
         bring(batch_, p,
               (toRgb(laneOf(prediction_, lane)) - window * static_cast<float>(1 / (4 * pi))) *
                   scene_.centre.weight,

@@ -25,7 +25,7 @@ void LaneTracer<N>::arrive(std::uint32_t arrived) {
     forEachLane(arrived, [&](std::size_t i) { lit |= std::uint32_t{mayGoOn(i)} << i; });
     Floats depth;
     depth.set(hn::Zero(lanesF));
-    if (scene_.sunDepth) depth.set(addSunlight(lit));
+    if (scene_.sun >= 0) depth.set(addSunlight(lit));
     if (!scene_.others.empty())
         forEachLane(lit, [&](std::size_t i) {
             if (!lanes_[i].extra) addOtherLight(i);
@@ -62,9 +62,24 @@ bool LaneTracer<N>::mayGoOn(std::size_t lane) {
     } else if (samplesLights_) {
         u.light = {p.random.uniform(), p.random.uniform()}, u.pick = p.random.uniform();
     }
+    if (traced_.media.replaces()) enterMedium(lane);
     if (samplesLights_)
-        p.from = {positionOf(lane), directionOf(lane), &partOf(lane).part->phase(), p.time};
+        p.from = {positionOf(lane), directionOf(lane), &phaseOf(lane).part->phase(), p.time};
     return true;
+}
+
+/// Has a path that has scattered go on through the media that similarity chooses there. Its turn is
+/// still that of the medium that has scattered it.
+template <int N>
+void LaneTracer<N>::enterMedium(std::size_t lane) {
+    Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    const std::uint8_t set = traced_.media.setAfter(p.scatterings + 1);
+    if (set == l.set) return;
+    l.set = set, p.mediumSet = set;
+    load(lane, numberOf(lane, l.part));
+    mu_[lane] = upper_[lane] * extinction_[lane];
+    perMu_[lane] = mu_[lane] > 0 ? 1 / mu_[lane] : huge;
 }
 
 /// Samples one of the lights that are not the sun of the grid.
@@ -112,7 +127,7 @@ void LaneTracer<N>::goOn(std::size_t lane, float sunDepth) {
         }
         setLane(w_, lane, p.throughput);
     }
-    if (scene_.thick && scene_.sunDepth) {
+    if (scene_.thick && scene_.sun >= 0) {
         const float scale = partOf(lane).windowScale;
         if (!keepWindow(lane, scale * std::pow(1 + sunDepth / 4, 0.7f))) {
             endBranch(lane);
@@ -162,7 +177,8 @@ bool LaneTracer<N>::keepWindow(std::size_t lane, float target) {
     Branch& b = l.branches.emplace_back();
     take(lane, b.vertex);
     for (std::size_t i = 0; i < 3; ++i) b.direction[i] = v_[i][lane];
-    b.part = l.part, b.scatterings = p.scatterings, b.copies = copies - 1;
+    b.set = l.set, b.part = l.part, b.phase = l.phase, b.scatterings = p.scatterings,
+    b.copies = copies - 1;
     b.throughput = throughputOf(lane), b.predicted = laneOf(predicted_, lane);
     return true;
 }
@@ -186,8 +202,12 @@ void LaneTracer<N>::depart(Mask departing) {
     });
     turn(departing, bits, u0.get(), u1.get());
     Floats more;
-    more.set(scene_.sunDepth ? takePrediction(departing) : hn::Zero(lanesF));
+    more.set(scene_.sun >= 0 ? takePrediction(departing) : hn::Zero(lanesF));
     play(departing, uniform(words[3]));
+    if (traced_.media.replaces())
+        forEachLane(bits, [&](std::size_t i) {
+            lanes_[i].phase = numberOf(i, lanes_[i].part), g_[i] = phaseOf(i).g;
+        });
     if (!several_) takeDirection(departing);
     const std::uint32_t alive = bitsOf(mostThroughput() > hn::Zero(lanesF));
     forEachLane(bits, [&](std::size_t i) {
@@ -210,10 +230,10 @@ void LaneTracer<N>::turn(Mask departing, std::uint32_t bits, F u0, F u1) {
     turned[0].set(v.x), turned[1].set(v.y), turned[2].set(v.z), densities.set(density);
     numbers[0].set(u0), numbers[1].set(u1);
     forEachLane(bits, [&](std::size_t i) {
-        if (partOf(i).henyeyGreenstein) return;
+        if (phaseOf(i).henyeyGreenstein) return;
         PathState<N, false>& p = pathOf(i);
         p.throughput = throughputOf(i), p.direction = directionOf(i);
-        const medium::PhaseSample s = render::turn(p, partOf(i).part->phase(),
+        const medium::PhaseSample s = render::turn(p, phaseOf(i).part->phase(),
                                                    {double{numbers[0][i]}, double{numbers[1][i]}});
         setLane(w_, i, p.throughput);
         for (int k = 0; k < 3; ++k) turned[k][i] = static_cast<float>(s.direction[k]);
@@ -278,7 +298,7 @@ void LaneTracer<N>::flySeveralTimes(std::size_t lane, int more, float depth) {
         std::min(more, static_cast<int>(std::exp(-depth) * static_cast<float>(l.flights)));
     share_[lane] = 1.0f / static_cast<float>(l.flights);
     take(lane, l.start);
-    l.startPart = l.part;
+    l.startSet = l.set, l.startPart = l.part;
     for (std::size_t i = 0; i < 3; ++i) l.direction[i] = v_[i][lane];
     l.throughput = throughputOf(lane), l.chance = laneOf(chance_, lane);
     flyAgain(lane);
@@ -300,7 +320,9 @@ void LaneTracer<N>::flyAgain(std::size_t lane) {
 template <int N>
 void LaneTracer<N>::endExtra(std::size_t lane) {
     Lane& l = lanes_[lane];
-    put(lane, l.startPart, l.start);
+    l.set = l.startSet, l.part = l.startPart;
+    pathOf(lane).mediumSet = l.set;
+    put(lane, l.start);
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = l.direction[i];
     setLane(w_, lane, l.throughput), setLane(chance_, lane, l.chance);
     --l.extraLeft;

@@ -95,13 +95,17 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
     const Needs& needs = traced.needs;
     if (!traced.options.lanes || needs.surfaces || needs.emission || needs.localLights ||
         needs.motion || !needs.scattering || traced.options.approximations.marchStep > 0 ||
-        traced.media.replaces() || !traced.scene.lights.meetable().empty())
+        traced.media.phasesOfSetOnward() || !traced.scene.lights.meetable().empty())
         return {};
     const auto& parts = traced.scene.medium.parts;
     if (parts.empty() || parts.size() > mostParts || !std::ranges::all_of(parts, canBeWalked))
         return {};
     LaneScene scene(traced);
-    for (const medium::MediumPart& part : parts) scene.parts.emplace_back(part);
+    scene.partCount = parts.size();
+    const std::uint8_t sets = traced.media.replaces() ? 2 : 1;
+    for (std::uint8_t set = 0; set < sets; ++set)
+        for (const medium::MediumPart& part : traced.mediumOfSet(set).parts)
+            scene.parts.emplace_back(part);
     const MediumSummary& medium = traced.media[0];
     scene.thick = medium.meanExtinction * length(medium.bounds.size()) > thickFrom;
     scene.addLights();
@@ -111,14 +115,18 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
 void LaneScene::addLights() {
     const light::LightSet& lights = traced.scene.lights;
     for (const int light : lights.sampled()) {
-        if (sun < 0 && traced.sunDepth(0, light))
+        if (sun < 0 && traced.sunDepth(0, light) &&
+            (!traced.media.replaces() || traced.sunDepth(1, light)))
             sun = light;
         else if (!isEven(lights, light))
             others.push_back(light);
     }
     if (sun >= 0) {
-        sunDepth = traced.sunDepth(0, sun);
-        for (LanePart& part : parts) part.setLattice(*sunDepth);
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const std::size_t set = i / partCount;
+            sunDepths[set] = traced.sunDepth(static_cast<std::uint8_t>(set), sun);
+            parts[i].setLattice(*sunDepths[set]);
+        }
         delta = !lights.traits(sun).distant;
         centre = lights.sample(sun, {}, 0, 0);
         centre.direction = *lights.traits(sun).parallel;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,7 @@ struct LanePart {
     bool henyeyGreenstein;           ///< else its phase function is sampled path by path
     float g;                         ///< of Henyey-Greenstein
     float latticeFromIndex[3][4]{};  ///< from voxels, of which `low` is the first, to those of
-                                     ///< LaneScene::sunDepth; by rows
+                                     ///< LaneScene::sunDepths; by rows
     Rgb albedo;                      ///< sigma_s / sigma_t
     /// What deep inside of the part an even environment loses: 1 - sqrt((1 - albedo) / (1 - g
     /// albedo)), the similarity parameter of van de Hulst 1980.
@@ -32,9 +33,12 @@ struct LanePart {
 /// TracedScene, which must outlive it.
 struct LaneScene {
     const TracedScene& traced;
+    /// Of the scene's own medium, and then as many of the one that similarity uses in its place.
     std::vector<LanePart> parts;
-    /// The grid of the optical depth to a sun, which every scattering samples; null: there is none.
-    const medium::DepthGrid* sunDepth = nullptr;
+    std::size_t partCount = 0;  ///< of one medium
+    /// The grids, of each medium, of the optical depth to a sun, which every scattering samples;
+    /// null: there is none.
+    std::array<const medium::DepthGrid*, 2> sunDepths{};
     int sun = -1;
     bool delta = false;         ///< the sun has no disc
     light::LightSample centre;  ///< of the sun: its direction and irradiance

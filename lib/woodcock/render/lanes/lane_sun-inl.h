@@ -7,6 +7,8 @@
 #define WOODCOCK_LANE_SUN
 #endif
 
+#include <algorithm>
+
 #include "woodcock/medium/corrected_transmittance.h"
 #include "woodcock/medium/optical_depth.h"
 #include "woodcock/render/lanes/lane_tracer-inl.h"
@@ -34,7 +36,6 @@ struct LaneTracer<N>::SunDepths {
 
 template <int N>
 typename LaneTracer<N>::SunDepths LaneTracer<N>::readSunDepths(std::uint32_t bits) {
-    const medium::DepthGrid& grid = *scene_.sunDepth;
     F at[3], within[3];
     for (int i = 0; i < 3; ++i)
         at[i] = hn::ConvertTo(lanesF, corner_[i].get() - low_[i].get()) + u_[i].get();
@@ -42,20 +43,25 @@ typename LaneTracer<N>::SunDepths LaneTracer<N>::readSunDepths(std::uint32_t bit
     for (int i = 0; i < 3; ++i) {
         const F x = at[0] * lattice_[i][0].get() + at[1] * lattice_[i][1].get() +
                     at[2] * lattice_[i][2].get() + lattice_[i][3].get();
-        const int cells = grid.cells()[i];
-        const F inside = hn::Max(hn::Zero(lanesF), hn::Min(all(static_cast<float>(cells)), x));
-        const I whole = hn::Min(hn::ConvertTo(lanesI, inside), hn::Set(lanesI, cells - 1));
+        const I cells = latticeCells_[i].get();
+        const F inside = hn::Max(hn::Zero(lanesF), hn::Min(hn::ConvertTo(lanesF, cells), x));
+        const I whole = hn::Min(hn::ConvertTo(lanesI, inside), cells - hn::Set(lanesI, 1));
         cell[i].set(whole);
         within[i] = inside - hn::ConvertTo(lanesF, whole);
     }
     const auto lerp = [](F t, F a, F b) { return a + t * (b - a); };
     SunDepths depths;
-    const auto [alongU, alongV, alongW] = grid.strides();
-    const int channels = grid.channels() == 1 ? 1 : N;
+    const auto isColoured = [](const medium::DepthGrid* grid) {
+        return grid && grid->channels() > 1;
+    };
+    const int channels = std::ranges::any_of(scene_.sunDepths, isColoured) ? N : 1;
     for (int c = 0; c < channels; ++c) {
         Floats far[4], near[4];  // of the sun
         forEachLane(bits, [&](std::size_t i) {
-            const float* n = grid.nodes(cell[0][i], cell[1][i], cell[2][i]) + c;
+            const medium::DepthGrid& grid = *scene_.sunDepths[lanes_[i].set];
+            const auto [alongU, alongV, alongW] = grid.strides();
+            const float* n =
+                grid.nodes(cell[0][i], cell[1][i], cell[2][i]) + (isColoured(&grid) ? c : 0);
             const std::size_t corners[4] = {0, alongU, alongV, alongU + alongV};
             for (std::size_t k = 0; k < 4; ++k)
                 far[k][i] = n[corners[k]], near[k][i] = n[corners[k] + alongW];
@@ -70,13 +76,13 @@ typename LaneTracer<N>::SunDepths LaneTracer<N>::readSunDepths(std::uint32_t bit
         depths.most[c] =
             hn::Max(hn::Max(far[0].get(), far[1].get()), hn::Max(far[2].get(), far[3].get()));
     }
-    if (grid.channels() == 1)
-        for (int c = N - 1; c >= 0; --c) {
-            const F colour = all(grid.colour()[c]);
-            depths.depth[c] = depths.depth[0] * colour;
-            depths.least[c] = depths.least[0] * colour;
-            depths.most[c] = depths.most[0] * colour;
-        }
+    for (int c = N - 1; c >= 0; --c) {
+        const F colour = sunColour_[c].get();
+        const int from = channels == 1 ? 0 : c;
+        depths.depth[c] = depths.depth[from] * colour;
+        depths.least[c] = depths.least[from] * colour;
+        depths.most[c] = depths.most[from] * colour;
+    }
     return depths;
 }
 
@@ -102,7 +108,7 @@ Rgb LaneTracer<N>::sampleSun(std::size_t lane) {
     const std::array<double, 2>& u = numbers_[lane].light;
     const light::LightSample s =
         scene_.delta ? scene_.centre : traced_.scene.lights.sample(scene_.sun, {}, u[0], u[1]);
-    const medium::PhaseFunction& phase = partOf(lane).part->phase();
+    const medium::PhaseFunction& phase = phaseOf(lane).part->phase();
     const double cosine = dot(directionOf(lane), s.direction);
     Rgb light = s.weight;
     double density = phase.value(cosine);
@@ -129,7 +135,7 @@ F LaneTracer<N>::addSunlight(std::uint32_t lit) {
     const Mask deep = least > all(deepest);
     const std::uint32_t shallow = lit & ~bitsOf(deep);
     const auto inVectors = [&](std::size_t i) {
-        return scene_.delta && partOf(i).henyeyGreenstein;
+        return scene_.delta && phaseOf(i).henyeyGreenstein;
     };
     // The largest channel of what arrives where nothing is in its way.
     Floats light;
@@ -174,7 +180,7 @@ void LaneTracer<N>::bringSunlight(std::size_t lane, Rgb light, Spectrum<N> passe
         const Vec3d towards = scene_.delta ? scene_.centre.direction : sunDirection_[lane];
         medium::TrackingCounters counters;
         const Spectrum<N> exact = medium::exactTransmittance<N>(
-            traced_.scene.medium, positionOf(lane), towards, counters);
+            traced_.mediumOfSet(lanes_[lane].set), positionOf(lane), towards, counters);
         batch_.counters.shadowSegments += counters.segments;
         passes = passes + (exact - passes) * corrected;
     }
@@ -194,7 +200,7 @@ template <int N>
 void LaneTracer<N>::predictNextEvent(std::uint32_t lit, const SunDepths& depths) {
     std::uint32_t bits = 0;
     forEachLane(lit, [&](std::size_t i) {
-        const bool predicts = !lanes_[i].extra && partOf(i).henyeyGreenstein &&
+        const bool predicts = !lanes_[i].extra && phaseOf(i).henyeyGreenstein &&
                               traced_.mayScatter(pathOf(i).scatterings + 1);
         bits |= std::uint32_t{predicts} << i;
     });

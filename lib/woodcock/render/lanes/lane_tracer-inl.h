@@ -59,11 +59,11 @@ public:
         : scene_(scene),
           traced_(scene.traced),
           batch_(batch),
-          several_(scene.parts.size() > 1),
-          samplesLights_(!scene.others.empty() || (scene.sunDepth && !scene.delta)) {}
+          several_(scene.partCount > 1),
+          samplesLights_(!scene.others.empty() || (scene.sun >= 0 && !scene.delta)) {}
 
     void run() {
-        for (std::size_t lane = 0; lane < laneCount; ++lane) load(lane);
+        for (std::size_t lane = 0; lane < laneCount; ++lane) nextPath(lane);
         while (true) {
             const Mask walking = whoIs(Walking), arrived = whoIs(Arrived),
                        departing = whoIs(Departing);
@@ -91,7 +91,8 @@ private:
     /// Copies of a path that wait at a scattering until the one before them has ended.
     struct Branch {
         Process vertex;
-        std::size_t part;
+        std::uint8_t set;
+        std::size_t part, phase;
         std::array<float, 3> direction;
         Spectrum<N> throughput, predicted;
         std::int64_t scatterings;
@@ -101,7 +102,10 @@ private:
     /// What a lane's path has that is not in vectors.
     struct Lane {
         std::uint32_t path;
-        std::size_t part = 0;            ///< that walks now
+        std::uint8_t set = 0;            ///< of media: see PathState::mediumSet
+        std::size_t part = 0;            ///< that walks now, of the set
+        std::size_t loaded = none;       ///< LaneScene's number of the part in the vectors
+        std::size_t phase = 0;           ///< and of the one whose phase function turns the path
         std::size_t nearest = none;      ///< the part with the nearest collision so far
         std::vector<Process> processes;  ///< of each part, where there are several
         Vec3d position;                  ///< of the last scattering; there
@@ -115,6 +119,7 @@ private:
         int flights = 1, extraLeft = 0, ownStratum = 0;
         float ownDepth = 0;
         Process start;
+        std::uint8_t startSet = 0;
         std::size_t startPart = 0;
         std::array<float, 3> direction;
         Spectrum<N> throughput, chance;
@@ -123,7 +128,13 @@ private:
 
     Mask whoIs(State s) const { return hn::RebindMask(lanesF, state_.get() == hn::Set(lanesI, s)); }
     PathState<N, false>& pathOf(std::size_t lane) { return batch_.paths[lanes_[lane].path]; }
-    const LanePart& partOf(std::size_t lane) const { return scene_.parts[lanes_[lane].part]; }
+    std::size_t numberOf(std::size_t lane, std::size_t part) const {
+        return lanes_[lane].set * scene_.partCount + part;
+    }
+    const LanePart& partOf(std::size_t lane) const {
+        return scene_.parts[numberOf(lane, lanes_[lane].part)];
+    }
+    const LanePart& phaseOf(std::size_t lane) const { return scene_.parts[lanes_[lane].phase]; }
     Vec3d directionOf(std::size_t lane) {
         return {double{v_[0][lane]}, double{v_[1][lane]}, double{v_[2][lane]}};
     }
@@ -144,7 +155,7 @@ private:
     void draw(Mask where, U words[4]);
 
     // ---- lane_paths-inl.h
-    void load(std::size_t lane);
+    void nextPath(std::size_t lane);
     std::vector<medium::FlightCollision>* collisionsOf(std::size_t lane);
     void leave(std::size_t lane);
     double hitWeight(std::size_t lane, int light);
@@ -155,9 +166,9 @@ private:
 
     // ---- lane_walk-inl.h
     bool begin(std::size_t lane, Vec3d origin, float depth);
-    void enter(std::size_t part, Vec3d origin, Vec3d direction, float depth, Process& process);
-    void put(std::size_t lane, std::size_t part, const Process& process);
-    void putPart(std::size_t lane, std::size_t part);
+    void enter(const LanePart& part, Vec3d origin, Vec3d direction, float depth, Process& process);
+    void put(std::size_t lane, const Process& process);
+    void load(std::size_t lane, std::size_t number);
     void take(std::size_t lane, Process& process);
     bool findNearest(std::size_t lane);
     void goOnWithNextPart(std::size_t lane);
@@ -183,6 +194,7 @@ private:
     // ---- lane_scattering-inl.h
     void arrive(std::uint32_t arrived);
     bool mayGoOn(std::size_t lane);
+    void enterMedium(std::size_t lane);
     void addOtherLight(std::size_t lane);
     void findProbabilities(const light::ScatterPoint& from);
     void goOn(std::size_t lane, float sunDepth);
@@ -216,9 +228,10 @@ private:
     Floats v_[3]{}, density_{};       // the direction in the world; how it was drawn
     Floats w_[N]{};                   // throughput
     // Of the part that walks:
-    Ints low_[3]{}, high_[3]{};
+    Ints low_[3]{}, high_[3]{}, latticeCells_[3]{};
     Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
-    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, albedo_[N]{}, equilibrium_[N]{};
+    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, sunColour_[N]{}, albedo_[N]{},
+        equilibrium_[N]{};
     // Control variates, as throughput: what chance, windows and predictions have brought too much.
     Floats chance_[N]{}, window_[N]{}, prediction_[N]{}, predicted_[N]{};
     Floats scattered_{};  // 1 behind the first scattering

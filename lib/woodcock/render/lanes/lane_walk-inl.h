@@ -22,10 +22,10 @@ template <int N>
 bool LaneTracer<N>::begin(std::size_t lane, Vec3d origin, float depth) {
     const Vec3d direction = directionOf(lane);
     Lane& l = lanes_[lane];
-    l.processes.resize(scene_.parts.size());
-    for (std::size_t k = 0; k < scene_.parts.size(); ++k) {
+    l.processes.resize(scene_.partCount);
+    for (std::size_t k = 0; k < scene_.partCount; ++k) {
         if (k > 0) depth = static_cast<float>(-std::log(pathOf(lane).random.uniformOpenLow()));
-        enter(k, origin, direction, depth, l.processes[k]);
+        enter(scene_.parts[numberOf(lane, k)], origin, direction, depth, l.processes[k]);
     }
     l.part = none;
     return findNearest(lane);
@@ -33,9 +33,8 @@ bool LaneTracer<N>::begin(std::size_t lane, Vec3d origin, float depth) {
 
 /// Puts a part's process to where a ray enters its support.
 template <int N>
-void LaneTracer<N>::enter(std::size_t k, Vec3d origin, Vec3d direction, float depth,
+void LaneTracer<N>::enter(const LanePart& lanePart, Vec3d origin, Vec3d direction, float depth,
                           Process& process) {
-    const LanePart& lanePart = scene_.parts[k];
     const medium::MediumPart& part = *lanePart.part;
     const grid::IndexRay ray = part.indexRay(origin, direction);
     double t0 = 0, t1 = std::numeric_limits<double>::infinity();
@@ -64,19 +63,21 @@ void LaneTracer<N>::enter(std::size_t k, Vec3d origin, Vec3d direction, float de
 }
 
 template <int N>
-void LaneTracer<N>::put(std::size_t lane, std::size_t part, const Process& p) {
+void LaneTracer<N>::put(std::size_t lane, const Process& p) {
     for (std::size_t i = 0; i < 3; ++i) {
         u_[i][lane] = p.u[i], d_[i][lane] = p.d[i], inverse_[i][lane] = p.inverse[i];
         corner_[i][lane] = p.corner[i];
     }
     size_[lane] = p.size, mu_[lane] = p.mu, perMu_[lane] = p.perMu, depth_[lane] = p.depth;
     t_[lane] = p.t, lower_[lane] = p.lower, upper_[lane] = p.upper;
-    if (extinction_[lane] == 0 || several_) putPart(lane, part);
+    const std::size_t number = numberOf(lane, lanes_[lane].part);
+    if (lanes_[lane].loaded != number) load(lane, number);
+    lanes_[lane].phase = number, g_[lane] = scene_.parts[number].g;
 }
 
 template <int N>
-void LaneTracer<N>::putPart(std::size_t lane, std::size_t number) {
-    lanes_[lane].part = number;
+void LaneTracer<N>::load(std::size_t lane, std::size_t number) {
+    lanes_[lane].loaded = number;
     const LanePart& part = scene_.parts[number];
     const medium::MediumPart& medium = *part.part;
     setLane(absorption_, lane, channels<N>(medium.absorption()));
@@ -84,11 +85,16 @@ void LaneTracer<N>::putPart(std::size_t lane, std::size_t number) {
     setLane(channelWeight_, lane, channels<N>(medium.channelWeight()));
     setLane(albedo_, lane, channels<N>(part.albedo));
     setLane(equilibrium_, lane, channels<N>(part.equilibrium));
-    extinction_[lane] = medium.largestExtinction(), g_[lane] = part.g;
+    extinction_[lane] = medium.largestExtinction();
     const bool nearest = medium.field()->lookup() == grid::Lookup::Nearest;
     jitterUnit_[lane] = nearest ? 0 : 0x1p-21f, firstJitter_[lane] = nearest ? 0.5f : 0x1p-22f;
+    const medium::DepthGrid* grid = scene_.sunDepths[lanes_[lane].set];
+    if (grid)
+        setLane(sunColour_, lane,
+                grid->channels() == 1 ? channels<N>(grid->colour()) : Spectrum<N>(1.0f));
     for (int i = 0; i < 3; ++i) {
         low_[i][lane] = part.low[i], high_[i][lane] = part.high[i];
+        if (grid) latticeCells_[i][lane] = grid->cells()[i];
         for (int k = 0; k < 4; ++k) lattice_[i][k][lane] = part.latticeFromIndex[i][k];
     }
 }
@@ -118,7 +124,7 @@ bool LaneTracer<N>::findNearest(std::size_t lane) {
             continue;
         }
         l.part = k;
-        put(lane, k, process);
+        put(lane, process);
         state_[lane] = Walking;
         return true;
     }
@@ -126,7 +132,8 @@ bool LaneTracer<N>::findNearest(std::size_t lane) {
         l.part = 0;
         return false;
     }
-    put(lane, l.nearest, l.processes[l.nearest]);
+    l.part = l.nearest;
+    put(lane, l.processes[l.part]);
     state_[lane] = Colliding;
     return true;
 }
