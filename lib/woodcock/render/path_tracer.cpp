@@ -29,6 +29,9 @@
 // queries of the two walks, and shadow rays. The walks sort their queries into runs of one medium;
 // they know nothing of lights, materials or film. Every path has random numbers of its own. So the
 // order within a batch, and what else is in it, changes no result.
+//
+// Where a scene is made of media, suns and environments alone, `lanes/` takes the place of the three
+// stages in the middle: it traces all paths of the batch to their ends at once.
 
 namespace woodcock::render {
 
