@@ -2,6 +2,7 @@
 #include "woodcock/render/path_tracer.h"
 
 #include "woodcock/render/batch.h"
+#include "woodcock/render/empty_pixels.h"
 #include "woodcock/render/lanes/trace_lanes.h"
 #include "woodcock/render/stages/camera_stops.h"
 #include "woodcock/render/stages/light.h"
@@ -30,8 +31,8 @@
 // they know nothing of lights, materials or film. Every path has random numbers of its own. So the
 // order within a batch, and what else is in it, changes no result.
 //
-// Where a scene is made of media, suns and environments alone, `lanes/` takes the place of the three
-// stages in the middle: it traces all paths of the batch to their ends at once.
+// Where a scene is made of media, suns and environments alone, `lanes/` takes the place of the
+// three stages in the middle: it traces all paths of the batch to their ends at once.
 
 namespace woodcock::render {
 
@@ -61,6 +62,7 @@ class BatchTracer final : public PathTracer {
 public:
     BatchTracer(const Scene& scene, const Needs& needs, const Options& options)
         : traced_(scene, needs, options),
+          empty_(traced_),
           lanes_(Surfaces ? std::nullopt : LaneScene::make(traced_)),
           batch_(scene.lights) {}
 
@@ -73,8 +75,15 @@ public:
         while (true) {
             if (stop()) return false;
             const std::size_t size = lanes_ ? batch_.laneSize : batch_.size;
-            for (; batch_.paths.size() < size && next < jobs.size(); ++next)
-                spawn(traced_, batch_, jobs[next], results[next]);
+            for (; batch_.paths.size() < size && next < jobs.size(); ++next) {
+                if (empty_.holds(jobs[next].x, jobs[next].y)) {
+                    results[next] = {};
+                    results[next].film = empty_.sample();
+                    ++batch_.counters.paths;
+                } else {
+                    spawn(traced_, batch_, jobs[next], results[next]);
+                }
+            }
             if (batch_.paths.empty()) break;
             if (lanes_) {
                 if constexpr (!Surfaces) traceLanes(*lanes_, batch_);
@@ -120,6 +129,7 @@ private:
     }
 
     const TracedScene traced_;
+    const EmptyPixels empty_;
     const std::optional<LaneScene> lanes_;  // where paths are traced in lanes
     Batch<N, Surfaces> batch_;
 };

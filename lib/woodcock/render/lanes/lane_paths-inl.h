@@ -127,6 +127,7 @@ void LaneTracer<N>::endBranch(std::size_t lane) {
     Branch& b = l.branches.back();
     l.set = p.mediumSet = b.set, l.part = b.part;
     put(lane, b.vertex);
+    scatterIn(lane);
     l.phase = b.phase, g_[lane] = phaseOf(lane).g;
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
     setLane(w_, lane, b.throughput), setLane(predicted_, lane, b.predicted);

@@ -77,7 +77,7 @@ void LaneTracer<N>::enterMedium(std::size_t lane) {
     const std::uint8_t set = traced_.media.setAfter(p.scatterings + 1);
     if (set == l.set) return;
     l.set = set, p.mediumSet = set;
-    load(lane, numberOf(lane, l.part));
+    load(lane, numberOf(lane, l.part)), loadMatter(lane, numberOf(lane, l.part));
     mu_[lane] = upper_[lane] * extinction_[lane];
     perMu_[lane] = mu_[lane] > 0 ? 1 / mu_[lane] : huge;
 }
@@ -323,6 +323,7 @@ void LaneTracer<N>::endExtra(std::size_t lane) {
     l.set = l.startSet, l.part = l.startPart;
     pathOf(lane).mediumSet = l.set;
     put(lane, l.start);
+    scatterIn(lane);
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = l.direction[i];
     setLane(w_, lane, l.throughput), setLane(chance_, lane, l.chance);
     --l.extraLeft;

@@ -104,7 +104,7 @@ private:
         std::uint32_t path;
         std::uint8_t set = 0;            ///< of media: see PathState::mediumSet
         std::size_t part = 0;            ///< that walks now, of the set
-        std::size_t loaded = none;       ///< LaneScene's number of the part in the vectors
+        std::size_t matter = none;       ///< number in LaneScene of the part in the vectors
         std::size_t phase = 0;           ///< and of the one whose phase function turns the path
         std::size_t nearest = none;      ///< the part with the nearest collision so far
         std::vector<Process> processes;  ///< of each part, where there are several
@@ -168,7 +168,9 @@ private:
     bool begin(std::size_t lane, Vec3d origin, float depth);
     void enter(const LanePart& part, Vec3d origin, Vec3d direction, float depth, Process& process);
     void put(std::size_t lane, const Process& process);
+    void scatterIn(std::size_t lane);
     void load(std::size_t lane, std::size_t number);
+    void loadMatter(std::size_t lane, std::size_t number);
     void take(std::size_t lane, Process& process);
     bool findNearest(std::size_t lane);
     void goOnWithNextPart(std::size_t lane);

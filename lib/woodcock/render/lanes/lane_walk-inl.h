@@ -70,14 +70,30 @@ void LaneTracer<N>::put(std::size_t lane, const Process& p) {
     }
     size_[lane] = p.size, mu_[lane] = p.mu, perMu_[lane] = p.perMu, depth_[lane] = p.depth;
     t_[lane] = p.t, lower_[lane] = p.lower, upper_[lane] = p.upper;
+    load(lane, numberOf(lane, lanes_[lane].part));
+}
+
+/// The part that walks is the one that collides, and may scatter.
+template <int N>
+void LaneTracer<N>::scatterIn(std::size_t lane) {
     const std::size_t number = numberOf(lane, lanes_[lane].part);
-    if (lanes_[lane].loaded != number) load(lane, number);
+    loadMatter(lane, number);
     lanes_[lane].phase = number, g_[lane] = scene_.parts[number].g;
 }
 
+/// Loads what the walk needs of a part: its number in LaneScene.
 template <int N>
 void LaneTracer<N>::load(std::size_t lane, std::size_t number) {
-    lanes_[lane].loaded = number;
+    const LanePart& part = scene_.parts[number];
+    for (int i = 0; i < 3; ++i) low_[i][lane] = part.low[i], high_[i][lane] = part.high[i];
+    extinction_[lane] = part.part->largestExtinction();
+}
+
+/// Loads what collisions and scatterings need of a part.
+template <int N>
+void LaneTracer<N>::loadMatter(std::size_t lane, std::size_t number) {
+    if (lanes_[lane].matter == number) return;
+    lanes_[lane].matter = number;
     const LanePart& part = scene_.parts[number];
     const medium::MediumPart& medium = *part.part;
     setLane(absorption_, lane, channels<N>(medium.absorption()));
@@ -85,16 +101,14 @@ void LaneTracer<N>::load(std::size_t lane, std::size_t number) {
     setLane(channelWeight_, lane, channels<N>(medium.channelWeight()));
     setLane(albedo_, lane, channels<N>(part.albedo));
     setLane(equilibrium_, lane, channels<N>(part.equilibrium));
-    extinction_[lane] = medium.largestExtinction();
     const bool nearest = medium.field()->lookup() == grid::Lookup::Nearest;
     jitterUnit_[lane] = nearest ? 0 : 0x1p-21f, firstJitter_[lane] = nearest ? 0.5f : 0x1p-22f;
     const medium::DepthGrid* grid = scene_.sunDepths[lanes_[lane].set];
-    if (grid)
-        setLane(sunColour_, lane,
-                grid->channels() == 1 ? channels<N>(grid->colour()) : Spectrum<N>(1.0f));
+    if (!grid) return;
+    setLane(sunColour_, lane,
+            grid->channels() == 1 ? channels<N>(grid->colour()) : Spectrum<N>(1.0f));
     for (int i = 0; i < 3; ++i) {
-        low_[i][lane] = part.low[i], high_[i][lane] = part.high[i];
-        if (grid) latticeCells_[i][lane] = grid->cells()[i];
+        latticeCells_[i][lane] = grid->cells()[i];
         for (int k = 0; k < 4; ++k) lattice_[i][k][lane] = part.latticeFromIndex[i][k];
     }
 }
@@ -125,6 +139,7 @@ bool LaneTracer<N>::findNearest(std::size_t lane) {
         }
         l.part = k;
         put(lane, process);
+        if (!several_) scatterIn(lane);
         state_[lane] = Walking;
         return true;
     }
@@ -134,6 +149,7 @@ bool LaneTracer<N>::findNearest(std::size_t lane) {
     }
     l.part = l.nearest;
     put(lane, l.processes[l.part]);
+    scatterIn(lane);
     state_[lane] = Colliding;
     return true;
 }
