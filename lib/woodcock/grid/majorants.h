@@ -56,6 +56,16 @@ public:
         return {{widen(p.min), widen(p.max)}, log2Size};
     }
 
+    /// Calls f(first voxel, log2 of the size in voxels, bounds) for aligned cubes that hold all of
+    /// space but where the field is the background: blocks, and larger ones of a sparse table.
+    template <class F>
+    void forEachEntry(F&& f) const {
+        table_.forEach([&](Vec3i block, int log2Size, const Entry& e) {
+            f(block * (1 << blockLog2), log2Size, e.range);
+        });
+    }
+    std::size_t entries() const { return table_.bytes() / sizeof(Entry); }  ///< roughly
+
     /// The number of blocks in cells whose two bounds differ.
     double varyingBlocks() const;
 

@@ -3,26 +3,26 @@
 
 #include <vector>
 
-#include "woodcock/render/traced_scene.h"
+#include "woodcock/render/path_tracer.h"
 
 namespace woodcock::render {
 
 /// The pixels of a picture in which the camera surely sees nothing but an even background. All
-/// their samples are alike, so no path is traced there. It changes no bit.
+/// their samples are alike, so no path is traced there. It changes no bit. Shared by all threads.
 class EmptyPixels {
 public:
-    explicit EmptyPixels(const TracedScene& traced);
+    /// There are none where somebody asks for more of a path than the picture.
+    EmptyPixels(const Scene& scene, const Needs& needs, const PathTracer::Options& options);
 
-    bool holds(int x, int y) const;
+    bool holds(int x, int y) const {
+        return !seen_.empty() && !seen_[static_cast<std::size_t>(y * width_ + x)];
+    }
     /// What every sample of such a pixel finds.
     const image::FilmSample& sample() const { return sample_; }
 
 private:
-    struct Window {
-        double x0, y0, x1, y1;  ///< in pixels
-    };
-    bool known_ = false;           // which pixels are empty
-    std::vector<Window> windows_;  // in which the camera may see a part of the medium
+    int width_;
+    std::vector<bool> seen_;  // whether a pixel may see the medium; empty: any may
     image::FilmSample sample_;
 };
 

@@ -62,7 +62,6 @@ class BatchTracer final : public PathTracer {
 public:
     BatchTracer(const Scene& scene, const Needs& needs, const Options& options)
         : traced_(scene, needs, options),
-          empty_(traced_),
           lanes_(Surfaces ? std::nullopt : LaneScene::make(traced_)),
           batch_(scene.lights) {}
 
@@ -74,11 +73,12 @@ public:
         std::size_t next = 0;
         while (true) {
             if (stop()) return false;
+            const EmptyPixels* const empty = traced_.options.emptyPixels;
             const std::size_t size = lanes_ ? batch_.laneSize : batch_.size;
             for (; batch_.paths.size() < size && next < jobs.size(); ++next) {
-                if (empty_.holds(jobs[next].x, jobs[next].y)) {
+                if (empty && empty->holds(jobs[next].x, jobs[next].y)) {
                     results[next] = {};
-                    results[next].film = empty_.sample();
+                    results[next].film = empty->sample();
                     ++batch_.counters.paths;
                 } else {
                     spawn(traced_, batch_, jobs[next], results[next]);
@@ -129,7 +129,6 @@ private:
     }
 
     const TracedScene traced_;
-    const EmptyPixels empty_;
     const std::optional<LaneScene> lanes_;  // where paths are traced in lanes
     Batch<N, Surfaces> batch_;
 };

@@ -17,6 +17,8 @@
 
 namespace woodcock::render {
 
+class EmptyPixels;
+
 /// One camera path to trace.
 struct PathJob {
     int x = 0, y = 0;  ///< pixel, y down
@@ -53,8 +55,9 @@ public:
         image::LayerNeeds layers = {};
         bool stoppedLight = false;  ///< of tracked rays only; it changes nothing else
         const ApproximateMedia* approximateMedia =
-            nullptr;                           ///< made from `approximations`; null: no sets
-        const SunDepths* sunDepths = nullptr;  ///< null: shadow rays to suns are tracked
+            nullptr;                               ///< made from `approximations`; null: no sets
+        const SunDepths* sunDepths = nullptr;      ///< null: shadow rays to suns are tracked
+        const EmptyPixels* emptyPixels = nullptr;  ///< null: paths are traced in all
         bool lanes = true;  ///< false: paths are traced one by one, also where lanes/ could
     };
 

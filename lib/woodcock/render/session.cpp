@@ -17,6 +17,7 @@
 
 #include "woodcock/base/error.h"
 #include "woodcock/render/deep_bins.h"
+#include "woodcock/render/empty_pixels.h"
 #include "woodcock/render/path_tracer.h"
 #include "woodcock/render/repeated_call.h"
 #include "woodcock/render/sample_plan.h"
@@ -127,6 +128,7 @@ public:
           tiles_(scatteredTiles(crop, tileSize)),
           work_(tiles_.size(), settings.endSample - settings.firstSample),
           checkpoints_(std::move(checkpoints)) {
+        emptyPixels_.emplace(scene, needs_, tracerOptions());
         state_.endSample = settings.firstSample;
         state_.drawn.assign(state_.film.pixelCount(),
                             static_cast<std::uint32_t>(settings.firstSample));
@@ -395,7 +397,8 @@ private:
                 .layers = settings_.layers,
                 .stoppedLight = state_.mattes || state_.deep,
                 .approximateMedia = &approximateMedia_,
-                .sunDepths = &sunDepths_};
+                .sunDepths = &sunDepths_,
+                .emptyPixels = emptyPixels_ ? &*emptyPixels_ : nullptr};
     }
 
     static constexpr int fewestSamplesForNoise =
@@ -408,6 +411,7 @@ private:
     const Needs needs_;
     const ApproximateMedia approximateMedia_;
     const SunDepths sunDepths_;
+    std::optional<EmptyPixels> emptyPixels_;  // made from the other options
     /// One for each thread that renders, made when it first does.
     tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;
     /// Whoever adds finished tiles shares it, as tiles have their own pixels; whoever copies it or
