@@ -25,7 +25,7 @@ TEST(Peers, CostsFollowFromTwoPictures) {
 }
 
 TEST(Peers, ScriptsExplainThemselves) {
-    for (const char* name : {"peers.sh"}) {
+    for (const char* name : {"peers.sh", "production_sizes.sh"}) {
         const ProgramResult help = runProgram({"--help"}, {}, benchDir() / name);
         EXPECT_EQ(help.exitCode, 0) << help.err;
         EXPECT_NE(help.out.find("--woodcock"), std::string::npos) << help.out;
@@ -47,7 +47,7 @@ TEST(Peers, ScenesParse) {
         EXPECT_NO_THROW(scene::parseScene(entry.path())) << entry.path();
         ++count;
     }
-    EXPECT_EQ(count, 7);
+    EXPECT_EQ(count, 8);
 }
 
 }  // namespace
