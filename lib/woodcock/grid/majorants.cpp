@@ -44,29 +44,47 @@ std::uint16_t roundUp(float v) {
     return static_cast<std::uint16_t>(bits >> 16);
 }
 
-/// Ranges of the 64 cells of 2^3 voxels inside block `b`, halo included.
-std::array<Range, 64> finestRanges(const Field& field, Vec3i b) {
-    std::vector<Field::BlockVoxels> blocks;  // b and its neighbours on the + sides
+/// The values of block `b` and of the layer on its + sides, x fastest.
+std::array<Range, 729> voxelRanges(const Field& field, Vec3i b) {
+    std::vector<Field::BlockVoxels> blocks;
     for (int i = 0; i < 8; ++i) blocks.emplace_back(field, b + Vec3i{i & 1, i >> 1 & 1, i >> 2});
     std::array<Range, 729> voxels;
-    for (int i = 0; i < 729; ++i) {
-        const Vec3i v{i % 9, i / 9 % 9, i / 81};
-        const auto& block = blocks[static_cast<std::size_t>(v.x / 8 + v.y / 8 * 2 + v.z / 8 * 4)];
-        const float first = block(v);
-        Range r{first, first};
-        for (int c = 1; c < field.channels(); ++c) r.add({block(v, c), block(v, c)});
-        voxels[static_cast<std::size_t>(i)] = r;
-    }
-    std::array<Range, 64> cells;
-    for (int i = 0; i < 64; ++i) {
-        const int x = (i & 3) * 2, y = (i >> 2 & 3) * 2, z = (i >> 4) * 2;
-        Range r = voxels[static_cast<std::size_t>(x + 9 * y + 81 * z)];
-        for (int j = 0; j < 27; ++j)
-            r.add(voxels[static_cast<std::size_t>(x + j % 3 + 9 * (y + j / 3 % 3) +
-                                                  81 * (z + j / 9))]);
-        cells[static_cast<std::size_t>(i)] = r;
-    }
+    std::size_t i = 0;
+    for (int z = 0; z < 9; ++z)
+        for (int y = 0; y < 9; ++y)
+            for (int x = 0; x < 9; ++x, ++i) {
+                const auto& block =
+                    blocks[static_cast<std::size_t>(x >> 3 | y >> 3 << 1 | z >> 3 << 2)];
+                const float first = block({x, y, z});
+                voxels[i] = {first, first};
+                for (int c = 1; c < field.channels(); ++c) {
+                    const float v = block({x, y, z}, c);
+                    voxels[i].add({v, v});
+                }
+            }
+    return voxels;
+}
+
+/// Nine layers along one axis become the four cells that reach over three of them each. The faster
+/// axes have `inner` entries in all, the slower ones `outer`.
+template <std::size_t outer, std::size_t inner>
+std::array<Range, outer * 4 * inner> cellsOfLayers(const std::array<Range, outer * 9 * inner>& in) {
+    std::array<Range, outer * 4 * inner> cells;
+    for (std::size_t o = 0; o < outer; ++o)
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t i = 0; i < inner; ++i) {
+                const Range* const layer = &in[(o * 9 + 2 * k) * inner + i];
+                Range r = layer[0];
+                r.add(layer[inner]);
+                r.add(layer[2 * inner]);
+                cells[(o * 4 + k) * inner + i] = r;
+            }
     return cells;
+}
+
+/// Ranges of the 64 cells of 2^3 voxels inside block `b`, halo included.
+std::array<Range, 64> finestRanges(const Field& field, Vec3i b) {
+    return cellsOfLayers<16, 1>(cellsOfLayers<4, 9>(cellsOfLayers<1, 81>(voxelRanges(field, b))));
 }
 
 /// The eight cells of 4^3 voxels from the 64 of 2^3.
