@@ -121,6 +121,24 @@ double MovingTransform::largestSpeed(const Box3d& box) const {
     return speed;
 }
 
+std::optional<double> MovingTransform::largestTurn() const {
+    constexpr double rounding = 1e-12;
+    const PolarMap& start = pieces_[0].from;
+    const auto stretched = [&](const PolarMap& map) {
+        std::array<Vec3d, 3> change;
+        for (std::size_t c = 0; c < 3; ++c) change[c] = map.stretch[c] - start.stretch[c];
+        return largestLength(change) > rounding * largestLength(start.stretch);
+    };
+    double turn = 0;
+    for (const Piece& piece : pieces_) {
+        if (stretched(piece.from) || (!piece.shifts && stretched(piece.to))) return {};
+        const double there = angleBetween(start.rotation, piece.from.rotation);
+        const double on = piece.shifts ? 0 : angleBetween(piece.from.rotation, piece.to.rotation);
+        turn = std::max(turn, there + on);
+    }
+    return turn;
+}
+
 Box3d MovingTransform::box_(const Box3d& box, double u0, double u1) const {
     constexpr int cuts = 64;  // of a whole turn's worth; boxes grow by a 128th of the way between
     const Box3d relative{box.lower - centre_, box.upper - centre_};
