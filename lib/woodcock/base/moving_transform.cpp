@@ -72,13 +72,20 @@ std::shared_ptr<const MovingTransform> MovingTransform::follow(
         self(self, pieceOf(piece.u0, u, piece.start, middle), middle, halvings - 1);
         self(self, pieceOf(u, piece.u1, middle, end), end, halvings - 1);
     };
+    // By more than rounding: the key of another value may only have cut a straight way.
+    const auto differ = [&](const Affine3d& a, const Affine3d& b) {
+        constexpr double rounding = 1e-12;
+        const double size = length(a.translation) + length(b.translation) + way;
+        return length(a.translation - b.translation) > rounding * size ||
+               largestDifference(a, b) > rounding;
+    };
     bool moves = false;
     for (std::size_t i = 0; i < ends.size(); ++i) {
         const auto& [first, last] = ends[i];
         if (first.determinant() * ends[0].first.determinant() < 0)
             throw inputError("a transform mirrors at one time of the shutter, and not at another");
         cut(cut, pieceOf(breaks[i], breaks[i + 1], first, last), last, mostHalvings);
-        if (i > 0 && !(ends[i - 1].second == first)) moving.jumps_ = true;
+        if (i > 0 && differ(ends[i - 1].second, first)) moving.jumps_ = true;
     }
     for (const Piece& p : moving.pieces_)
         moves |= !p.shifts || !(p.from.translation == p.to.translation);
