@@ -93,4 +93,15 @@ TEST(MovingTransform, IsNothingAtRestAndJumps) {
     EXPECT_TRUE(jump->box(box).contains(moved.point({1, 1, 1})));
 }
 
+TEST(MovingTransform, DoesNotJumpWhereARoundedWayIsCut) {
+    const auto at = [](double u) {
+        return Affine3d::translate({1000 + 0.3 * u, 7 * u, 0}) * Affine3d::rotate(0, 50 * u);
+    };
+    const std::vector<double> breaks{0, 0.3, 0.7, 1};
+    const auto cut = MovingTransform::follow(
+        at, [&](double u) { return at(std::nextafter(u, 0.0)); }, breaks);
+    ASSERT_NE(cut, nullptr);
+    EXPECT_FALSE(cut->jumps());
+}
+
 }  // namespace woodcock::test

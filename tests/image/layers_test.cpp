@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <set>
 
 #include "tests/support/expect_error.h"
@@ -59,6 +60,49 @@ TEST(Layers, ChannelsAreOfTheLayerAndDiffer) {
             EXPECT_NE(flawOfGroupName(layer.name), "") << layer.name;
         }
     }
+}
+
+/// What Nuke's reader makes of a channel's name, by the comment in The Foundry's
+/// ExrChannelNameToNuke.cpp (NDK 11.3 to 17.1): it is cut at two periods, digits at the start of
+/// each part are deleted, what is neither letter nor digit becomes _, all but the last part are the
+/// layer. In files of many parts, the part's name comes first.
+std::pair<std::string, std::string> inNuke(const std::string& name) {
+    Names parts;
+    std::string rest = name;
+    for (std::size_t dot; parts.size() < 2 && (dot = rest.find('.')) != rest.npos;)
+        parts.push_back(rest.substr(0, dot)), rest = rest.substr(dot + 1);
+    parts.push_back(rest);
+    std::string layer, channel;
+    for (std::string part : parts) {
+        part.erase(0, std::min(part.find_first_not_of("0123456789"), part.size()));
+        for (char& c : part)
+            if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+        if (part.empty()) continue;
+        if (!channel.empty()) layer += (layer.empty() ? "" : "_") + channel;
+        channel = part;
+    }
+    const Names letters{"R", "G", "B", "A"}, words{"red", "green", "blue", "alpha"};
+    for (std::size_t i = 0; i < letters.size(); ++i)
+        if (channel == letters[i]) channel = words[i];
+    return {layer, channel};
+}
+
+/// Each keeps its name there, in one part and in many, and no two become one.
+TEST(Layers, KeepTheirNamesInNuke) {
+    EXPECT_EQ(inNuke("2nd.1.key-light.R"),
+              (std::pair<std::string, std::string>{"nd", "key_light_R"}));
+    std::set<std::pair<std::string, std::string>> one{{"", "red"}}, many{{"rgba", "red"}};
+    for (const auto& [layer, half] : layersFromNames({"all"}, {"key", "2nd_fill"}))
+        for (const std::string& channel : layer.channels) {
+            const auto name = inNuke(channel);
+            EXPECT_TRUE(one.insert(name).second) << channel;
+            if (channel.find('.') != channel.npos) {
+                EXPECT_EQ(name.first, layer.name) << channel;
+            }
+            const auto part = inNuke(layer.name + "." + layer.nameInPart(channel));
+            EXPECT_TRUE(many.insert(part).second) << channel;
+            EXPECT_EQ(part.first, layer.name) << channel;
+        }
 }
 
 TEST(Layers, PrecisionIsOfEachLayerOrOfAllThatBearIt) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numeric>
 
 #include "tests/light/emissive_triangles.h"
@@ -341,4 +342,54 @@ TEST(LightSet, HoldsEmissiveSurfaces) {
 }
 
 }  // namespace
+/// A cube that turns, drifts and grows within the shutter, and one beside it that jumps.
+TEST(MeshLight, WhatMovesIsFoundWhereItIs) {
+    Triangles all = cube({0, 0, 0}, false);
+    const Triangles second = cube({5, 0, 0}, false);
+    all.insert(all.end(), second.begin(), second.end());
+    const auto still = static_cast<std::uint32_t>(all.size());
+    addRectangle(all, {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
+    const std::array ends{0.0, 1.0};
+    const std::array half{0.0, 0.5, 1.0};
+    const auto turning = [](double u) {
+        return Affine3d::translate({3 * u, 0, -2 * u}) * Affine3d::rotate(1, 150 * u) *
+               Affine3d{{Vec3d{1 + u, 0, 0}, {0, 1, 0}, {0, 0, 1 - 0.5 * u}}, {}};
+    };
+    const auto after = [](double u) { return Affine3d::translate({0, u < 0.5 ? 0.0 : 4.0, 0}); };
+    const auto before = [](double u) { return Affine3d::translate({0, u > 0.5 ? 4.0 : 0.0, 0}); };
+    const auto turn = MovingTransform::follow(turning, turning, ends),
+               jump = MovingTransform::follow(after, before, half);
+    const MeshLight light(all, {}, {{0, 12, turn}, {12, 24, jump}});
+    ASSERT_TRUE(light.moves());
+    RandomStream random(3);
+    int found = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const auto time = static_cast<float>(random.uniform());
+        Triangles there = all;
+        for (std::uint32_t t = 0; t < still; ++t)
+            for (Vec3d& corner : there[t].corner)
+                corner = (t < 12 ? turn : jump)->at(double{time}).point(corner);
+        const Vec3d from = direction(random) * (9 * random.uniform());
+        // All that faces a point can be drawn there, ...
+        const auto any =
+            static_cast<std::uint32_t>(random.uniform() * static_cast<double>(all.size()));
+        const Triangle& t = there[any];
+        const Vec3d middle = (t.corner[0] + t.corner[1] + t.corner[2]) / 3;
+        const Vec3d normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+        const bool faces = dot(normal, from - middle) > 1e-9;
+        EXPECT_EQ(light.pdf(from, any, middle, time) > 0, faces);
+        // ... and what is drawn lies on its triangle, with the density that pdf() tells.
+        const LightSample s = light.sample(from, random.uniform(), random.uniform(), time);
+        if (s.emitter == LightSample::none) continue;
+        ++found;
+        const Vec3d point = from + s.direction * s.distance;
+        const Triangle& drawn = there[s.emitter];
+        const Vec3d n =
+            normalize(cross(drawn.corner[1] - drawn.corner[0], drawn.corner[2] - drawn.corner[0]));
+        EXPECT_NEAR(dot(n, point - drawn.corner[0]), 0, 1e-9);
+        EXPECT_NEAR(light.pdf(from, s.emitter, point, time) / s.pdf, 1, 1e-9);
+    }
+    EXPECT_GT(found, 1000);
+}
+
 }  // namespace woodcock::test

@@ -121,6 +121,11 @@ TEST(DepthGrid, KeepsToItsMemory) {
     EXPECT_GT(coarse->spacing(), fine->spacing());
     EXPECT_LE(coarse->bytesMade(), most);
     EXPECT_EQ(untouched->bytesMade(), 0u);
+    // What all columns would take is known before; the points are in most of them.
+    EXPECT_EQ(untouched->bytesOfAll(), fine->bytesOfAll());
+    EXPECT_LE(fine->bytesMade(), fine->bytesOfAll());
+    EXPECT_GT(2 * fine->bytesMade(), fine->bytesOfAll());
+    EXPECT_LE(coarse->bytesOfAll(), most);
 }
 
 /// Nor for those that memory cannot show: a slab of voxels a million times as wide as high.

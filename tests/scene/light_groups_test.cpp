@@ -81,6 +81,14 @@ TEST(LightGroups, BadNamesAreRefusedWhereTheyStand) {
         "out");
 }
 
+/// Nuke makes _ of -, so these two would be one layer there.
+TEST(LightGroups, NamesThatNukeTakesForOneAreRefused) {
+    EXPECT_EQ(mistakeIn(box + sun + "group = \"a-b\"\n" + sun + "group = \"a_b\"\n"),
+              "scene.toml:11:9: light[1].group is 'a_b', and there is a group 'a-b': Nuke takes - "
+              "for _, and makes one layer of both; rename one of them");
+    EXPECT_EQ(mistakeIn(box + sun + "group = \"a-b\"\n" + sun + "group = \"a-b\"\n"), "");
+}
+
 TEST(LightGroups, TooManyAreRefused) {
     std::string lights = box;
     for (std::size_t i = 0; i <= image::mostLightGroups; ++i)

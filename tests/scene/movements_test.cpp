@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/expect_error.h"
 #include "woodcock/base/random.h"
 #include "woodcock/scene/animation.h"
 #include "woodcock/scene/build.h"
@@ -25,32 +24,7 @@ SceneDescription parse(const std::string& text) { return parseSceneText(text, "s
 
 }  // namespace
 
-TEST(Movements, WhatCannotMoveInTheShutterIsRefused) {
-    const auto build = [](const std::string& text) {
-        const SceneDescription scene = parse(text);
-        return buildScene(scene, loadScene(scene));
-    };
-    const std::string camera = "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n",
-                      open = camera + "shutter = 0.5\n";
-    const std::string lamp =
-        ball +
-        "[[light]]\ntype = \"sphere\"\nposition = [0, 3, 0]\nradius = { keys = [[0, 1], [4, 2]] "
-        "}\n";
-    build(lamp + camera);
-    expectError(ErrorKind::Input,
-                "shot.toml:6:10: light[0] changes its size or form while the shutter is open, and "
-                "lights may only move. Let that stay, or set the shutter to 0",
-                [&] { build(lamp + open); });
-    const std::string glowing =
-        ball +
-        "material = \"m\"\ntransform = { translate = { keys = [[0, [0, 0, 0]], [1, [1, 0, 0]]] } "
-        "}\n[[material]]\nname = \"m\"\ntype = \"emissive\"\n";
-    build(glowing + camera);
-    expectError(ErrorKind::Input, "surface[0] emits light, and moves while the shutter is open",
-                [&] { build(glowing + open); });
-}
-
-TEST(Movements, LightsMoveInTheShutter) {
+TEST(Movements, LightsMoveAndChangeInTheShutter) {
     const auto build = [](const std::string& light, double frame, const std::string& shutter) {
         const SceneDescription scene = atFrame(
             parse(ball + "[[light]]\n" + light +
@@ -68,7 +42,20 @@ TEST(Movements, LightsMoveInTheShutter) {
         "direction = { keys = [[0, [0, -1, 0]], [4, [1, -1, 0]]] }\n",
         "type = \"rectangle\"\nsize = [1, 2]\nlook_at = [0, -5, 0]\n" + moves,
         "type = \"disk\"\ntransform = { rotate = { keys = [[0, [180, 0, 0]], [4, [230, 20, 0]]] }, "
-        "translate = [0, 3, 0], scale = [1, 1, 2] }\n"};
+        "translate = [0, 3, 0], scale = [1, 1, 2] }\n",
+        "type = \"point\"\nposition = [0, 3, 0]\nintensity = { keys = [[0, 1], [4, 3]] }\n",
+        "type = \"sphere\"\npower = 9\nradius = { keys = [[0, 0.1], [4, 0.7]] }\n" + moves,
+        "type = \"spot\"\nlook_at = [0, 0, 0]\ncone = { keys = [[0, 30], [4, 120]] }\nblend = { "
+        "keys "
+        "= [[0, 0.2], [4, 1]] }\n" +
+            moves,
+        "type = \"rectangle\"\nsize = { keys = [[0, [1, 2]], [4, [3, 1]]] }\npower = 2\n"
+        "spread = { keys = [[0, 180], [4, 60]] }\nlook_at = [0, -5, 0]\n" +
+            moves,
+        "type = \"disk\"\ntransform = { rotate = { keys = [[0, [180, 0, 0]], [4, [230, 20, 0]]] }, "
+        "translate = [0, 3, 0], scale = { keys = [[0, [1, 1, 2]], [4, [2, 1, 1]]] } }\n",
+        "type = \"sphere\"\nposition = [0, 3, 0]\nradius = { keys = [[0, 0.5], [1.6, 1]], "
+        "interpolation = \"constant\" }\n"};
     for (const std::string& light : lights) {
         SCOPED_TRACE(light);
         const render::Scene moving = build(light, 2, "2");  // from 1 to 3
@@ -95,6 +82,58 @@ TEST(Movements, LightsMoveInTheShutter) {
                     most = std::max(most, std::abs(hit.distance - same.distance));
             }
             EXPECT_LT(most, 2e-3);
+        }
+    }
+}
+
+TEST(Movements, LightsThatStayThemselvesOnlyMove) {
+    const SceneDescription scene = parse(
+        ball +
+        "[[light]]\ntype = \"rectangle\"\ntransform = { rotate = { keys = [[-1, [0, 0, 0]], [1, "
+        "[7, "
+        "80, 9]]] }, scale = [0.7, 1, 3] }\n[[light]]\ntype = \"sun\"\nelevation = 40\nirradiance "
+        "= { keys = [[-1, "
+        "0], [1, 2]] }\n[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nshutter = 1\n");
+    const Movements moves = findMovements(scene, loadScene(scene));
+    EXPECT_TRUE(moves.lights[0].place);
+    EXPECT_FALSE(moves.lights[0].form);
+    EXPECT_FALSE(moves.lights[1].place || moves.lights[1].form);
+}
+
+TEST(Movements, SurfacesThatEmitMoveInTheShutter) {
+    const auto build = [](double frame, const std::string& shutter) {
+        const SceneDescription scene = atFrame(
+            parse(
+                ball +
+                "[[material]]\nname = \"m\"\ntype = \"emissive\"\nradiance = [1, 2, 3]\n"
+                "[[surface]]\nmaterial = \"m\"\nplane = { size = [1, 2] }\ntransform = { rotate = "
+                "{ keys = [[0, [180, 0, 0]], [4, [230, 20, 0]]] }, scale = { keys = [[0, [1, 1, "
+                "1]], [4, [2, 1, 3]]] }, translate = [0, 3, 0] }\n"
+                "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nshutter = " +
+                shutter + "\n"),
+            frame);
+        return buildScene(scene, loadScene(scene));
+    };
+    RandomStream random(1);
+    const render::Scene moving = build(2, "2");  // from 1 to 3
+    ASSERT_TRUE(moving.lights.moves());
+    const int mesh = moving.lights.meshIndex();
+    for (const double u : {0.0, 0.3, 0.5, 0.9, 1.0}) {
+        const render::Scene still = build(1 + 2 * u, "0");
+        ASSERT_FALSE(still.lights.moves());
+        const auto time = static_cast<float>(u);
+        for (int i = 0; i < 50; ++i) {
+            const Vec3d from{random.uniform() - 0.5, random.uniform(), random.uniform() - 0.5};
+            const double a = random.uniform(), b = random.uniform();
+            const light::LightSample s = moving.lights.sample(mesh, from, a, b, time);
+            const light::LightSample t = still.lights.sample(mesh, from, a, b);
+            ASSERT_EQ(s.emitter, t.emitter);  // both leaves of the tree know their solid angles
+            if (s.emitter == light::LightSample::none) continue;
+            const Vec3d there = from + s.direction * s.distance;
+            EXPECT_LT(length(there - (from + t.direction * t.distance)), 2e-3);
+            EXPECT_NEAR(s.pdf / t.pdf, 1, 2e-3);
+            EXPECT_NEAR(double{s.weight[1] / t.weight[1]}, 1, 2e-3);
+            EXPECT_NEAR(moving.lights.mesh()->pdf(from, s.emitter, there, time) / s.pdf, 1, 1e-9);
         }
     }
 }

@@ -7,6 +7,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/tools/fog_scene.h"
+#include "tools/cycles/lights.h"
 #include "woodcock/base/temp_dir.h"
 #include "woodcock/image/read_image.h"
 #include "woodcock/proof/support/write_vdb.h"
@@ -127,14 +128,66 @@ TEST(CyclesScene, MotionBecomesThatOfCycles) {
     EXPECT_EQ(moving["camera"]["fps"], 12);
     EXPECT_EQ(scene("velocity_unit = \"frame\"\n", "1")["volumes"][0]["velocity"]["scale"], 12);
     EXPECT_TRUE(scene("", "0")["volumes"][0]["velocity"].is_null());
-    expectError(ErrorKind::Input, "a shutter that is not open for as long before the frame",
-                [&] { scene("", "[0, 0.5]"); });
+    EXPECT_EQ(moving["camera"]["shutter_position"], "CENTER");
+    EXPECT_EQ(scene("", "[0, 0.5]")["camera"]["shutter_position"], "START");
+    EXPECT_EQ(scene("velocity_scale = 0\n", "[-0.5, 0]")["camera"]["shutter_position"], "END");
+    expectError(ErrorKind::Input, "velocities while a shutter closes at the frame",
+                [&] { scene("", "[-0.5, 0]"); });
+    expectError(ErrorKind::Input, "a shutter that is neither open for as long before the frame",
+                [&] { scene("", "[-0.1, 0.5]"); });
     velocity.gridClass = "staggered";
     writeVdb(dir / "a.vdb", {smallGrid("density", 1), velocity});
     expectError(ErrorKind::Input, "staggered velocities", [&] { scene("", "0.5"); });
     EXPECT_EQ(
         scene("velocity_sampling = \"collocated\"\n", "0.5")["volumes"][0]["velocity"]["grid"],
         "vel");
+}
+
+/// Where things are at the ends of even pieces of the shutter.
+TEST(CyclesScene, KeysBecomePlacesWithinTheShutter) {
+    const auto with = [](const std::string& more, const std::string& camera) {
+        return written(
+            "[[volume]]\nbox = { min = [0, 0, 0], max = [1, 1, 1] }\nsigma_s = 1\n"
+            "transform = { translate = { keys = [[0, [0, 0, 0]], [1, [8, 0, 0]]] } }\n"
+            "[[surface]]\nbox = { min = [3, 3, 3], max = [4, 4, 4] }\n" +
+            more + "[camera]\nlook_at = [0, 0, 0]\nshutter = [0, 0.5]\n" + camera);
+    };
+    const nlohmann::json scene = with(
+        "[[light]]\ntype = \"sphere\"\nradius = 1\nposition = { keys = [[0, [9, 0, 0]], [1, "
+        "[9, 4, 0]]] }\n",
+        "fov = { keys = [[0, 30], [1, 50]] }\neye = { keys = [[0, [0, 0, 9]], [1, [0, 0, "
+        "7]]] }\n");
+    const nlohmann::json& camera = scene["camera"];
+    ASSERT_EQ(camera["times"].size(), 17u);
+    EXPECT_EQ(camera["times"][0], 0);
+    EXPECT_EQ(camera["times"][16], 0.5);
+    const auto at = [](const nlohmann::json& places, std::size_t i, std::size_t row) {
+        return places.at(i)[row][3].get<double>();
+    };
+    EXPECT_NEAR(at(scene["volumes"][0]["motion"], 4, 0), 1, 1e-9);  // an eighth of a frame
+    EXPECT_NEAR(at(scene["lights"][0]["motion"], 16, 1), 2, 1e-9);
+    EXPECT_NEAR(at(camera["motion"], 8, 2), 8.5, 1e-9);
+    EXPECT_NEAR(camera["angles"][8].get<double>(), 35 * pi / 180, 1e-9);
+    EXPECT_TRUE(scene["surfaces"][0]["motion"][0].is_null());
+    const std::string still = "eye = [0, 0, 9]\n";
+    EXPECT_TRUE(with("", still)["camera"]["motion"].is_null());
+    expectError(ErrorKind::Input, "a light whose size or brightness changes", [&] {
+        with(
+            "[[light]]\ntype = \"sphere\"\nradius = { keys = [[0, 1], [1, 2]] }\nposition = [9, "
+            "0, 0]\n",
+            still);
+    });
+    expectError(ErrorKind::Input, "a point light that moves", [&] {
+        with(
+            "[[light]]\ntype = \"point\"\nposition = { keys = [[0, [9, 0, 0]], [1, [9, 4, 0]]] "
+            "}\n",
+            still);
+    });
+    expectError(ErrorKind::Input, "that 'camera' jumps", [&] {
+        with("",
+             "eye = { keys = [[0, [0, 0, 9]], [0.2, [0, 1, 9]]], interpolation = "
+             "\"constant\" }\n");
+    });
 }
 
 class CyclesFire : public testing::Test {

@@ -52,6 +52,32 @@ TEST(Estimate, OfSomeFramesHasTheErrorOfTheSampleToo) {
     EXPECT_DOUBLE_EQ(e.memory.value, 5000 + 2 * 1800);
 }
 
+TEST(Estimate, CountsDenoisingInEachFrame) {
+    const RenderEstimate e = estimateAll({trial(1, 1, 10, 0.3), trial(2, 1, 20, 0.4)}, 2, 5000, 500,
+                                         {.value = 3, .error = 1.2});
+    EXPECT_DOUBLE_EQ(e.frame.value, 16 + 3);
+    EXPECT_DOUBLE_EQ(e.all.value, 2 * (16 + 3));
+    EXPECT_NEAR(e.all.error, t4 * 2 * std::hypot(0.25, 1.2), 1e-4);  // both have the one error
+    EXPECT_NEAR(e.denoising.error, t4 * 1.2, 1e-5);
+    EXPECT_NE(estimateText(e).find("denoising takes 3"), std::string::npos) << estimateText(e);
+    EXPECT_EQ(estimateJson(e).at("denoise_seconds").at("value"), 3);
+}
+
+TEST(Estimate, ScalesTimesByPixels) {
+    const auto linear = [](int side) { return 0.5 + 1e-6 * side * side; };
+    const Guess guess = timeByPixels(linear, 2e6);
+    EXPECT_NEAR(guess.value, 2.5, 1e-9);
+    EXPECT_NEAR(guess.error, 0, 1e-9);
+    // Times that go up and down by 1 %: by formula, of 3 and 3 of them.
+    int calls = 0;
+    const Guess noisy =
+        timeByPixels([&](int side) { return linear(side) * (1 + 0.01 * (calls++ % 3 - 1)); }, 2e6);
+    const double p1 = 96 * 96, p2 = 288 * 288, k = (2e6 - p2) / (p2 - p1);
+    EXPECT_NEAR(noisy.value, 2.5, 1e-9);
+    EXPECT_NEAR(noisy.error,
+                0.01 / std::sqrt(3) * std::hypot((1 + k) * linear(288), k * linear(96)), 1e-9);
+}
+
 TEST(Estimate, TriesFramesAllOver) {
     std::vector<int> frames;
     for (int n = 1; n <= 100; ++n) frames.push_back(n);

@@ -6,14 +6,15 @@ import os
 import bpy
 from mathutils import Matrix, Vector
 
+import cycles_motion
 from cycles_nodes import Nodes
 from mapping import sun_share
 
 
-def place(scene, name, data, matrix):
+def place(scene, name, data, matrix, motion=None, times=()):
     placed = bpy.data.objects.new(name, data)
-    placed.matrix_world = matrix
     scene.collection.objects.link(placed)
+    cycles_motion.place(placed, matrix, motion, times)
     return placed
 
 
@@ -63,7 +64,7 @@ def add_area(scene, name, light):
     place(scene, name, area, Matrix(light["matrix"])).visible_camera = light["visible"]
 
 
-def add_sphere(scene, name, light):
+def add_sphere(scene, name, light, times):
     """Radiates outwards and lets other light pass, which Blender's lights with a radius do not in
     every version: before 4.0 they are discs that face whoever looks."""
     import bmesh
@@ -90,7 +91,8 @@ def add_sphere(scene, name, light):
     nodes.tree.links.new(nodes.sum([emission.outputs[0], through.outputs[0]]),
                          output.inputs["Surface"])
     mesh.materials.append(material)
-    placed = place(scene, name, mesh, Matrix.Translation(light["position"]))
+    placed = place(scene, name, mesh, Matrix.Translation(light["position"]),
+                   [Matrix(m) for m in light["motion"] or ()], times)
     placed.visible_camera = light["visible"]
     placed.visible_shadow = False
 
@@ -128,11 +130,12 @@ def add_world(scene, environments, directory):
         nodes.tree.links.new(nodes.sum(backgrounds), output.inputs["Surface"])
 
 
-def add(scene, lights, directory):
-    kinds = {"sun": add_sun, "point": add_point, "spot": add_spot, "sphere": add_sphere,
-             "area": add_area}
+def add(scene, lights, directory, times):
+    kinds = {"sun": add_sun, "point": add_point, "spot": add_spot, "area": add_area}
     for i, light in enumerate(lights):
-        if light["type"] in kinds:
+        if light["type"] == "sphere":
+            add_sphere(scene, "light%d" % i, light, times)
+        elif light["type"] in kinds:
             kinds[light["type"]](scene, "light%d" % i, light)
     add_world(scene, [light for light in lights if light["type"] == "environment"],
               directory)

@@ -6,6 +6,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
+import cycles_motion
 import cycles_volumes
 from cycles_nodes import Nodes, Refused
 
@@ -136,7 +137,7 @@ def shader(nodes, description):
     return SHADERS[description["type"]](nodes, description)
 
 
-def add(scene, name, description, directory):
+def add(scene, name, description, directory, times):
     mesh = read_mesh(name, os.path.join(directory, name + ".mesh"))
     material = bpy.data.materials.new(name)
     nodes = Nodes(material)
@@ -148,8 +149,8 @@ def add(scene, name, description, directory):
         cycles_volumes.fill(nodes, output, cycles_volumes.medium(nodes, held)
                             + cycles_volumes.glow(nodes, held))
     mesh.materials.append(material)
-    for matrix in description["instances"]:
+    for matrix, motion in zip(description["instances"], description["motion"]):
         placed = bpy.data.objects.new(name, mesh)
-        placed.matrix_world = Matrix(matrix)
         placed.visible_camera = description["camera_visible"]
         scene.collection.objects.link(placed)
+        cycles_motion.place(placed, Matrix(matrix), [Matrix(m) for m in motion or ()], times)

@@ -3,6 +3,7 @@
 import bpy
 from mathutils import Matrix, Vector
 
+import cycles_motion
 from cycles_nodes import Nodes, Refused
 from mapping import voxel_offset
 
@@ -158,7 +159,7 @@ def move(volume, velocity):
     volume.velocity_scale = velocity["scale"]
 
 
-def add_grid(scene, name, description, interpolation):
+def add_grid(scene, name, description, interpolation, times):
     volume = bpy.data.volumes.new(name)
     volume.filepath = description["file"]
     if not volume.grids.load():
@@ -187,12 +188,13 @@ def add_grid(scene, name, description, interpolation):
     volume.materials.append(material)
     placed = bpy.data.objects.new(name, volume)
     voxel = Matrix(description["object_from_index"]).to_3x3()
-    offset = voxel @ Vector((voxel_offset(bpy.app.version),) * 3)
-    placed.matrix_world = Matrix(description["matrix"]) @ Matrix.Translation(offset)
+    offset = Matrix.Translation(voxel @ Vector((voxel_offset(bpy.app.version),) * 3))
     scene.collection.objects.link(placed)
+    cycles_motion.place(placed, Matrix(description["matrix"]) @ offset,
+                        [Matrix(m) @ offset for m in description["motion"] or ()], times)
 
 
-def add_box(scene, name, description):
+def add_box(scene, name, description, times):
     low, high = description["box"]
     corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1])
                for z in (low[2], high[2])]
@@ -205,12 +207,13 @@ def add_box(scene, name, description):
     fill(nodes, output, medium(nodes, description) + glow(nodes, description))
     mesh.materials.append(material)
     placed = bpy.data.objects.new(name, mesh)
-    placed.matrix_world = Matrix(description["matrix"])
     scene.collection.objects.link(placed)
+    cycles_motion.place(placed, Matrix(description["matrix"]),
+                        [Matrix(m) for m in description["motion"] or ()], times)
 
 
-def add(scene, name, description, interpolation):
+def add(scene, name, description, interpolation, times):
     if "box" in description:
-        add_box(scene, name, description)
+        add_box(scene, name, description, times)
     else:
-        add_grid(scene, name, description, interpolation)
+        add_grid(scene, name, description, interpolation, times)

@@ -16,6 +16,7 @@ import bpy
 from mathutils import Matrix
 
 import cycles_lights
+import cycles_motion
 import cycles_surfaces
 import cycles_volumes
 from cycles_nodes import Refused
@@ -89,14 +90,14 @@ def set_up_image(scene, settings, out):
 
 
 def set_up_shutter(scene, description):
-    """The shutter is open around the frame, as long before it as after it."""
     render = scene.render
+    scene.frame_set(cycles_motion.FRAME)
     render.use_motion_blur = description["shutter"] > 0
     if not render.use_motion_blur:
         return
     render.motion_blur_shutter = description["shutter"]
     position = render if hasattr(render, "motion_blur_position") else scene.cycles
-    position.motion_blur_position = "CENTER"
+    position.motion_blur_position = description["shutter_position"]
     render.fps = max(1, round(description["fps"]))
     render.fps_base = render.fps / description["fps"]
 
@@ -117,9 +118,12 @@ def add_camera(scene, description):
             raise Refused("Blender's cameras see no angle of %g degrees"
                           % (description["angle"] * 57.29577951308232))
     placed = bpy.data.objects.new("camera", camera)
-    placed.matrix_world = Matrix(description["matrix"])
     scene.collection.objects.link(placed)
     scene.camera = placed
+    cycles_motion.place(placed, Matrix(description["matrix"]),
+                        [Matrix(m) for m in description["motion"] or ()], description["times"])
+    if description["angles"]:
+        cycles_motion.zoom(camera, description["angles"], description["times"])
 
 
 def build(description, directory):
@@ -135,12 +139,14 @@ def build(description, directory):
     mode = set_up_sampling(scene, description["render"])
     set_up_image(scene, description["render"], os.path.join(directory, "image.exr"))
     add_camera(scene, description["camera"])
+    times = description["camera"]["times"]
     interpolation = cycles_volumes.chosen_interpolation(description["render"]["interpolation"])
     for i, volume in enumerate(description["volumes"]):
-        cycles_volumes.add(scene, "volume%d" % i, volume, interpolation)
-    cycles_lights.add(scene, description["lights"], directory)
+        cycles_volumes.add(scene, "volume%d" % i, volume, interpolation, times)
+    cycles_lights.add(scene, description["lights"], directory, times)
     for i, surface in enumerate(description["surfaces"]):
-        cycles_surfaces.add(scene, "surface%d" % i, surface, directory)
+        cycles_surfaces.add(scene, "surface%d" % i, surface, directory, times)
+    scene.frame_set(cycles_motion.FRAME)
     return {"mode": mode, "interpolation": interpolation}
 
 

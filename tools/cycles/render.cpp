@@ -10,6 +10,7 @@
 
 #include "tools/common/child_process.h"
 #include "tools/cycles/blender.h"
+#include "tools/cycles/lights.h"
 #include "tools/cycles/surfaces.h"
 #include "woodcock/base/error.h"
 #include "woodcock/base/temp_dir.h"
@@ -21,7 +22,7 @@
 namespace woodcock::tool {
 
 extern const std::string_view blenderRenderInCycles, blenderCyclesNodes, blenderCyclesVolumes,
-    blenderCyclesLights, blenderCyclesSurfaces, blenderMapping;
+    blenderCyclesLights, blenderCyclesSurfaces, blenderCyclesMotion, blenderMapping;
 
 namespace {
 
@@ -29,9 +30,13 @@ namespace fs = std::filesystem;
 
 void writeScripts(const TempDir& directory) {
     const std::pair<const char*, std::string_view> scripts[] = {
-        {"render_in_cycles.py", blenderRenderInCycles}, {"cycles_nodes.py", blenderCyclesNodes},
-        {"cycles_volumes.py", blenderCyclesVolumes},    {"cycles_lights.py", blenderCyclesLights},
-        {"cycles_surfaces.py", blenderCyclesSurfaces},  {"mapping.py", blenderMapping}};
+        {"render_in_cycles.py", blenderRenderInCycles},
+        {"cycles_nodes.py", blenderCyclesNodes},
+        {"cycles_volumes.py", blenderCyclesVolumes},
+        {"cycles_lights.py", blenderCyclesLights},
+        {"cycles_surfaces.py", blenderCyclesSurfaces},
+        {"cycles_motion.py", blenderCyclesMotion},
+        {"mapping.py", blenderMapping}};
     for (const auto& [name, text] : scripts) writeWholeFile(directory / name, text);
 }
 

@@ -6,15 +6,13 @@
 #include <cmath>
 
 #include "tools/cycles/json.h"
+#include "tools/cycles/lights.h"
+#include "tools/cycles/motion.h"
 #include "tools/cycles/surfaces.h"
 #include "woodcock/grid/vdb/file.h"
 #include "woodcock/grid/velocity.h"
-#include "woodcock/image/film.h"
-#include "woodcock/image/write_exr.h"
-#include "woodcock/light/graded_image.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/keys/sections.h"
-#include "woodcock/scene/sky.h"
 
 namespace woodcock::tool {
 
@@ -27,9 +25,11 @@ using nlohmann::json;
 class VolumeWriter {
 public:
     VolumeWriter(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
-                 std::size_t index)
-        : volume_(scene.volumes[index]),
+                 const scene::Movements::Movement& movement, std::size_t index)
+        : scene_(scene),
+          volume_(scene.volumes[index]),
           loaded_(loaded.volumes[index]),
+          movement_(movement),
           places_(scene.places),
           fps_(scene.render.fps),
           name_(fmt::format("volume[{}]", index)),
@@ -55,6 +55,8 @@ public:
                 emissionJson(volume_.emission->scale, loaded_.emission.grid);
         if (volume_.blackbody)
             sharing(list, first, loaded_.blackbody)["blackbody"] = blackbodyJson();
+        const json motion = cyclesMotion(movement_, volume_.worldFromObject, scene_, name_);
+        for (std::size_t i = first; i < list.size(); ++i) list[i]["motion"] = motion;
     }
 
 private:
@@ -168,155 +170,19 @@ private:
         list.push_back(std::move(box));
     }
 
+    const scene::SceneDescription& scene_;
     const scene::VolumeDescription& volume_;
     const scene::LoadedVolume& loaded_;
+    const scene::Movements::Movement& movement_;
     const scene::Places& places_;
     double fps_;
     std::string name_;
     bool scatters_;
 };
 
-// ---- lights
-
-std::string skyFile(std::size_t light) { return fmt::format("sky{}.exr", light); }
-
-/// A light as a description for Blender. `placeOf`: where the value of a member was written.
-template <class PlaceOf>
-json lightJson(const scene::SunDescription& sun, const PlaceOf& placeOf) {
-    if (sun.visible)
-        throw cyclesRefusal(placeOf(sun.visible),
-                            "a sun that the camera sees; leave out its 'visible'");
-    const CyclesColour light = cyclesColour(sun.irradiance);
-    return {{"type", "sun"},
-            {"direction", toJson(normalize(sun.direction))},
-            {"strength", light.strength},
-            {"colour", toJson(light.colour)},
-            {"angle", sun.angularDiameter * pi / 180}};
-}
-template <class PlaceOf>
-json lightJson(const scene::EnvironmentDescription& environment, const PlaceOf& placeOf) {
-    json light{{"type", "environment"},
-               {"radiance", toJson(environment.radiance)},
-               {"visible", environment.visible},
-               {"image", nullptr}};
-    if (!environment.image.empty()) {
-        light["image"] = std::filesystem::absolute(environment.image).string();
-        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
-    } else if (environment.graded()) {  // an image beside the description (writeCyclesSkies)
-        light["radiance"] = toJson(Rgb(1.0f));
-        light["image"] = skyFile(placeOf.light);
-        light["image_from_world"] = toJson(cyclesImageFromWorld(environment));
-    }
-    return light;
-}
-template <class PlaceOf>
-json lightJson(const scene::PointDescription& point, const PlaceOf&) {
-    const CyclesColour light = cyclesPoint(point.intensity);
-    Affine3d axes = point.axes();
-    axes.translation = point.position;
-    json ies = nullptr;
-    if (!point.ies.empty()) ies = std::filesystem::absolute(point.ies).string();
-    return {{"type", "point"},
-            {"matrix", toJson(cyclesLamp(axes))},
-            {"power", light.strength},
-            {"colour", toJson(light.colour)},
-            {"ies", ies}};
-}
-template <class PlaceOf>
-json lightJson(const scene::SpotDescription& spot, const PlaceOf& placeOf) {
-    if (spot.cone < cyclesNarrowestCone)
-        throw cyclesRefusal(placeOf(spot.cone), "a spot's cone of {} degrees: Blender's least is 1",
-                            spot.cone);
-    const CyclesColour light = cyclesPoint(spot.intensity);
-    return {{"type", "spot"},
-            {"position", toJson(spot.position)},
-            {"direction", toJson(normalize(spot.direction))},
-            {"power", light.strength},
-            {"colour", toJson(light.colour)},
-            {"cone", spot.cone * pi / 180},
-            {"blend", spot.blend}};
-}
-template <class PlaceOf>
-json lightJson(const scene::SphereDescription& sphere, const PlaceOf&) {
-    const CyclesColour light = cyclesColour(sphere.radiance);
-    return {{"type", "sphere"},
-            {"position", toJson(sphere.position)},
-            {"radius", sphere.radius},
-            {"strength", light.strength},
-            {"colour", toJson(light.colour)},
-            {"visible", sphere.visible}};
-}
-
-/// `shape`: Blender's name. `areaOfOne`: that of a shape as wide and as deep as 1.
-template <class PlaceOf>
-json flatJson(const scene::FlatDescription& flat, const char* shape, double sizeX, double sizeZ,
-              double areaOfOne, const PlaceOf& placeOf) {
-    if (flat.twoSided)
-        throw cyclesRefusal(placeOf(flat.twoSided),
-                            "an area light that shines to both sides; two of them do");
-    const double width = sizeX * length(flat.worldFromLight.column[0]);
-    const double depth = sizeZ * length(flat.worldFromLight.column[2]);
-    const CyclesColour light = cyclesArea(flat.radiance, areaOfOne * width * depth);
-    return {{"type", "area"},
-            {"shape", shape},
-            {"size", {width, depth}},
-            {"matrix", toJson(cyclesLamp(flat.worldFromLight))},
-            {"power", light.strength},
-            {"colour", toJson(light.colour)},
-            {"spread", flat.spread * pi / 180},
-            {"visible", flat.visible}};
-}
-template <class PlaceOf>
-json lightJson(const scene::RectangleDescription& r, const PlaceOf& placeOf) {
-    return flatJson(r, "RECTANGLE", r.size[0], r.size[1], 1, placeOf);
-}
-template <class PlaceOf>
-json lightJson(const scene::DiskDescription& disk, const PlaceOf& placeOf) {
-    return flatJson(disk, "ELLIPSE", 2 * disk.radius, 2 * disk.radius, pi / 4, placeOf);
-}
-
-/// The radiance from all around, as an image beside the description (writeCyclesSkies), and a sun.
-template <class PlaceOf>
-json lightJson(const scene::SkyDescription& sky, const PlaceOf& placeOf) {
-    scene::SkyParts parts = scene::partsOf(sky);
-    json environment = lightJson(parts.environment, placeOf);
-    environment["image"] = skyFile(placeOf.light);
-    environment["image_from_world"] = toJson(cyclesImageFromWorld(parts.environment));
-    if (!parts.sun) return json::array({environment});
-    if (parts.sun->visible)
-        spdlog::warn("light[{}]: Cycles does not show the sun's disc to the camera", placeOf.light);
-    parts.sun->visible = false;
-    return json::array({environment, lightJson(*parts.sun, placeOf)});
-}
-
-/// Where the members of a light were written.
-template <class L>
-struct PlacesOfLight {
-    const scene::Places& places;
-    std::size_t light;  ///< its index
-    const L& described;
-
-    template <class Member>
-    std::string operator()(const Member& member) const {
-        return scene::findPlace(
-            places, fmt::format("light[{}].{}", light, scene::keyName(described, member)));
-    }
-};
-
-/// What a light shows that no file of the scene holds; empty of most.
-template <class L>
-image::Image imageOf(const L&) {
-    return {};
-}
-image::Image imageOf(const scene::SkyDescription& sky) { return scene::partsOf(sky).image; }
-image::Image imageOf(const scene::EnvironmentDescription& environment) {
-    if (!environment.graded()) return {};
-    return {light::gradedImageWidth, light::gradedImageHeight, scene::gradedImageOf(environment)};
-}
-
 // ---- camera and settings
 
-json cameraJson(const scene::SceneDescription& scene) {
+json cameraJson(const scene::SceneDescription& scene, const camera::CameraMotion* motion) {
     const scene::CameraDescription& camera = scene.camera;
     const bool orthographic = camera.kind == scene::CameraDescription::Kind::Orthographic;
     json out{{"type", orthographic ? "orthographic" : "perspective"},
@@ -325,12 +191,32 @@ json cameraJson(const scene::SceneDescription& scene) {
              {"clip_start", 1e-6},
              {"clip_end", 1e9}};
     const camera::Shutter& shutter = camera.shutter;
-    if (shutter.open != -shutter.close)
-        throw cyclesRefusal(
-            scene::findPlace(scene.places, "camera." + scene::keyName(camera, camera.shutter)),
-            "a shutter that is not open for as long before the frame as after it, [{}, {}]",
-            shutter.open, shutter.close);
+    const auto place = [&](const auto& member) {
+        return scene::findPlace(scene.places, "camera." + scene::keyName(camera, member));
+    };
+    const std::string position = cyclesShutterPosition(shutter);
+    if (position.empty())
+        throw cyclesRefusal(place(camera.shutter),
+                            "a shutter that is neither open for as long before the frame as after "
+                            "it, nor opens or closes at the frame, [{}, {}]",
+                            shutter.open, shutter.close);
     out["shutter"] = shutter.length();
+    out["shutter_position"] = position;
+    out["times"] = cyclesTimes(shutter);
+    out["motion"] = out["angles"] = nullptr;
+    if (motion)  // its places are those in the world
+        out["motion"] = cyclesMotion(motion->pose, Affine3d(), scene, "camera");
+    if (motion && motion->lens) {
+        out["angles"] = json::array();
+        for (int i = 0; i <= cyclesMotionPieces; ++i) {
+            const auto lens = camera::Lens::of(motion->lens->at(double(i) / cyclesMotionPieces));
+            if (lens.shiftX != camera.shift[0] || lens.shiftY != camera.shift[1] || orthographic)
+                throw cyclesRefusal(placeOfKeys(scene, "camera"),
+                                    "a shift or an orthographic camera's height that changes while "
+                                    "the shutter is open");
+            out["angles"].push_back(lens.fovY * pi / 180);
+        }
+    }
     out["fps"] = scene.render.fps;
     if (orthographic)
         out["height"] = *camera.height;
@@ -385,44 +271,27 @@ json renderJson(const scene::SceneDescription& scene, const CyclesSettings& sett
 
 }  // namespace
 
-void writeCyclesSkies(const std::filesystem::path& directory,
-                      const scene::SceneDescription& scene) {
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const image::Image image =
-            std::visit([](const auto& light) { return imageOf(light); }, scene.lights[i].light);
-        if (image.rgb.empty()) continue;
-        image::Film film(image.width, image.height, {0, 0, image.width, image.height});
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x)
-                film.add(x, y, image::FilmSample{.radiance = image.at(x, y), .alpha = 1});
-        image::writeExr(directory / skyFile(i), film, {}, {});
-    }
-}
-
 std::string cyclesScene(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
                         const CyclesSettings& settings) {
     if (scene.render.approximations.transparentShadows)
         throw cyclesRefusal(placeInRender(scene, scene.render.approximations.transparentShadows),
                             "Woodcock's transparent shadows");
-    if (scene.camera.shutter.length() > 0 && !scene.animation.empty())
-        throw cyclesRefusal(scene::findPlace(scene.places, "camera.shutter"),
-                            "animated values while the shutter is open");
+    for (std::size_t i = 0; i < scene.volumes.size(); ++i)
+        if (loaded.volumes[i].velocity && scene.camera.shutter.length() > 0 &&
+            cyclesShutterPosition(scene.camera.shutter) == "END")
+            throw cyclesRefusal(scene::findPlace(scene.places, "camera.shutter"),
+                                "velocities while a shutter closes at the frame, as of volume[{}]",
+                                i);
+    const scene::Movements movements = scene::findMovements(scene, loaded);
     json volumes = json::array(), lights = json::array();
     for (std::size_t i = 0; i < scene.volumes.size(); ++i)
-        VolumeWriter(scene, loaded, i).addTo(volumes);
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        json light = std::visit(
-            [&]<class L>(const L& described) -> json {
-                return lightJson(described, PlacesOfLight<L>{scene.places, i, described});
-            },
-            scene.lights[i].light);
-        if (!light.is_array()) light = json::array({std::move(light)});
-        for (json& part : light) lights.push_back(std::move(part));
-    }
+        VolumeWriter(scene, loaded, movements.volumes[i], i).addTo(volumes);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        for (json& part : cyclesLight(scene, movements, i)) lights.push_back(std::move(part));
     const json out{{"volumes", std::move(volumes)},
                    {"lights", std::move(lights)},
-                   {"surfaces", cyclesSurfaces(scene, loaded)},
-                   {"camera", cameraJson(scene)},
+                   {"surfaces", cyclesSurfaces(scene, loaded, movements)},
+                   {"camera", cameraJson(scene, movements.camera.get())},
                    {"render", renderJson(scene, settings)},
                    {"save", settings.save}};
     return out.dump(1);

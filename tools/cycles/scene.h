@@ -22,7 +22,4 @@ struct CyclesSettings {
 std::string cyclesScene(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
                         const CyclesSettings& settings);
 
-/// Writes the images of the scene's skies, which that JSON names, into its directory.
-void writeCyclesSkies(const std::filesystem::path& directory, const scene::SceneDescription& scene);
-
 }  // namespace woodcock::tool

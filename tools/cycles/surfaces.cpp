@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cycles/json.h"
+#include "tools/cycles/motion.h"
 #include "woodcock/base/whole_file.h"
 #include "woodcock/mesh/surface_mesh.h"
 #include "woodcock/scene/check_surfaces.h"
@@ -114,7 +115,7 @@ void refuseReplacement(const scene::SceneDescription& scene, const scene::Loaded
 }
 
 json surfaceJson(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
-                 std::size_t index) {
+                 const std::vector<scene::Movements::Movement>& moves, std::size_t index) {
     const scene::SurfaceDescription& surface = scene.surfaces[index];
     const scene::LoadedSurface& mesh = loaded.surfaces[index];
     const auto place = [&](const auto& member) {
@@ -136,16 +137,20 @@ json surfaceJson(const scene::SceneDescription& scene, const scene::LoadedScene&
     json out{{"material", MaterialWriter(scene).write(surface.material)},
              {"camera_visible", surface.cameraVisible},
              {"medium", nullptr},
-             {"instances", json::array()}};
+             {"instances", json::array()},
+             {"motion", json::array()}};
     if (surface.interior)
         out["medium"] = mediumJson(
             surface.interior->sigmaA, surface.interior->sigmaS,
             phaseFor(*surface.interior, [&](const auto&) { return place(surface.interior); }),
             scene.render.maxScatterings != 0,
             cyclesEmissionWithin(surface.interior->emission, scene::natureOf(scene, index).ior));
-    for (const Affine3d& instance : mesh.instances)
-        out["instances"].push_back(
-            toJson(surface.worldFromObject * instance * mesh.objectFromMesh));
+    for (std::size_t k = 0; k < mesh.instances.size(); ++k) {
+        const Affine3d there = surface.worldFromObject * mesh.instances[k] * mesh.objectFromMesh;
+        out["instances"].push_back(toJson(there));
+        out["motion"].push_back(cyclesMotion(moves.empty() ? nullptr : moves[k], there, scene,
+                                             fmt::format("surface[{}]", index)));
+    }
     return out;
 }
 
@@ -168,10 +173,11 @@ void writeMesh(const std::filesystem::path& file, const mesh::SurfaceMesh& mesh)
 
 }  // namespace
 
-json cyclesSurfaces(const scene::SceneDescription& scene, const scene::LoadedScene& loaded) {
+json cyclesSurfaces(const scene::SceneDescription& scene, const scene::LoadedScene& loaded,
+                    const scene::Movements& movements) {
     json surfaces = json::array();
     for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
-        surfaces.push_back(surfaceJson(scene, loaded, i));
+        surfaces.push_back(surfaceJson(scene, loaded, movements.surfaces[i], i));
     return surfaces;
 }
 

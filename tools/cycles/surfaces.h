@@ -5,13 +5,14 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "woodcock/scene/load.h"
+#include "woodcock/scene/movements.h"
 
 namespace woodcock::tool {
 
 /// The surfaces of a complete scene for tools/blender/render_in_cycles.py, a list. Throws
 /// Error{Input} that names what Cycles cannot express.
 nlohmann::json cyclesSurfaces(const scene::SceneDescription& scene,
-                              const scene::LoadedScene& loaded);
+                              const scene::LoadedScene& loaded, const scene::Movements& movements);
 
 /// Writes the mesh of each as `directory`/surface<number>.mesh, numbers of this machine: the counts
 /// of points, triangles and of those with normals and with texture coordinates (all or none) as 32

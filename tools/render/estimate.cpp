@@ -101,8 +101,23 @@ bool measureRender(const render::Scene& scene, const render::RenderSettings& set
     return true;
 }
 
+Guess timeByPixels(const std::function<double(int side)>& measure, double pixels) {
+    constexpr int small = 96, large = 288, times = 3;
+    const auto timed = [&](int side) {
+        Moments seconds;
+        for (int i = 0; i < times; ++i) seconds.add(measure(side));
+        return seconds;
+    };
+    timed(small);  // warms up
+    const Moments first = timed(small), second = timed(large);
+    constexpr double from = double(small) * small, to = double(large) * large;
+    const double beyond = (pixels - to) / (to - from);
+    return {std::max(0.0, second.mean() + beyond * (second.mean() - first.mean())),
+            std::hypot((1 + beyond) * second.standardError(), beyond * first.standardError())};
+}
+
 RenderEstimate estimateAll(std::vector<FrameTrial> trials, std::size_t frames, double fixedBytes,
-                           std::uintmax_t largestFile) {
+                           std::uintmax_t largestFile, Guess denoising) {
     RenderEstimate estimate{.trials = std::move(trials), .frames = frames};
     const auto tried = static_cast<double>(estimate.trials.size());
     const auto all = static_cast<double>(frames);
@@ -118,9 +133,13 @@ RenderEstimate estimateAll(std::vector<FrameTrial> trials, std::size_t frames, d
     const double among = seconds.standardError() * seconds.standardError() * (1 - tried / all);
     const bool each = tried == all;
     const double degrees = each ? measuredBlocks - 1 : std::max(1.0, tried - 1);
-    const double error = quantile(degrees) * std::sqrt(within + among);
-    estimate.frame = {seconds.mean(), error};
-    estimate.all = {all * seconds.mean(), all * error};
+    // All frames have the one measurement of denoising, and its error.
+    const double error =
+        quantile(degrees) * std::sqrt(within + among + denoising.error * denoising.error);
+    const double mean = seconds.mean() + denoising.value;
+    estimate.frame = {mean, error};
+    estimate.all = {all * mean, all * error};
+    estimate.denoising = {denoising.value, quantile(degrees) * denoising.error};
     // Grids in memory grow as their files do; the next frame is read beside this one.
     const double largest =
         std::max(mostBytes, bytesPerByte.mean() * static_cast<double>(largestFile));
@@ -148,6 +167,8 @@ std::string estimateText(const RenderEstimate& estimate) {
                             secondsText(estimate.all), secondsText(estimate.frame));
     else
         text += fmt::format("time:   {}\n", secondsText(estimate.frame));
+    if (estimate.denoising.value > 0)
+        text += fmt::format("denoising takes {} of it\n", secondsText(estimate.denoising));
     text += fmt::format("memory: {} +- {}\n", formatGiB(estimate.memory.value),
                         formatGiB(estimate.memory.error));
     for (const FrameTrial& trial : estimate.trials)
@@ -167,6 +188,7 @@ nlohmann::ordered_json estimateJson(const RenderEstimate& estimate) {
                                   {"seconds_of_frame", json(estimate.frame)},
                                   {"memory_bytes", json(estimate.memory)},
                                   {"confidence", confidence}};
+    if (estimate.denoising.value > 0) result["denoise_seconds"] = json(estimate.denoising);
     result["trials"] = nlohmann::ordered_json::array();
     for (const FrameTrial& trial : estimate.trials) {
         nlohmann::ordered_json one = nlohmann::ordered_json::object();

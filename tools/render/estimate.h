@@ -39,8 +39,13 @@ bool measureRender(const render::Scene& scene, const render::RenderSettings& set
 /// So many times a block of samples is measured; the first block only warms up.
 inline constexpr int measuredBlocks = 5;
 
+/// Seconds that a picture of so many pixels takes, and their standard error, where they grow with
+/// the pixels: from those that measure(side) says of two small pictures, square, of this side.
+Guess timeByPixels(const std::function<double(int side)>& measure, double pixels);
+
 struct RenderEstimate {
     Guess frame = {}, all = {};  ///< seconds; `frame` is the mean of a frame
+    Guess denoising = {};        ///< seconds, of a frame; they are part of these
     Guess memory = {};           ///< bytes, with the frame that is read ahead
     std::vector<FrameTrial> trials = {};
     std::size_t frames = 1;
@@ -49,8 +54,9 @@ struct RenderEstimate {
 /// `trials` are evenly spread over `frames`, and each one more of the error's sources: how a
 /// block's time varies, and, where not all were tried, how frames do. `fixedBytes`: memory that
 /// does not depend on the frame. `largestFile`: bytes of the volumes of the largest frame.
+/// `denoising`: of each frame, with its standard error.
 RenderEstimate estimateAll(std::vector<FrameTrial> trials, std::size_t frames, double fixedBytes,
-                           std::uintmax_t largestFile);
+                           std::uintmax_t largestFile, Guess denoising = {});
 
 /// At most `most` of the frames, evenly spread.
 std::vector<int> spreadFrames(const std::vector<int>& frames, std::size_t most);

@@ -249,13 +249,13 @@ double writingBytesPerPixel(const render::RenderSettings& settings,
 }
 
 void checkMemoryLeft(const render::RenderSettings& settings, const scene::SceneDescription& scene,
-                     const image::Outputs& outputs, bool copies) {
+                     const image::Outputs& outputs, bool copies, double beside) {
     // Stacks and buffers of the threads, and what libraries take to write.
     constexpr double ofThread = 16 << 20, ofAll = 64 << 20;
     const int threads = settings.threads > 0
                             ? settings.threads
                             : static_cast<int>(std::thread::hardware_concurrency());
-    const double left = static_cast<double>(memoryLeft()) - ofThread * threads - ofAll;
+    const double left = static_cast<double>(memoryLeft()) - ofThread * threads - ofAll - beside;
     checkMemory(settings, scene, writingBytesPerPixel(settings, scene, outputs),
                 std::max(left, 0.0), copies);
 }

@@ -63,8 +63,8 @@ double writingBytesPerPixel(const render::RenderSettings& settings,
                             const scene::SceneDescription& scene, const image::Outputs& outputs);
 
 /// Throws where the sums do not fit into what is left of memory once the scene stands. `copies`:
-/// checkpoints are written of copies.
+/// checkpoints are written of copies. `beside`: bytes that rendering takes beside the picture.
 void checkMemoryLeft(const render::RenderSettings& settings, const scene::SceneDescription& scene,
-                     const image::Outputs& outputs, bool copies);
+                     const image::Outputs& outputs, bool copies, double beside);
 
 }  // namespace woodcock::tool

@@ -41,6 +41,7 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/precision.h"
+#include "woodcock/render/sun_depths.h"
 #include "woodcock/render/saved_state.h"
 #include "woodcock/render/session.h"
 #include "woodcock/scene/build.h"
@@ -414,9 +415,11 @@ private:
         const double fixed = std::max(0.0, static_cast<double>(peakMemoryBytes()) -
                                                (trials.size() > 1 ? 2 : 1) * scenes) +
                              pixels * (filmBytesPerPixel(settings_, description_) +
-                                       writingBytesPerPixel(settings_, description_, outputs));
-        const RenderEstimate estimate = estimateAll(
-            std::move(trials), std::max<std::size_t>(1, plan_.drawn.size()), fixed, largest);
+                                       writingBytesPerPixel(settings_, description_, outputs)) +
+                             sunDepthBytes_;
+        const RenderEstimate estimate =
+            estimateAll(std::move(trials), std::max<std::size_t>(1, plan_.drawn.size()), fixed,
+                        largest, denoisingTime(pixels));
         if (options_.reports.json)
             printJson(estimateJson(estimate));
         else if (options_.reports.printsText())
@@ -428,9 +431,21 @@ private:
         trial.fileBytes = bytesOfVolumes(description_);
         trial.sceneBytes = bytesOf(loaded_);
         const render::Scene scene = scene::buildScene(description_, std::move(loaded_));
+        sunDepthBytes_ =
+            std::max(sunDepthBytes_, render::bytesOfSunDepths(scene, settings_.approximations));
         trial.loadSeconds += secondsSince(start);
         if (!measureRender(scene, settings_, trial, [] { return !interrupted(); }))
             endWith(exitInterrupted);
+    }
+
+    Guess denoisingTime(double pixels) const {
+        if (!denoiser_) return {};
+        return timeByPixels(
+            [&](int side) {
+                const image::Film blank(side, side, {0, 0, side, side}, {false, true, false});
+                return denoiser_->denoise(blank, settings_.threads).seconds;
+            },
+            pixels);
     }
 
     static double secondsSince(Clock::time_point start) {
@@ -463,7 +478,8 @@ private:
         warnUnlessEmpty(warnings.ofCamera(scene));
         for (const std::string& warning : warnings.ofMotion(scene)) spdlog::warn("{}", warning);
 
-        checkMemoryLeft(settings_, description_, outputs, options_.keepsCheckpoint());
+        checkMemoryLeft(settings_, description_, outputs, options_.keepsCheckpoint(),
+                        render::bytesOfSunDepths(scene, settings_.approximations));
         if (!place_ || place_->index == 0) reportNeeds(scene);
         const image::StateFacts facts = factsOf(description_);
         const std::string& digest = facts.at("scene");
@@ -579,6 +595,7 @@ private:
     scene::SceneDescription description_;
     scene::Denoise askedDenoising_ = scene::Denoise::Never;  // before the denoiser was looked for
     std::optional<denoise::Denoiser> denoiser_;
+    double sunDepthBytes_ = 0;  // of the trial that takes most, where time and memory are estimated
     std::optional<double> denoiseSeconds_;  // of the last picture
     render::RenderSettings settings_;
     scene::LoadedScene loaded_;

@@ -72,13 +72,20 @@ std::shared_ptr<const MovingTransform> MovingTransform::follow(
         self(self, pieceOf(piece.u0, u, piece.start, middle), middle, halvings - 1);
         self(self, pieceOf(u, piece.u1, middle, end), end, halvings - 1);
     };
+    // By more than rounding: the key of another value may only have cut a straight way.
+    const auto differ = [&](const Affine3d& a, const Affine3d& b) {
+        constexpr double rounding = 1e-12;
+        const double size = length(a.translation) + length(b.translation) + way;
+        return length(a.translation - b.translation) > rounding * size ||
+               largestDifference(a, b) > rounding;
+    };
     bool moves = false;
     for (std::size_t i = 0; i < ends.size(); ++i) {
         const auto& [first, last] = ends[i];
         if (first.determinant() * ends[0].first.determinant() < 0)
             throw inputError("a transform mirrors at one time of the shutter, and not at another");
         cut(cut, pieceOf(breaks[i], breaks[i + 1], first, last), last, mostHalvings);
-        if (i > 0 && !(ends[i - 1].second == first)) moving.jumps_ = true;
+        if (i > 0 && differ(ends[i - 1].second, first)) moving.jumps_ = true;
     }
     for (const Piece& p : moving.pieces_)
         moves |= !p.shifts || !(p.from.translation == p.to.translation);
@@ -119,6 +126,24 @@ double MovingTransform::largestSpeed(const Box3d& box) const {
     const Box3d relative{box.lower - centre_, box.upper - centre_};
     for (const Piece& piece : pieces_) speed = std::max(speed, speedOf(piece, relative));
     return speed;
+}
+
+std::optional<double> MovingTransform::largestTurn() const {
+    constexpr double rounding = 1e-12;
+    const PolarMap& start = pieces_[0].from;
+    const auto stretched = [&](const PolarMap& map) {
+        std::array<Vec3d, 3> change;
+        for (std::size_t c = 0; c < 3; ++c) change[c] = map.stretch[c] - start.stretch[c];
+        return largestLength(change) > rounding * largestLength(start.stretch);
+    };
+    double turn = 0;
+    for (const Piece& piece : pieces_) {
+        if (stretched(piece.from) || (!piece.shifts && stretched(piece.to))) return {};
+        const double there = angleBetween(start.rotation, piece.from.rotation);
+        const double on = piece.shifts ? 0 : angleBetween(piece.from.rotation, piece.to.rotation);
+        turn = std::max(turn, there + on);
+    }
+    return turn;
 }
 
 Box3d MovingTransform::box_(const Box3d& box, double u0, double u1) const {

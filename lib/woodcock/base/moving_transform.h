@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,9 @@ public:
     /// says.
     double largestSpeed(const Box3d& box) const;
     bool jumps() const { return jumps_; }
+    /// The most by which a direction, or a plane's normal, turns away from what it is at time 0, in
+    /// radians. Nothing where what is moved is also stretched on its way.
+    std::optional<double> largestTurn() const;
     /// It moves along one straight line, evenly, and does not turn.
     bool straight() const { return pieces_.size() == 1 && pieces_[0].shifts; }
 

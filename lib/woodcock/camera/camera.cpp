@@ -11,7 +11,7 @@ Camera Camera::at(float time) const {
     if (!motion) return camera;
     if (motion->pose) camera.worldFromCamera = motion->pose->at(double{time});
     if (motion->lens) {
-        const Lens lens = motion->lens->at(double{time});
+        const Lens lens = Lens::of(motion->lens->at(double{time}));
         camera.fovY = lens.fovY, camera.height = lens.height;
         camera.shiftX = lens.shiftX, camera.shiftY = lens.shiftY;
     }

@@ -26,6 +26,8 @@ struct DiskLight {
     void narrow(Vec3d origin, Vec3d direction, double& t0, double& t1) const {
         narrowTo(flat, origin, direction, t0, t1);
     }
+    LightForm form() const { return flat.form(); }
+    DiskLight withForm(const LightForm& form) const { return {flat.withForm(form)}; }
 };
 
 }  // namespace woodcock::light

@@ -17,6 +17,13 @@ FlatLight FlatLight::placed(const Affine3d& worldFromLight, double sizeX, double
             .radiance = Rgb(1)};
 }
 
+FlatLight FlatLight::withForm(const LightForm& form) const {
+    FlatLight flat = *this;
+    flat.halfX = form[0], flat.halfY = form[1], flat.spread = Spread(form[2]);
+    flat.radiance = colourOf(form, 3);
+    return flat;
+}
+
 FlatPlace placeBefore(const FlatLight& light, Vec3d from) {
     const Vec3d d = from - light.centre;
     const double height = dot(d, light.normal);

@@ -22,6 +22,11 @@ struct FlatLight {
     /// its sides, and it shines towards +y. Scales of the axes scale it; they must be
     /// perpendicular.
     static FlatLight placed(const Affine3d& worldFromLight, double sizeX, double sizeZ);
+
+    LightForm form() const {
+        return {halfX, halfY, spread.degrees(), radiance[0], radiance[1], radiance[2]};
+    }
+    FlatLight withForm(const LightForm& form) const;
 };
 
 /// A place in a flat light's own axes.

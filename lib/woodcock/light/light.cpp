@@ -70,4 +70,22 @@ std::string Light::flaw() const {
     });
 }
 
+LightForm Light::form() const {
+    return ask(*this, [](const auto& l) {
+        if constexpr (Changes<std::remove_cvref_t<decltype(l)>>)
+            return l.form();
+        else
+            return LightForm();
+    });
+}
+
+Light Light::withForm(const LightForm& form) const {
+    return ask(*this, [&](const auto& l) -> Light {
+        if constexpr (Changes<std::remove_cvref_t<decltype(l)>>)
+            return l.withForm(form);
+        else
+            return l;
+    });
+}
+
 }  // namespace woodcock::light

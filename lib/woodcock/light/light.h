@@ -53,6 +53,13 @@ concept MayHaveAFlaw = requires(const L& l) {
     { l.flaw() } -> std::same_as<std::string>;
 };
 
+/// A kind that may change within the shutter: what may, and the light of another form.
+template <class L>
+concept Changes = requires(const L& l, const LightForm& form) {
+    { l.form() } -> std::same_as<LightForm>;
+    { l.withForm(form) } -> std::same_as<L>;
+};
+
 /// A light of any kind. Nothing outside of this room asks which kind it is.
 class Light : public std::variant<Sun, Environment, PointLight, SpotLight, SphereLight,
                                   RectangleLight, DiskLight, MeshLight> {
@@ -69,6 +76,8 @@ public:
     Rgb distantRadiance(Vec3d direction) const;          ///< 0 where it is not distant
     void narrow(Vec3d origin, Vec3d direction, double& t0, double& t1) const;
     std::string flaw() const;
+    LightForm form() const;  ///< zeros where it does not change
+    Light withForm(const LightForm& form) const;
 };
 
 }  // namespace woodcock::light

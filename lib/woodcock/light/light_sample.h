@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -27,6 +28,14 @@ struct LightHit {
     double distance = std::numeric_limits<double>::infinity();  ///< infinity: it misses
     Rgb radiance;
 };
+
+/// What may change of a light within the shutter beside its place, as numbers between which it goes
+/// straight: sizes, brightness. Each kind has its own; what is left over is 0.
+using LightForm = std::array<double, 6>;
+inline Rgb colourOf(const LightForm& form, std::size_t first) {
+    return Rgb::map(
+        [&](int c) { return static_cast<float>(form[first + static_cast<size_t>(c)]); });
+}
 
 /// A point that scatters light, as light selection needs it.
 struct ScatterPoint {

@@ -6,12 +6,8 @@
 namespace woodcock::light {
 
 LightSet::LightSet(std::vector<Light> lights, Motions motions, std::vector<std::uint8_t> groups)
-    : lights_(std::move(lights)),
-      motions_(std::move(motions)),
-      moves_(std::any_of(motions_.begin(), motions_.end(),
-                         [](const auto& m) { return m != nullptr; })),
-      groups_(std::move(groups)) {
-    groups_.resize(lights_.size());
+    : lights_(std::move(lights)), motions_(std::move(motions)), groups_(std::move(groups)) {
+    groups_.resize(lights_.size()), motions_.resize(lights_.size());
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const auto index = static_cast<int>(i);
         const LightTraits& traits = traits_.emplace_back(lights_[i].traits());
@@ -20,6 +16,9 @@ LightSet::LightSet(std::vector<Light> lights, Motions motions, std::vector<std::
         if (traits.distant) distant_.push_back(index);
         if (lights_[i].meetsRays()) meetable_.push_back(index);
         if (std::holds_alternative<MeshLight>(lights_[i])) mesh_ = index;
+        const bool moves =
+            motions_[i].place || motions_[i].form || (mesh_ == index && mesh()->moves());
+        if (moves) moving_.resize(lights_.size()), moving_[i] = 1;
     }
 }
 
@@ -27,25 +26,68 @@ const MeshLight* LightSet::mesh() const {
     return mesh_ < 0 ? nullptr : &std::get<MeshLight>(lights_[static_cast<std::size_t>(mesh_)]);
 }
 
-void LightSet::toRest(const MovingTransform& motion, float time, Vec3d& point, Vec3d& direction) {
-    const Affine3d rest = motion.at(double{time}).inverse();
-    point = rest.point(point), direction = rest.vector(direction);
+namespace {
+
+void take(const Affine3d& map, Vec3d& point, Vec3d& direction) {
+    point = map.point(point), direction = map.vector(direction);
 }
 
-LightSample LightSet::sampleMoved(int light, const MovingTransform& motion, Vec3d from, double u0,
-                                  double u1, float time) const {
-    const Affine3d there = motion.at(double{time});
-    LightSample s = (*this)[light].sample(there.inverse().point(from), u0, u1);
+/// What a light in its place at rest, of the form of a time, answers.
+template <class Question>
+auto askAtRest(const Light& light, const LightMotion& motion, float time, Question&& question) {
+    return motion.form ? question(light.withForm(motion.form->at(double{time}))) : question(light);
+}
+
+Affine3d placeOf(const LightMotion& motion, float time) {
+    return motion.place ? motion.place->at(double{time}) : Affine3d();
+}
+
+}  // namespace
+
+LightSample LightSet::sampleMoving(int light, Vec3d from, double u0, double u1, float time) const {
+    if (light == mesh_) return mesh()->sample(from, u0, u1, time);
+    const LightMotion& motion = motions_[static_cast<std::size_t>(light)];
+    const Affine3d there = placeOf(motion, time);
+    const Vec3d rest = there.inverse().point(from);
+    LightSample s = askAtRest((*this)[light], motion, time,
+                              [&](const Light& l) { return l.sample(rest, u0, u1); });
     s.direction = there.vector(s.direction);
     return s;
 }
 
+double LightSet::pdfMoving(int light, Vec3d from, Vec3d direction, float time) const {
+    const LightMotion& motion = motions_[static_cast<std::size_t>(light)];
+    take(placeOf(motion, time).inverse(), from, direction);
+    return askAtRest((*this)[light], motion, time,
+                     [&](const Light& l) { return l.pdf(from, direction); });
+}
+
+LightHit LightSet::meetMoving(int light, Vec3d origin, Vec3d direction, float time) const {
+    const LightMotion& motion = motions_[static_cast<std::size_t>(light)];
+    take(placeOf(motion, time).inverse(), origin, direction);
+    return askAtRest((*this)[light], motion, time,
+                     [&](const Light& l) { return l.meet(origin, direction); });
+}
+
+void LightSet::narrowMoving(int light, Vec3d origin, Vec3d direction, float time, double& t0,
+                            double& t1) const {
+    const LightMotion& motion = motions_[static_cast<std::size_t>(light)];
+    take(placeOf(motion, time).inverse(), origin, direction);
+    askAtRest((*this)[light], motion, time,
+              [&](const Light& l) { l.narrow(origin, direction, t0, t1); });
+}
+
+Vec3d LightSet::positionMoving(int light, Vec3d atRest, float time) const {
+    return placeOf(motions_[static_cast<std::size_t>(light)], time).point(atRest);
+}
+
 double LightSet::importance(int light, const ScatterPoint& at) const {
-    const auto* motion = motionOf(light);
-    if (!motion) return (*this)[light].importance(at);
-    ScatterPoint atRest = at;
-    toRest(*motion, at.time, atRest.position, atRest.forward);
-    return (*this)[light].importance(atRest);
+    if (!moves(light)) return (*this)[light].importance(at);
+    const LightMotion& motion = motions_[static_cast<std::size_t>(light)];
+    ScatterPoint rest = at;
+    take(placeOf(motion, at.time).inverse(), rest.position, rest.forward);
+    return askAtRest((*this)[light], motion, at.time,
+                     [&](const Light& l) { return l.importance(rest); });
 }
 
 void LightSet::pickProbabilities(const ScatterPoint& at, std::span<float> probabilities) const {

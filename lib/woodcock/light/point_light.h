@@ -27,6 +27,10 @@ struct PointLight {
     double typicalRadiance(const Box3d& bounds) const {
         return radianceOfLocalLight(position, traits().intensity, bounds);
     }
+    LightForm form() const { return {intensity[0], intensity[1], intensity[2]}; }
+    PointLight withForm(const LightForm& form) const {
+        return {position, colourOf(form, 0), profile, lightFromWorld};
+    }
 };
 
 }  // namespace woodcock::light

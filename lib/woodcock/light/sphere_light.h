@@ -30,6 +30,10 @@ struct SphereLight {
     }
     /// Distance at which a ray from outside enters the sphere; infinity when the ray misses it.
     double hit(Vec3d origin, Vec3d direction) const;
+    LightForm form() const { return {radius, radiance[0], radiance[1], radiance[2]}; }
+    SphereLight withForm(const LightForm& form) const {
+        return {position, form[0], colourOf(form, 1), visible};
+    }
 };
 
 }  // namespace woodcock::light

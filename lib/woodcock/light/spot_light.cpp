@@ -17,6 +17,13 @@ SpotLight::SpotLight(Vec3d position, Vec3d direction, Rgb intensity, double cone
     edge_ = oneMinusCos_ * blend;
 }
 
+SpotLight SpotLight::withForm(const LightForm& form) const {
+    SpotLight spot = *this;
+    spot.oneMinusCos_ = form[0], spot.cosHalf_ = 1 - form[0], spot.edge_ = form[1];
+    spot.intensity_ = colourOf(form, 2);
+    return spot;
+}
+
 double SpotLight::fallOff(double oneMinusCos) const {
     const double inside = oneMinusCos_ - oneMinusCos;  // cos - cosHalf
     if (!(inside > 0)) return 0;

@@ -30,6 +30,10 @@ public:
     }
     /// Narrows [t0, t1] to the part of the ray that lies in the cone.
     void narrow(Vec3d origin, Vec3d direction, double& t0, double& t1) const;
+    LightForm form() const {
+        return {oneMinusCos_, edge_, intensity_[0], intensity_[1], intensity_[2]};
+    }
+    SpotLight withForm(const LightForm& form) const;
 
 private:
     Vec3d position_, axis_;

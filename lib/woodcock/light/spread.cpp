@@ -8,7 +8,7 @@
 
 namespace woodcock::light {
 
-Spread::Spread(double degrees) : even_(degrees >= 180) {
+Spread::Spread(double degrees) : degrees_(degrees), even_(degrees >= 180) {
     if (even_) return;
     const double a = degrees * pi / 360, a2 = a * a;
     tangent_ = std::tan(a);

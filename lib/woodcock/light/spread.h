@@ -10,6 +10,7 @@ class Spread {
 public:
     explicit Spread(double degrees = 180);  ///< the whole angle, in (0, 180]; 180: even
 
+    double degrees() const { return degrees_; }
     bool even() const { return even_; }
     /// What multiplies the radiance: with a = degrees / 2, (tan a - tan angle) / (tan a - a); the
     /// integral of this times the cosine over the hemisphere is pi for every spread.
@@ -18,6 +19,7 @@ public:
     double tangent() const { return tangent_; }                      ///< of a; not if even()
 
 private:
+    double degrees_;
     bool even_;
     double tangent_ = 0, rest_ = 1;  // tan a, tan a - a
 };

@@ -112,6 +112,12 @@ void DepthGrid::layOut(double finest, std::size_t mostBytes) {
                                                        static_cast<std::size_t>(columnCount_[1]));
 }
 
+std::size_t DepthGrid::bytesOfAll() const {
+    const auto columns =
+        static_cast<std::size_t>(columnCount_[0]) * static_cast<std::size_t>(columnCount_[1]);
+    return columns * columnNodes * columnNodes * lineFloats() * sizeof(float);
+}
+
 DepthGrid::~DepthGrid() {
     for (int i = 0; i < columnCount_[0] * columnCount_[1]; ++i)
         delete[] columns_[static_cast<std::size_t>(i)].load();

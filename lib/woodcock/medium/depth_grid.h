@@ -34,6 +34,7 @@ public:
     /// Distance of neighbouring nodes, in world units.
     double spacing() const { return spacing_; }
     std::size_t bytesMade() const { return bytesMade_; }  ///< of columns so far
+    std::size_t bytesOfAll() const;                       ///< where all columns are read
 
     /// Optical depths around a point: interpolated, and the least and the most at the eight nodes.
     struct Depth {

@@ -27,6 +27,18 @@ SunDepths::SunDepths(const Scene& scene, const Approximations& approximations,
     for (const ApproximateMedia::Set& set : media.sets) add(scene, set.front());
 }
 
+std::size_t SunDepths::bytesAtMost() const {
+    std::size_t bytes = 0;
+    for (const auto& grid : grids_)
+        if (grid) bytes += grid->bytesOfAll();
+    return bytes;
+}
+
+double bytesOfSunDepths(const Scene& scene, const Approximations& approximations) {
+    const ApproximateMedia media(scene, approximations);
+    return static_cast<double>(SunDepths(scene, approximations, media).bytesAtMost());
+}
+
 void SunDepths::add(const Scene& scene, const medium::Medium& medium) {
     const std::size_t most = std::max(mostBytes, bytesOf(medium) / 4);
     for (std::size_t i = 0; i < lights_; ++i) {

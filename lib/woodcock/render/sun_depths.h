@@ -28,11 +28,16 @@ public:
         return i < grids_.size() ? grids_[i].get() : nullptr;
     }
 
+    std::size_t bytesAtMost() const;  ///< once all of them are made
+
 private:
     void add(const Scene& scene, const medium::Medium& medium);
 
     std::size_t lights_;
     std::vector<std::unique_ptr<const medium::DepthGrid>> grids_;  // by set, then by light
 };
+
+/// Memory that the grids of a render of the scene take at most, in bytes.
+double bytesOfSunDepths(const Scene& scene, const Approximations& approximations);
 
 }  // namespace woodcock::render

@@ -87,8 +87,9 @@ light::LightSet buildLights(const SceneDescription& description, std::vector<Loa
         groups.resize(lights.size(), groupNumber(names, description.lights[i].group));
     }
     if (!surfaces.emitters.empty())
-        lights.push_back(
-            light::MeshLight(std::move(surfaces.emitters), std::move(surfaces.radianceAt)));
+        lights.push_back(light::MeshLight(std::move(surfaces.emitters),
+                                          std::move(surfaces.radianceAt),
+                                          std::move(surfaces.movingEmitters)));
     motions.resize(lights.size());
     return light::LightSet(std::move(lights), std::move(motions), std::move(groups));
 }
@@ -108,6 +109,17 @@ bool glows(const VolumeDescription& volume) {
 }
 
 }  // namespace
+
+light::LightForm formOf(const LightDescription& light) {
+    return std::visit(
+        [](const auto& described) {
+            if constexpr (requires { buildLight(described, {}); })
+                return buildLight(described, {}).form();
+            else
+                return light::LightForm();
+        },
+        light.light);
+}
 
 camera::Camera buildCamera(const CameraDescription& description) {
     const bool orthographic = description.kind == CameraDescription::Kind::Orthographic;

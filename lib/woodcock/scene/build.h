@@ -61,6 +61,10 @@ bool environmentIsHidden(const SceneDescription& scene);
 
 // The parts of a scene.
 
+/// What may change of a light within the shutter beside its place; nothing of those that are
+/// infinitely far away.
+light::LightForm formOf(const LightDescription& light);
+
 /// The volumes that fill the surface of this name; of an empty name, those that fill none.
 medium::Medium buildMedium(const SceneDescription& description, const LoadedScene& loaded,
                            const Movements& movements, std::string_view inside);
@@ -91,6 +95,7 @@ struct BuiltSurfaces {
     std::vector<std::vector<std::uint32_t>> partOwners;  ///< of each, as of Scene
     std::vector<light::MeshLight::Triangle> emitters;
     light::MeshLight::RadianceAt radianceAt;  ///< of the emitters; empty where none varies
+    std::vector<light::MeshLight::Moving> movingEmitters;
 };
 
 /// The surfaces of a scene, what they hold, and the triangles that emit light: those of all

@@ -264,11 +264,15 @@ private:
         for (std::size_t k = 0; k < loaded.instances.size(); ++k) {
             const Affine3d worldFromShape =
                 surface.worldFromObject * loaded.instances[k] * loaded.objectFromMesh;
-            instances_.push_back(
-                {shape, object, worldFromShape, moves.empty() ? nullptr : moves[k]});
+            const auto motion = moves.empty() ? nullptr : moves[k];
+            instances_.push_back({shape, object, worldFromShape, motion});
             firstEmitter_.push_back(emission.empty()
                                         ? surface::SurfaceObject::dark
                                         : addEmitters(loaded.mesh, emission, worldFromShape, like));
+            if (!emission.empty() && motion)
+                built_.movingEmitters.push_back({firstEmitter_.back(),
+                                                 static_cast<std::uint32_t>(built_.emitters.size()),
+                                                 motion});
         }
     }
 

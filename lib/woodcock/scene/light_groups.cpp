@@ -31,6 +31,13 @@ Error error(const SceneDescription& scene, const std::string& value, const std::
     return inputError("{}{}{} {}", place, place.empty() ? "" : ": ", value, message);
 }
 
+/// Nuke takes `-` in the name of a layer for `_`.
+bool alikeInNuke(std::string a, std::string b) {
+    std::replace(a.begin(), a.end(), '-', '_');
+    std::replace(b.begin(), b.end(), '-', '_');
+    return a == b;
+}
+
 /// The groups of what emits in a mix.
 std::vector<std::string> groupsOfMix(const SceneDescription& scene, const MixDescription& mix) {
     std::vector<std::string> groups;
@@ -90,6 +97,12 @@ void checkLightGroups(const SceneDescription& scene) {
                         fmt::format("is '{}', but there are {} light groups already, and no more "
                                     "can be told apart; give several lights one group",
                                     group, known.size()));
+        for (const std::string& other : known)
+            if (alikeInNuke(group, other))
+                throw error(scene, value,
+                            fmt::format("is '{}', and there is a group '{}': Nuke takes - for _, "
+                                        "and makes one layer of both; rename one of them",
+                                        group, other));
         known.push_back(group);
     });
     for (size_t i = 0; i < scene.materials.size(); ++i) {

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "woodcock/base/error.h"
 #include "woodcock/scene/animation.h"
 #include "woodcock/scene/build.h"
-#include "woodcock/scene/check_surfaces.h"
 
 namespace woodcock::scene {
 namespace {
@@ -27,7 +25,6 @@ public:
         breaks_.push_back(1);
     }
 
-    const std::vector<double>& breaks() const { return breaks_; }
     /// From time u on.
     const SceneDescription& at(double u) { return atFrame(frameOf(u)); }
     /// Until time u.
@@ -46,6 +43,15 @@ public:
         const Affine3d restFromWorld = rest.inverse();
         return follow([&](const SceneDescription& scene) { return placeOf(scene) * restFromWorld; },
                       rest.translation);
+    }
+
+    template <class NumbersOf>
+    auto followNumbers(NumbersOf numbersOf) {
+        constexpr std::size_t count =
+            std::tuple_size_v<std::invoke_result_t<NumbersOf, const SceneDescription&>>;
+        return MovingNumbers<count>::follow([&](double u) { return numbersOf(at(u)); },
+                                            [&](double u) { return numbersOf(before(u)); },
+                                            breaks_);
     }
 
 private:
@@ -70,15 +76,6 @@ private:
 
 std::string tableName(const char* list, std::size_t i) { return fmt::format("{}[{}]", list, i); }
 
-std::string placeOfMotion(const SceneDescription& description, const std::string& table) {
-    for (const AnimatedValue& value : description.animation)
-        if (value.table == table)
-            if (std::string place = findPlace(description.places, table + "." + value.key);
-                !place.empty())
-                return place + ": ";
-    return "";
-}
-
 std::vector<std::shared_ptr<const MovingTransform>> surfaceMovements(
     const SceneDescription& description, const LoadedSurface& loaded, std::size_t index,
     Shot& shot) {
@@ -97,16 +94,10 @@ std::vector<std::shared_ptr<const MovingTransform>> surfaceMovements(
         any |= moves.back() != nullptr;
     }
     if (!any) return {};
-    if (natureOf(description, index).emits)
-        throw inputError(
-            "{}{} emits light, and moves while the shutter is open; light from moving surfaces is "
-            "not supported. Let it stand still, or set the shutter to 0",
-            placeOfMotion(description, table), table);
     return moves;
 }
 
-// The rotation and translation that take a local light from one place to another. And the light
-// with all that may change put away: its place and its brightness.
+// The rotation and translation that take a local light from one place to another.
 
 Affine3d poseOf(const PointDescription& point) {
     return {point.ies.empty() ? Affine3d().column : point.axes().column, point.position};
@@ -145,58 +136,23 @@ Affine3d wayBetween(const SpotDescription& rest, const SpotDescription& there) {
     return Affine3d::translate(there.position) * turn.map() * Affine3d::translate(-rest.position);
 }
 
-PointDescription formOf(PointDescription point) {
-    point.position = point.direction = {};
-    point.up = {}, point.roll = 0, point.intensity = Rgb();
-    return point;
-}
-SpotDescription formOf(SpotDescription spot) {
-    spot.position = spot.direction = {};
-    spot.intensity = Rgb();
-    return spot;
-}
-SphereDescription formOf(SphereDescription sphere) {
-    sphere.position = {}, sphere.radiance = Rgb();
-    return sphere;
-}
-/// Of a flat light, the lengths of its axes are its size.
-template <class Flat>
-Flat formOf(Flat flat) {
-    for (Vec3d& axis : flat.worldFromLight.column) {
-        constexpr double digits = 1e9;  // a rotation rounds
-        axis = {std::round(length(axis) * digits) / digits, 0, 0};
-    }
-    flat.worldFromLight.translation = {}, flat.radiance = Rgb();
-    return flat;
-}
-
-std::shared_ptr<const MovingTransform> lightMovement(const SceneDescription& description,
-                                                     std::size_t index, Shot& shot) {
-    const std::string table = tableName("light", index);
-    if (!isAnimated(description, table)) return nullptr;
-    const auto follow = [&](const auto& light) -> std::shared_ptr<const MovingTransform> {
+light::LightMotion lightMotion(const SceneDescription& description, std::size_t index, Shot& shot) {
+    if (!isAnimated(description, tableName("light", index))) return {};
+    const auto follow = [&](const auto& light) -> light::LightMotion {
         using L = std::remove_cvref_t<decltype(light)>;
         constexpr bool distant = std::is_same_v<L, SunDescription> ||
                                  std::is_same_v<L, SkyDescription> ||
                                  std::is_same_v<L, EnvironmentDescription>;
         if constexpr (distant) {
-            return nullptr;
+            return {};
         } else {
-            const auto lightIn = [&](const SceneDescription& scene) -> const L& {
-                return std::get<L>(scene.lights[index].light);
+            const auto wayIn = [&](const SceneDescription& scene) {
+                return wayBetween(light, std::get<L>(scene.lights[index].light));
             };
-            const auto keepsForm = [&](const SceneDescription& scene) {
-                return formOf(lightIn(scene)) == formOf(light);
-            };
-            for (const double u : shot.breaks())
-                if (!keepsForm(shot.at(u)) || (u > 0 && !keepsForm(shot.before(u))))
-                    throw inputError(
-                        "{}{} changes its size or form while the shutter is open, and lights may "
-                        "only move. Let that stay, or set the shutter to 0",
-                        placeOfMotion(description, table), table);
-            return shot.follow(
-                [&](const SceneDescription& scene) { return wayBetween(light, lightIn(scene)); },
-                positionOf(light));
+            return {shot.follow(wayIn, positionOf(light)),
+                    shot.followNumbers([&](const SceneDescription& scene) {
+                        return formOf(scene.lights[index]);
+                    })};
         }
     };
     return std::visit(follow, description.lights[index].light);
@@ -208,13 +164,10 @@ std::shared_ptr<const camera::CameraMotion> cameraMovement(const SceneDescriptio
     auto motion = std::make_shared<camera::CameraMotion>();
     motion->pose = shot.follow(
         [](const SceneDescription& scene) { return worldFromCamera(*scene.camera.pose); }, {});
-    const auto lensOf = [](const SceneDescription& scene) {
+    motion->lens = shot.followNumbers([](const SceneDescription& scene) {
         const CameraDescription& c = scene.camera;
-        return camera::Lens{c.fovY, c.height.value_or(1), c.shift[0], c.shift[1]};
-    };
-    motion->lens =
-        camera::MovingLens::follow([&](double u) { return lensOf(shot.at(u)); },
-                                   [&](double u) { return lensOf(shot.before(u)); }, shot.breaks());
+        return camera::Lens{c.fovY, c.height.value_or(1), c.shift[0], c.shift[1]}.numbers();
+    });
     return motion->pose || motion->lens ? motion : nullptr;
 }
 
@@ -235,7 +188,7 @@ Movements findMovements(const SceneDescription& description, const LoadedScene& 
     for (std::size_t i = 0; i < description.surfaces.size(); ++i)
         moves.surfaces[i] = surfaceMovements(description, loaded.surfaces[i], i, shot);
     for (std::size_t i = 0; i < description.lights.size(); ++i)
-        moves.lights.push_back(lightMovement(description, i, shot));
+        moves.lights.push_back(lightMotion(description, i, shot));
     moves.camera = cameraMovement(description, shot);
     return moves;
 }

@@ -27,5 +27,6 @@ std::vector<Check> extremes();
 std::vector<Check> emission();
 std::vector<Check> motion();
 std::vector<Check> motionOfTransforms();
+std::vector<Check> motionOfLights();
 
 }  // namespace woodcock::proof

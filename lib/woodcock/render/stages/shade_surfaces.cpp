@@ -46,7 +46,7 @@ void addEmission(const TracedScene& traced, Batch<N, true>& batch, Path<N>& p,
         const std::uint32_t emitter = traced.surfaces->emitter(hit);
         const light::MeshLight* light = traced.scene.lights.mesh();
         if (emitter == surface::SurfaceObject::dark || !light) return 0.0;
-        return light->pdf(p.from.position, emitter, hit.position) *
+        return light->pdf(p.from.position, emitter, hit.position, p.time) *
                batch.choice.probability(traced.scene.lights.meshIndex(), p.from);
     };
     bring(batch, p,
