@@ -218,6 +218,7 @@ F LaneTracer<N>::takePrediction(Mask departing) {
     for (int c = 0; c < N; ++c) {
         const F expected = predicted_[c].get() * phase;
         prediction_[c].set(departing, prediction_[c].get() - expected);
+        predicted_[c].set(departing, hn::Zero(lanesF));  // the next event need not predict
         most = hn::Max(most, expected);
     }
     const float flightsPerLight =
