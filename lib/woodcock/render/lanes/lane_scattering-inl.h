@@ -81,6 +81,8 @@ void LaneTracer<N>::goOn(std::size_t lane, float sunDepth) {
             endBranch(lane);
             return;
         }
+        const float factor = p.throughput.maximum() / throughputOf(lane).maximum();
+        setLane(predicted_, lane, laneOf(predicted_, lane) * factor);
         setLane(w_, lane, p.throughput);
     }
     if (scene_.thick && scene_.sunDepth) {
