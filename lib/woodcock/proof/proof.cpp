@@ -78,7 +78,7 @@ const std::vector<Check>& checks() {
         for (const auto& subject :
              {closedForms(), singleScattering(), slabs(), surfaces(), surfacesTogether(),
               roughSurfaces(), properties(), sampling(), phaseFunctions(), lightSampling(),
-              aimedPoints(), flatLights(), lampsInFog(), sunDepths(), skies(), extremes(), emission(), motion(),
+              aimedPoints(), flatLights(), lampsInFog(), sunDepths(), lanes(), skies(), extremes(), emission(), motion(),
               motionOfTransforms()})
             list.insert(list.end(), subject.begin(), subject.end());
         std::stable_sort(list.begin(), list.end(),
