@@ -158,12 +158,13 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
                                              "fov = 40\n"
                                            : ""));
         const render::SunDepths depths(scene, {}, render::ApproximateMedia(scene, {}));
-        SmallPicture picture{.maxScatterings = subject.maxScatterings, .sunDepths = &depths};
+        SmallPicture picture{
+            .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
         const std::string name = std::string("picture ") + subject.name;
         Case used{.name = name + ", traced in lanes", .expected = 1};
         used.measured = inLanes(scene, picture);
         lab.add(used);
-        const int seeds = static_cast<int>(lab.pick(150, 20000) * subject.effort);
+        const int seeds = static_cast<int>(lab.pick(600, 40000) * subject.effort);
         const SmallPictureMeans lanes = meansOf(scene, picture, lab.seed(name), seeds);
         picture.lanes = false;
         const SmallPictureMeans each = meansOf(scene, picture, lab.seed(name + " each"), seeds);
@@ -171,7 +172,7 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
                              double noise = 1) {
             Case one = caseOf(name + ", " + what, b.mean(),
                               {a.mean(), std::hypot(a.standardError(), b.standardError())},
-                              {noise * lab.pick(5e-2, 5e-3), 0});
+                              {noise * lab.pick(5e-2, 1e-2), 0});
             one.note = "one by one";
             one.allowance = 1e-6 * b.mean();
             lab.add(one);

@@ -81,7 +81,7 @@ inline F logarithm(F x) {
     return hn::ConvertTo(lanesF, exponent) * all(0.693147181f) + all(2) * s * series;
 }
 
-/// exp(-x) for x of at least 0, to 2 + x ulp; 0 beyond 87.
+/// exp(-x) for x of at least 0, to 3 + 1.5 x ulp; 0 beyond 87.
 inline F decay(F x) {
     const F y = hn::Min(x, all(87.3f)) * all(-1.44269504f), whole = hn::Round(y);
     const F r = (y - whole) * all(0.693147181f);
