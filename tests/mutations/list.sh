@@ -2,6 +2,7 @@
 # Deliberate defects, read by run.sh; see there for the arguments of `defect`. Most are biased by so
 # little that a picture would not show them.
 stages=lib/woodcock/render/stages
+lanes=lib/woodcock/render/lanes
 media=$stages/shade_media.cpp
 light=$stages/light.cpp
 lookAhead=$stages/look_ahead.cpp
@@ -114,6 +115,38 @@ defect "phase function samples the wrong side" 'Phase.*' "phase function" \
 defect "similar media absorb less under an albedo grid" 'SimilarMedium.*' "" \
     lib/woodcock/medium/similar_medium.cpp \
     'c.loss = part.loss() * static_cast<float>(1 / kept);' ''
+
+# ---- lanes
+
+defect "lanes draw the same numbers again" 'Lane*' "lanes and paths one by one" \
+    $lanes/lane_tracer-inl.h \
+    'count_.set(hn::RebindMask(lanesU, where), count + hn::Set(lanesU, 1));' ''
+
+defect "lanes come to the face behind" 'Lane*' "lanes and paths one by one" \
+    $lanes/lane_walk-inl.h \
+    'const I beyond = face - hn::IfThenElse(forward, zero, one);' 'const I beyond = face - one;'
+
+defect "lanes' flights in one direction count for one too few" 'Lanes.*' "lanes and paths one by one" \
+    $lanes/lane_scattering-inl.h \
+    'share_[lane] = 1.0f / static_cast<float>(l.flights);' \
+    'share_[lane] = 1.0f / static_cast<float>(more);'
+
+defect "lanes' roulette is made up for twice" 'Lanes.*' "" \
+    $lanes/lane_scattering-inl.h \
+    'window_[c][lane] += w[c] * (factor - 1)' 'window_[c][lane] += w[c] * (1 - factor)'
+
+defect "lanes' chance is what is left of it" 'Lanes.*' "lanes and paths one by one" \
+    $lanes/lane_scattering-inl.h \
+    'equilibrium_[c].get() * (after - before));' 'equilibrium_[c].get() * after);'
+
+defect "lanes that split predict as before" 'Lanes.*' "lanes and paths one by one" \
+    $lanes/lane_scattering-inl.h \
+    'setLane(predicted_, lane, laneOf(predicted_, lane) * factor);
+    if (copies' 'if (copies'
+
+defect "lanes take a prediction twice" '' "lanes and paths one by one" \
+    $lanes/lane_sun-inl.h \
+    'predicted_[c].set(departing, hn::Zero(lanesF));' ''
 
 # ---- light
 

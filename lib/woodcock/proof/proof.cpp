@@ -75,13 +75,13 @@ std::uint64_t Lab::seed(const std::string& name) const {
 const std::vector<Check>& checks() {
     static const std::vector<Check> all = [] {
         std::vector<Check> list;
-        for (const auto& subject : {closedForms(),        singleScattering(), slabs(),
-                                    surfaces(),           surfacesTogether(), roughSurfaces(),
-                                    properties(),         sampling(),         phaseFunctions(),
-                                    lightSampling(),      aimedPoints(),      flatLights(),
-                                    lampsInFog(),         sunDepths(),        skies(),
-                                    extremes(),           emission(),         motion(),
-                                    motionOfTransforms(), motionOfLights()})
+        for (const auto& subject :
+             {closedForms(),      singleScattering(), slabs(),       surfaces(),
+              surfacesTogether(), roughSurfaces(),    properties(),  sampling(),
+              phaseFunctions(),   lightSampling(),    aimedPoints(), flatLights(),
+              lampsInFog(),       sunDepths(),        lanes(),       skies(),
+              extremes(),         emission(),         motion(),      motionOfTransforms(),
+              motionOfLights()})
             list.insert(list.end(), subject.begin(), subject.end());
         std::stable_sort(list.begin(), list.end(),
                          [](const Check& a, const Check& b) { return a.kind < b.kind; });

@@ -22,6 +22,7 @@ std::vector<Check> aimedPoints();
 std::vector<Check> flatLights();
 std::vector<Check> lampsInFog();
 std::vector<Check> sunDepths();
+std::vector<Check> lanes();
 std::vector<Check> skies();
 std::vector<Check> extremes();
 std::vector<Check> emission();

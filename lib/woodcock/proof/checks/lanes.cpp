@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Paths that are traced in the lanes of vectors, with all that makes them cheap there, against
+// paths that are traced one by one.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "woodcock/base/random.h"
+#include "woodcock/proof/checks/measure.h"
+#include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/support/small_pictures.h"
+#include "woodcock/proof/support/write_vdb.h"
+
+namespace woodcock::proof {
+
+namespace {
+
+/// A ragged ball of radius 1 with holes, of density 1 on average inside.
+GridSpec raggedBall() {
+    GridSpec grid;
+    grid.box = {{0, 0, 0}, {23, 23, 23}};
+    grid.value = [](Vec3i v) {
+        const double r = length(v.as<double>() - Vec3d{11.5, 11.5, 11.5}) / 11.5;
+        const double u = RandomStream(hashOf(29, v.x >> 1, v.y >> 1, v.z)).uniform();
+        return r > 1 || u < 0.15 ? 0 : 1.7 * u;
+    };
+    const double voxel = 1 / 12.0;
+    grid.worldFromIndex = Affine3d::translate({-11.5 * voxel, -11.5 * voxel, -11.5 * voxel}) *
+                          Affine3d::scale({voxel, voxel, voxel});
+    return grid;
+}
+
+/// One value in a tile whose cells are wider than what else there is.
+GridSpec wideTile() {
+    GridSpec grid;
+    grid.tiles.push_back({{0, 0, 0}, 128, {1, 0, 0}});
+    grid.worldFromIndex =
+        Affine3d::translate({-1, -1, -1}) * Affine3d::scale({1 / 64.0, 1 / 64.0, 1 / 64.0});
+    return grid;
+}
+
+/// A phase function of three colours, forward in red and backward in blue.
+void writeColouredPhase(const Lab& lab) {
+    std::ofstream file(lab.file("coloured.txt"));
+    for (int i = -20; i <= 20; ++i) {
+        const double cosine = i / 20.0;
+        file << cosine << ' ' << 1 + 0.9 * cosine << ' ' << 1 + 0.5 * cosine * cosine << ' '
+             << 1 - 0.8 * cosine << '\n';
+    }
+}
+
+const std::string ball = "[[volume]]\nfile = \"ball.vdb\"\n";
+const std::string tile = "[[volume]]\nfile = \"tile.vdb\"\n";
+const std::string sun =
+    "[[light]]\ntype = \"sun\"\ndirection = [-0.6, -0.7, -0.4]\nirradiance = [3, 2.5, 2]\n"
+    "angular_diameter = ";
+const std::string deltaSun = sun + "0\n", discSun = sun + "0.53\n";
+const std::string secondSun =
+    "[[light]]\ntype = \"sun\"\ndirection = [0.5, -0.1, -0.8]\nirradiance = [1, 2, 3]\n";
+const std::string air = "[[light]]\ntype = \"environment\"\nradiance = [0.3, 0.5, 0.7]\n";
+const std::string hidden = "visible = false\n";
+
+struct Subject {
+    const char* name;
+    std::string text;
+    double effort = 1;  ///< so many times the seeds of the others
+    std::optional<int> maxScatterings{};
+    bool camera = true;  ///< the usual one is to be added
+};
+
+std::string mediumOf(double sigmaS, double sigmaA, const std::string& phase) {
+    return fmt::format("sigma_s = {}\nsigma_a = {}\n{}\n", sigmaS, sigmaA, phase);
+}
+
+std::vector<Subject> plainSubjects() {
+    const std::string fog = ball + mediumOf(1, 0.3, "g = 0.3"), lights = deltaSun + air;
+    const std::string cloud = ball + mediumOf(60, 0, "g = 0.85");
+    return {
+        {"thin", ball + mediumOf(0.5, 0.1, "") + lights},
+        {"thick, forward", cloud + lights, 0.2},
+        {"thick, isotropic", ball + mediumOf(40, 0, "") + lights, 0.1},
+        {"thick, backward", ball + mediumOf(25, 0, "g = -0.6") + lights, 0.1},
+        {"thick, of albedo 0.95", ball + mediumOf(38, 2, "g = 0.5") + lights, 0.5},
+        {"thick, of albedo 0.99", ball + mediumOf(39.6, 0.4, "g = 0.5") + lights, 0.3},
+        {"of one scattering", cloud + lights, 1, 1},
+        {"of two scatterings", cloud + lights, 1, 2},
+        {"of five scatterings", cloud + lights, 1, 5},
+        {"thick, in a disc's light", cloud + discSun + air, 0.2},
+        {"in a disc's light", fog + discSun + air},
+        {"in the light of two suns", fog + deltaSun + secondSun + air},
+        {"in the light of an image", fog + twoColouredSky},
+        {"in the light of an image and of a sun", fog + deltaSun + twoColouredSky},
+        {"in air that is not seen", cloud + deltaSun + air + hidden, 0.5},
+        {"in air alone", cloud + air, 0.3},
+        {"in the sun alone", cloud + deltaSun, 2},
+    };
+}
+
+std::vector<Subject> otherSubjects() {
+    const std::string lights = deltaSun + air;
+    const std::string coloured = "sigma_s = [4, 2, 0.5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n";
+    const std::string deep = "sigma_s = [60, 40, 20]\nsigma_a = [0, 0.5, 4]\ng = 0.7\n";
+    const std::string turned =
+        "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60], scale = [1, 0.5, 0.8] "
+        "}\n";
+    const std::string far = "transform = { translate = [100000, 50000, -100000] }\n";
+    const std::string away =
+        "[camera]\neye = [100000, 50000.6, -99996.5]\nlook_at = [100000, 50000, -100000]\n"
+        "fov = 40\n";
+    const auto withPhase = [&](const std::string& kind, double sigma = 5) {
+        return ball + mediumOf(sigma, 0.1, "phase = { type = " + kind + " }") + lights;
+    };
+    return {
+        {"chromatic", ball + coloured + lights},
+        {"chromatic and thick", ball + deep + lights, 0.3},
+        {"chromatic, in a disc's light", ball + deep + discSun + air + hidden, 0.3},
+        {"of two parts", ball + mediumOf(3, 0.1, "g = 0.6") + ball + turned +
+                             mediumOf(4, 0.5, "g = -0.3") + lights},
+        {"of two thick parts",
+         ball + mediumOf(30, 0.1, "g = 0.8") + ball + turned + mediumOf(40, 0, "g = -0.3") + lights,
+         0.1},
+        {"of parts unlike in colour", ball + coloured + ball + turned + deep + lights, 0.3},
+        {"of parts unlike in phase function",
+         ball + mediumOf(20, 0, "g = 0.8") + ball + turned +
+             mediumOf(20, 0.1, "phase = { type = \"rayleigh\" }") + lights,
+         0.2},
+        {"of two lobes", withPhase("\"two_lobe\", g = 0.7, g2 = -0.4, mix = 0.3")},
+        {"of Rayleigh", withPhase("\"rayleigh\"")},
+        {"of droplets", withPhase("\"mie\", diameter = 10", 10)},
+        {"of a table of colours",
+         withPhase("\"table\", file = \"coloured.txt\", normalise = true")},
+        {"of the nearest voxels", ball + coloured + lights + "[render]\nlookup = \"nearest\"\n"},
+        {"stored as half", ball + "storage = \"half\"\n" + coloured + lights},
+        {"stored in 8 bits", ball + "storage = \"fixed8\"\n" + mediumOf(30, 0, "g = 0.7") + lights,
+         0.3},
+        {"far from the origin",
+         ball + far + mediumOf(20, 0.1, "g = 0.6") + lights + away,
+         0.5,
+         {},
+         false},
+        {"turned and stretched", ball + turned + mediumOf(20, 0.1, "g = 0.6") + lights, 0.5},
+        {"of a wide tile", tile + mediumOf(10, 0.2, "g = 0.6") + lights, 0.5},
+        {"of a wide tile and a ball",
+         tile + mediumOf(10, 0.2, "g = 0.6") + ball + turned + coloured + discSun + air, 0.3},
+    };
+}
+
+void compare(Lab& lab, const std::vector<Subject>& subjects) {
+    writeVdb(lab.file("ball.vdb"), {raggedBall()});
+    writeVdb(lab.file("tile.vdb"), {wideTile()});
+    writeTwoColouredSky(lab);
+    writeColouredPhase(lab);
+    for (const Subject& subject : subjects) {
+        const render::Scene scene = sceneIn(
+            lab,
+            subject.text + (subject.camera ? "[camera]\neye = [0, 0.6, 3.5]\nlook_at = [0, 0, 0]\n"
+                                             "fov = 40\n"
+                                           : ""));
+        const render::SunDepths depths(scene, {}, render::ApproximateMedia(scene, {}));
+        SmallPicture picture{
+            .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
+        const std::string name = std::string("picture ") + subject.name;
+        Case used{.name = name + ", traced in lanes", .expected = 1};
+        used.measured = inLanes(scene, picture);
+        lab.add(used);
+        const int seeds = static_cast<int>(lab.pick(600, 40000) * subject.effort);
+        const SmallPictureMeans lanes = meansOf(scene, picture, lab.seed(name), seeds);
+        picture.lanes = false;
+        const SmallPictureMeans each = meansOf(scene, picture, lab.seed(name + " each"), seeds);
+        const auto add = [&](const std::string& what, const Moments& a, const Moments& b,
+                             double noise = 1) {
+            Case one = caseOf(name + ", " + what, b.mean(),
+                              {a.mean(), std::hypot(a.standardError(), b.standardError())},
+                              {noise * lab.pick(5e-2, 1e-2), 0});
+            one.note = "one by one";
+            one.allowance = 1e-6 * b.mean();
+            lab.add(one);
+        };
+        for (std::size_t c = 0; c < 3; ++c)
+            add(fmt::format("channel {}", c), lanes.radiance[c], each.radiance[c]);
+        for (std::size_t q = 0; q < 4; ++q)
+            add(fmt::format("quarter {}", q), lanes.quarters[q], each.quarters[q], 2);
+        add("alpha", lanes.alpha, each.alpha);
+    }
+}
+
+}  // namespace
+
+std::vector<Check> lanes() {
+    return {{Kind::Sampling, "lanes and paths one by one",
+             [](Lab& lab) { compare(lab, plainSubjects()); }},
+            {Kind::Sampling, "lanes in all kinds of media",
+             [](Lab& lab) { compare(lab, otherSubjects()); }}};
+}
+
+}  // namespace woodcock::proof

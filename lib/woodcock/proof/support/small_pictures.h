@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "woodcock/base/statistics.h"
+#include "woodcock/render/scene.h"
+#include "woodcock/render/sun_depths.h"
+
+namespace woodcock::proof {
+
+/// Pictures of a few pixels, many of which are rendered by different seeds.
+struct SmallPicture {
+    int side = 6, samples = 4;
+    std::optional<int> maxScatterings{};
+    bool lanes = true;                             ///< see PathTracer::Options
+    const render::SunDepths* sunDepths = nullptr;  ///< the same
+};
+
+/// Means over a small picture, of which each seed's is a sample.
+struct SmallPictureMeans {
+    std::array<Moments, 3> radiance;  ///< of the whole
+    std::array<Moments, 4> quarters;  ///< of green, by rows
+    Moments alpha;
+};
+SmallPictureMeans meansOf(const render::Scene& scene, const SmallPicture& picture,
+                          std::uint64_t firstSeed, int seeds);
+
+/// Whether the paths of such pictures are traced in lanes.
+bool inLanes(const render::Scene& scene, const SmallPicture& picture);
+
+}  // namespace woodcock::proof
