@@ -95,9 +95,9 @@ defect "a sun's depth taken for that beyond a boundary" 'SurfaceLayers*' "pictur
     $stages/shadow_walk.cpp \
     'batch.pieces.size() == pieces + 1' 'batch.pieces.size() > pieces'
 
-defect "several events near a sun count for one too few" '' "pictures by grids" \
+defect "several events near a sun count for too much" '' "pictures by grids" \
     $stages/several_events.cpp \
-    'p.sunShare = 1.0f / (1 + more);' 'p.sunShare = 1.0f / more;'
+    'p.sunShare = severalEventsShare;' 'p.sunShare = 1.5f * severalEventsShare;'
 
 defect "roulette without division" 'Distance.*:Transmittance.*' "deep slabs" \
     lib/woodcock/medium/roulette.h \

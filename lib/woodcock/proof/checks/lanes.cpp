@@ -127,7 +127,9 @@ std::vector<Subject> otherSubjects() {
          0.2},
         {"of two lobes", withPhase("\"two_lobe\", g = 0.7, g2 = -0.4, mix = 0.3")},
         {"of Rayleigh", withPhase("\"rayleigh\"")},
-        {"of droplets", withPhase("\"mie\", diameter = 10", 10)},
+        {"of droplets under a wide sun",
+         ball + mediumOf(10, 0.1, "phase = { type = \"mie\", diameter = 10 }") + sun + "20\n" +
+             air},
         {"of a table of colours",
          withPhase("\"table\", file = \"coloured.txt\", normalise = true")},
         {"of the nearest voxels", ball + coloured + lights + "[render]\nlookup = \"nearest\"\n"},
