@@ -67,6 +67,8 @@ struct Subject {
     double effort = 1;  ///< so many times the seeds of the others
     std::optional<int> maxScatterings{};
     bool camera = true;  ///< the usual one is to be added
+    /// Of what the grid of depths to the sun is to be made, where that is to be wrong.
+    std::string gridOf = {};
 };
 
 std::string mediumOf(double sigmaS, double sigmaA, const std::string& phase) {
@@ -86,6 +88,19 @@ std::vector<Subject> plainSubjects() {
         {"of one scattering", cloud + lights, 1, 1},
         {"of two scatterings", cloud + lights, 1, 2},
         {"of five scatterings", cloud + lights, 1, 5},
+        {"thick, by a grid of a tenth of the density",
+         cloud + lights,
+         0.3,
+         {},
+         true,
+         ball + mediumOf(6, 0, "g = 0.85") + lights},
+        {"by a grid of thrice the density, elsewhere",
+         fog + lights,
+         1,
+         {},
+         true,
+         ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
+             lights},
         {"thick, in a disc's light", cloud + discSun + air, 0.2},
         {"in a disc's light", fog + discSun + air},
         {"in the light of two suns", fog + deltaSun + secondSun + air},
@@ -154,12 +169,14 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
     writeTwoColouredSky(lab);
     writeColouredPhase(lab);
     for (const Subject& subject : subjects) {
-        const render::Scene scene = sceneIn(
-            lab,
-            subject.text + (subject.camera ? "[camera]\neye = [0, 0.6, 3.5]\nlook_at = [0, 0, 0]\n"
-                                             "fov = 40\n"
-                                           : ""));
-        const render::SunDepths depths(scene, {}, render::ApproximateMedia(scene, {}));
+        const auto seen = [&](const std::string& text) {
+            return sceneIn(lab, text + (subject.camera ? "[camera]\neye = [0, 0.6, 3.5]\n"
+                                                         "look_at = [0, 0, 0]\nfov = 40\n"
+                                                       : ""));
+        };
+        const render::Scene scene = seen(subject.text);
+        const render::Scene other = seen(subject.gridOf.empty() ? subject.text : subject.gridOf);
+        const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
         SmallPicture picture{
             .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
         const std::string name = std::string("picture ") + subject.name;

@@ -113,7 +113,8 @@ HWY_INLINE void LaneTracer<N>::lookUp(std::uint32_t bits, const U words[4], F f[
 template <int N>
 void LaneTracer<N>::noteCollision(std::size_t lane, bool ends) {
     if (auto* noted = collisionsOf(lane))
-        noted->push_back({double{t_[lane]}, static_cast<int>(lanes_[lane].part),
+        noted->push_back({lanes_[lane].flightStart + double{t_[lane]},
+                          static_cast<int>(lanes_[lane].part),
                           ends ? 0 : throughputOf(lane).mean()});
 }
 

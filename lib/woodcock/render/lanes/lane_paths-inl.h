@@ -109,7 +109,7 @@ void LaneTracer<N>::endCameraFlight(std::size_t lane, bool scattered) {
     p.result->film.alpha = scattered ? 1 : opacityOf(p);
     if (!isToBeNoted(traced_, p)) return;
     noteStops(traced_, batch_, lanes_[lane].path);
-    if (scattered) noteFirstScattering(traced_, p, double{t_[lane]});
+    if (scattered) noteFirstScattering(traced_, p, lanes_[lane].flightStart + double{t_[lane]});
 }
 
 /// A branch of the path has ended: follows the next one, or gives the lane another path.

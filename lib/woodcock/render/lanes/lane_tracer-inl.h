@@ -38,6 +38,7 @@ struct Process {
     std::array<float, 3> u, d, inverse;
     std::array<std::int32_t, 3> corner;
     float size, mu, perMu, depth, t, lower, upper;
+    double entry = 0;    ///< into the part's support, along the ray
     bool waits = false;  ///< at a collision, at `t`
     bool ended = false;
 };
@@ -107,6 +108,7 @@ private:
         std::size_t matter = none;       ///< number in LaneScene of the part in the vectors
         std::size_t phase = 0;           ///< and of the one whose phase function turns the path
         std::size_t nearest = none;      ///< the part with the nearest collision so far
+        double flightStart = 0;          ///< where distances along the flight count from
         std::vector<Process> processes;  ///< of each part, where there are several
         Vec3d position;                  ///< of the last scattering; there
         std::vector<Branch> branches;    ///< that are still to be followed

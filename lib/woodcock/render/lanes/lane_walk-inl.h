@@ -27,6 +27,11 @@ bool LaneTracer<N>::begin(std::size_t lane, Vec3d origin, float depth) {
         if (k > 0) depth = static_cast<float>(-std::log(pathOf(lane).random.uniformOpenLow()));
         enter(scene_.parts[numberOf(lane, k)], origin, direction, depth, l.processes[k]);
     }
+    // Distances are from where the first part begins: floats would not tell them apart from afar.
+    l.flightStart = std::numeric_limits<double>::infinity();
+    for (const Process& p : l.processes)
+        if (!p.ended) l.flightStart = std::min(l.flightStart, p.entry);
+    for (Process& p : l.processes) p.t = static_cast<float>(p.entry - l.flightStart);
     l.part = none;
     return findNearest(lane);
 }
@@ -59,7 +64,7 @@ void LaneTracer<N>::enter(const LanePart& lanePart, Vec3d origin, Vec3d directio
     process.lower = cell.range.min, process.upper = cell.range.max;
     process.mu = cell.range.max * part.largestExtinction();
     process.perMu = process.mu > 0 ? 1 / process.mu : huge;
-    process.depth = depth, process.t = static_cast<float>(t0);
+    process.depth = depth, process.entry = t0;
 }
 
 template <int N>
