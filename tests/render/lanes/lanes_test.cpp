@@ -43,7 +43,7 @@ TEST_F(Lanes, EveryPathInAFurnaceBringsTheSame) {
             const TracedScene traced(scene, findNeeds(scene), options);
             const auto lanes = LaneScene::make(traced);
             ASSERT_TRUE(lanes);
-            EXPECT_EQ(lanes->sunDepth != nullptr, sun);
+            EXPECT_EQ(lanes->sunDepths[0] != nullptr, sun);
             double events = 0;
             for (const PathResult& path : trace(scene, options, jobsOf(10, 8))) {
                 // Roundings of the weights add up along a path.
