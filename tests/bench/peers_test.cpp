@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 fs::path benchDir() { return sourceDir() / "tests/bench"; }
 
-TEST(Peers, CostsFollowFromTwoPictures) {
+TEST(PeersScript, CostsFollowFromTwoPictures) {
     if (!fs::exists("/usr/bin/python3")) GTEST_SKIP() << "no python3";
     const ProgramResult result = runProgram(
         {(sourceDir() / "tests/programs/peers_cost.py").string(), (benchDir() / "peers").string()},
@@ -24,7 +24,7 @@ TEST(Peers, CostsFollowFromTwoPictures) {
     EXPECT_NE(result.err.find("Ran 7 tests"), std::string::npos) << result.err;
 }
 
-TEST(Peers, ScriptsExplainThemselves) {
+TEST(PeersScript, ScriptsExplainThemselves) {
     for (const char* name : {"peers.sh", "production_sizes.sh"}) {
         const ProgramResult help = runProgram({"--help"}, {}, benchDir() / name);
         EXPECT_EQ(help.exitCode, 0) << help.err;
@@ -40,7 +40,7 @@ TEST(Peers, ScriptsExplainThemselves) {
     }
 }
 
-TEST(Peers, ScenesParse) {
+TEST(PeersScript, ScenesParse) {
     int count = 0;
     for (const auto& entry : fs::directory_iterator(benchDir() / "scenes")) {
         if (entry.path().extension() != ".toml") continue;
