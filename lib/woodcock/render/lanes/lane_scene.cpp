@@ -38,21 +38,36 @@ bool canBeWalked(const medium::MediumPart& part) {
            densest * edge < deepestVoxel;
 }
 
-/// Whether a light is an environment whose radiance differs so little from its mean that sampling
-/// it is not worth the shadow rays.
+/// The mean over all directions of what a light far away sends, by evenly spread points: roughly,
+/// where it is not the same everywhere.
+Rgb meanRadiance(const light::LightSet& lights, int light) {
+    if (!lights.traits(light).sampled) return lights.distantRadiance(light, {0, 0, 1}, false);
+    constexpr int points = 1024;
+    constexpr double golden = 0.61803398874989485;
+    Rgb sum;
+    for (int i = 0; i < points; ++i) {
+        const double z = 1 - (2 * i + 1.0) / points, r = std::sqrt(1 - z * z);
+        const double phi = 2 * pi * golden * i;
+        sum += lights.distantRadiance(light, {r * std::cos(phi), r * std::sin(phi), z}, false);
+    }
+    return sum * (1.0f / points);
+}
+
+/// Whether such a light differs so little from its mean that sampling it is not worth the shadow
+/// rays: paths find its light well enough where they leave.
 bool isEven(const light::LightSet& lights, int light) {
-    const auto* environment = std::get_if<light::Environment>(&lights[light]);
-    if (!environment || !(environment->meanRadiance().mean() > 0)) return false;
+    if (!lights.traits(light).distant) return false;
     constexpr int side = 32;
     constexpr double mostEven = 4;
     // Of points in proportion to the radiance: the mean of its square over that of itself.
     double sum = 0;
-    for (int i = 0; i < side * side; ++i) {
-        const light::LightSample s =
-            environment->sample({}, (i % side + 0.5) / side, (i / side + 0.5) / side);
-        sum += environment->radiance(s.direction).mean();
-    }
-    return sum / (side * side) < mostEven * double{environment->meanRadiance().mean()};
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+            const light::LightSample s =
+                lights.sample(light, {}, (i + 0.5) / side, (j + 0.5) / side);
+            sum += double{lights.distantRadiance(light, s.direction, false).mean()};
+        }
+    return sum / (side * side) < mostEven * double{meanRadiance(lights, light).mean()};
 }
 
 }  // namespace
@@ -133,11 +148,10 @@ void LaneScene::addLights() {
     }
     environmentSeen = true;
     for (const int light : lights.distant()) {
-        const auto* environment_ = std::get_if<light::Environment>(&lights[light]);
-        if (!environment_ || std::ranges::find(others, light) != others.end()) continue;
+        if (light == sun || std::ranges::find(others, light) != others.end()) continue;
         if (environmentLight < 0) environmentLight = light;
-        environment += environment_->meanRadiance();
-        environmentSeen &= environment_->visible();
+        environment += meanRadiance(lights, light);
+        environmentSeen &= lights.traits(light).visible;
     }
 }
 
