@@ -11,7 +11,7 @@ namespace woodcock::render {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double doubleEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double largestFloat = std::numeric_limits<float>::max();
 constexpr double smallestFloat = std::numeric_limits<float>::min();
 /// A length must be this many roundings of positions, to be resolved well.
@@ -61,7 +61,7 @@ private:
         }
         if (part.extent().empty() || !(sigma > 0)) return;
         const Box3d box = part.worldBounds();
-        const double far = largestCoordinate(box), rounding = far * epsilon;
+        const double far = largestCoordinate(box), rounding = far * doubleEpsilon;
         const std::string where = fmt::format("{}, at coordinates up to {:g}", name, far);
         const double voxel = smallestVoxel(part.description().worldFromIndex);
         if (!std::isfinite(far)) {
@@ -84,7 +84,8 @@ private:
 
     void checkCamera(Vec3d eye) {
         if (bounds_.empty()) return;
-        const double rounding = largestCoordinate(eye) * epsilon, size = length(bounds_.size());
+        const double rounding = largestCoordinate(eye) * doubleEpsilon,
+                     size = length(bounds_.size());
         if (!(size >= resolved * rounding))
             add("the camera is at {}, where positions are rounded to {:.2g}, and all volumes "
                 "together are {:.2g} wide: it cannot resolve them; move it nearer to {}",
