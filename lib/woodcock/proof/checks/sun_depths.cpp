@@ -12,7 +12,7 @@
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/subjects.h"
 #include "woodcock/proof/support/plain_medium.h"
-#include "woodcock/render/path_tracer.h"
+#include "woodcock/proof/support/small_pictures.h"
 
 namespace woodcock::proof {
 
@@ -112,45 +112,20 @@ std::string foggyScene(const Subject& subject, double density, double shift) {
 }
 
 /// Mean radiance of a small picture by so many seeds.
-std::array<Moments, 3> pictures(const render::Scene& scene, const render::SunDepths* depths,
-                                std::uint64_t firstSeed, int seeds) {
-    constexpr int side = 6;
-    std::vector<render::PathJob> jobs;
-    for (int pixel = 0; pixel < side * side; ++pixel)
-        for (std::uint32_t sample = 0; sample < 4; ++sample)
-            jobs.push_back({pixel % side, pixel / side, sample});
-    std::vector<render::PathResult> results(jobs.size());
-    std::array<Moments, 3> means;
-    render::PathTracer::Options options;
-    options.width = options.height = side, options.sunDepths = depths;
-    for (int i = 0; i < seeds; ++i) {
-        options.seed = hashOf(firstSeed, i);
-        const auto tracer = render::PathTracer::make(scene, render::findNeeds(scene), options);
-        render::RenderCounters counters;
-        tracer->trace(
-            jobs, results, [] { return false; }, counters);
-        for (int c = 0; c < 3; ++c) {
-            double sum = 0;
-            for (const render::PathResult& result : results) sum += double{result.film.radiance[c]};
-            means[static_cast<std::size_t>(c)].add(sum / static_cast<double>(results.size()));
-        }
-    }
-    return means;
-}
-
 /// Pictures by right and by wrong grids against shadow rays that are tracked.
 void comparePictures(Lab& lab) {
     for (const Subject& subject : subjects) {
         const render::Scene scene = sceneIn(lab, foggyScene(subject, 1, 0));
         const int seeds = lab.pick(800, 12000) / subject.effort;
-        const auto tracked = pictures(scene, nullptr, lab.seed("tracked"), seeds);
+        const auto tracked = meansOf(scene, {}, lab.seed("tracked"), seeds).radiance;
         for (const Wrong& wrong : kinds) {
             const render::Scene other = sceneIn(
                 lab, foggyScene(subject, wrong.density, wrong.shift.x / (4 * subject.thickness)));
             const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
             const std::string name =
                 fmt::format("picture {} by a grid that is {}", subject.name, wrong.what);
-            const auto means = pictures(scene, &depths, lab.seed(name), seeds);
+            const auto means =
+                meansOf(scene, {.sunDepths = &depths}, lab.seed(name), seeds).radiance;
             for (std::size_t c = 0; c < 3; ++c) {
                 const double error =
                     std::hypot(means[c].standardError(), tracked[c].standardError());
