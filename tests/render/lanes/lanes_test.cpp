@@ -40,6 +40,8 @@ TEST_F(Lanes, EveryPathInAFurnaceBringsTheSame) {
             const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
             PathTracer::Options options;
             options.width = options.height = 10, options.sunDepths = &depths;
+            const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+            options.cameraDepths = cameraDepths.get();
             const TracedScene traced(scene, findNeeds(scene), options);
             const auto lanes = LaneScene::make(traced);
             ASSERT_TRUE(lanes);
@@ -77,13 +79,16 @@ std::vector<Moments> meansOfParts(const Scene& scene, PathTracer::Options option
 TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
     const std::string lights = S::sun() + "group = \"sun\"\n" + S::air + "group = \"air\"\n";
     for (const char* medium : {"sigma_s = 40\nsigma_a = 0.2\ng = 0.8\n",
-                               "sigma_s = [30, 20, 5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n"}) {
+                               "sigma_s = [30, 20, 5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n",
+                               "sigma_s = [1, 0.7, 0.5]\nsigma_a = [0.1, 0.2, 0.5]\ng = 0.5\n"}) {
         SCOPED_TRACE(medium);
         const Scene scene = subjects.scene(S::ball(medium) + lights);
         const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
         PathTracer::Options options;
         options.width = options.height = 6, options.sunDepths = &depths;
         options.layers.parts = {.kinds = true, .groups = {"sun", "air"}};
+        const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+        options.cameraDepths = cameraDepths.get();
         const auto lanes = meansOfParts(scene, options, 300, 1);
         options.lanes = false;
         const auto each = meansOfParts(scene, options, 300, 2);
@@ -168,6 +173,8 @@ TEST_F(Lanes, StopsAreThoseOfPathsOneByOne) {
         PathTracer::Options options;
         options.width = options.height = 6;
         options.stoppedLight = options.layers.stops = true;
+        const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+        options.cameraDepths = cameraDepths.get();
         const std::vector<PathJob> jobs = jobsOf(6, 4);
         std::array<std::array<Moments, 4>, 2> means;  // alpha, stopped light, and its depths
         for (const bool lanes : {false, true}) {

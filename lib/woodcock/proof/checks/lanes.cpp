@@ -67,7 +67,8 @@ struct Subject {
     double effort = 1;  ///< so many times the seeds of the others
     std::optional<int> maxScatterings{};
     bool camera = true;  ///< the usual one is to be added
-    /// Of what the grid of depths to the sun is to be made, where that is to be wrong.
+    /// Of what the depths to the sun and along camera rays are to be made, where they are to be
+    /// wrong.
     std::string gridOf = {};
 };
 
@@ -179,6 +180,8 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
         const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
         SmallPicture picture{
             .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
+        const auto cameraDepths = render::CameraDepths::make(other, picture.side, picture.side);
+        picture.cameraDepths = cameraDepths.get();
         const std::string name = std::string("picture ") + subject.name;
         Case used{.name = name + ", traced in lanes", .expected = 1};
         used.measured = inLanes(scene, picture);

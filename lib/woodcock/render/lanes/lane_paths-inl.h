@@ -37,8 +37,13 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
         for (Floats* rows : {chance_, window_, prediction_, predicted_})
             setLane(rows, lane, Spectrum<N>());
         if (auto* noted = collisionsOf(lane)) noted->clear();
-        if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
-        leave(lane);
+        if (scatterCameraRay(lane)) {
+            if (state_[lane] == Arrived) return;
+            bringControls(lane);
+        } else {
+            if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
+            leave(lane);
+        }
         p.alive = false;
     }
     state_[lane] = Idle;
@@ -156,6 +161,7 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
               (toRgb(laneOf(prediction_, lane)) - window * static_cast<float>(1 / (4 * pi))) *
                   scene_.centre.weight,
               kind, lights.group(scene_.sun));
+    if (lanes_[lane].fromCamera) endCameraPath(lane);
 }
 
 }  // namespace woodcock::render::HWY_NAMESPACE

@@ -124,7 +124,23 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
     const MediumSummary& medium = traced.media[0];
     scene.thick = medium.meanExtinction * length(medium.bounds.size()) > thickFrom;
     scene.addLights();
+    scene.addCameraDepths();
     return scene;
+}
+
+void LaneScene::addCameraDepths() {
+    // What waits for a shadow ray cannot be corrected any more. In thick media, where a camera ray
+    // scatters decides little.
+    if (thick || !others.empty()) return;
+    cameraDepths = traced.options.cameraDepths;
+    if (!cameraDepths) return;
+    Rgb scattering, extinction;
+    for (std::size_t k = 0; k < partCount; ++k)
+        scattering += parts[k].part->scattering(), extinction += parts[k].part->extinction();
+    for (int c = 0; c < 3; ++c) {
+        if (!(extinction[c] > 0)) continue;
+        cameraAlbedo[c] = scattering[c] / extinction[c];
+    }
 }
 
 void LaneScene::addLights() {
