@@ -67,6 +67,7 @@ public:
             {"a disc", ball(cloud) + sun(3, 0.53) + air},
             {"droplets", ball(droplets) + ball(turned + cloud) + sun(3, 0.53) + air},
             {"no sun", ball(coloured) + air},
+            {"absorbing", ball("sigma_s = 2\nsigma_a = 3\n") + sun() + air},
             {"two suns", ball(coloured) + sun() + sun(1, 0.53) + air},
         };
     }

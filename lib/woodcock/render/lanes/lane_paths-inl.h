@@ -36,7 +36,7 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
         setLane(w_, lane, p.throughput);
         for (Floats* rows : {chance_, window_, prediction_, predicted_})
             setLane(rows, lane, Spectrum<N>());
-        if (auto* noted = collisionsOf(lane)) noted->clear();
+        collisionsToNote(traced_, batch_, l.path);  // makes room
         if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
         leave(lane);
         p.alive = false;
@@ -47,7 +47,8 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
 /// Where the lane's flight is to note its collisions; null: nowhere.
 template <int N>
 std::vector<medium::FlightCollision>* LaneTracer<N>::collisionsOf(std::size_t lane) {
-    return collisionsToNote(traced_, batch_, lanes_[lane].path);
+    const bool notes = isToBeNoted(traced_, pathOf(lane));
+    return notes ? &batch_.collisions[lanes_[lane].path] : nullptr;
 }
 
 /// The path has left the medium.
