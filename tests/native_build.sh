@@ -10,10 +10,9 @@ plain=$(realpath "$1") digest=$(realpath "$2")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 native=$PWD/build/demo/tools/woodcock
 
-# What is not compiled for this processor is compiled as in the plain build: file by file, ccache
-# has it already.
+# What is not compiled for this processor is compiled as in the plain build: ccache has it already.
 unity=ON
-if command -v ccache >/dev/null; then unity=OFF; fi
+if command -v ccache >/dev/null; then unity=${WOODCOCK_UNITY:-OFF}; fi
 cmake --preset demo -DCMAKE_UNITY_BUILD=$unity
 cmake --build --preset demo --target woodcock_program woodcock_verify_program \
     --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"

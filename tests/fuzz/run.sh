@@ -17,9 +17,24 @@ cmake --build "$build" --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
 declare -A runs=([scene]=20000 [display]=2000 [vdb]=1000)
 rm -rf "$build/corpus"
 "$seeds" "$build/corpus"
-for name in scene display vdb; do
-    echo "== $name: ${runs[$name]} inputs"
-    ASAN_OPTIONS=detect_leaks=0 "$build/tests/fuzz/${name}_fuzz" -runs="${runs[$name]}" -seed=1 \
+fuzz() {
+    ASAN_OPTIONS=detect_leaks=0 "$build/tests/fuzz/$1_fuzz" -runs="${runs[$1]}" -seed=1 \
         -timeout=30 -rss_limit_mb=2048 -max_len=32768 -print_final_stats=1 -verbosity=0 \
-        -artifact_prefix="$build/" "$build/corpus/$name"
+        -artifact_prefix="$build/" "$build/corpus/$1" >"$build/$1.log" 2>&1
+}
+# All at a time, as each runs on one thread.
+declare -A processes
+for name in scene display vdb; do
+    fuzz $name &
+    processes[$name]=$!
 done
+failed=()
+for name in scene display vdb; do
+    wait "${processes[$name]}" || failed+=("$name")
+    echo "== $name: ${runs[$name]} inputs"
+    cat "$build/$name.log"
+done
+if ((${#failed[@]})); then
+    echo "These fail: ${failed[*]}"
+    exit 1
+fi

@@ -11,6 +11,8 @@
 #include <stdexcept>
 
 #include "tests/support/paths.h"
+#include "tests/support/program_starter.h"
+#include "tests/support/start_request.h"
 
 namespace woodcock::test {
 
@@ -45,12 +47,30 @@ namespace {
     _exit(127);
 }
 
-void waitFor(pid_t process, ProgramResult& result) {
-    int status = 0;
-    rusage used{};
-    if (wait4(process, &status, 0, &used) != process) throw std::runtime_error("wait4 failed");
-    result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    result.residentBytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;
+void waitFor(const StartedProgram& started, ProgramResult& result) {
+    StartEnd end{};
+    if (started.end >= 0) {
+        if (read(started.end, &end, sizeof end) != sizeof end)
+            throw std::runtime_error("no word of the program's end");
+        close(started.end);
+    } else {
+        rusage used{};
+        if (wait4(started.process, &end.status, 0, &used) != started.process)
+            throw std::runtime_error("wait4 failed");
+        end.residentKiB = used.ru_maxrss;
+    }
+    result.exitCode = WIFEXITED(end.status) ? WEXITSTATUS(end.status) : 128 + WTERMSIG(end.status);
+    result.residentBytes = static_cast<std::size_t>(end.residentKiB) * 1024;
+}
+
+/// Programs within limits start as ever, as their memory counts from the first byte.
+StartedProgram start(const std::string& name, const std::vector<std::string>& arguments, int out,
+                     int err, const ProgramLimits& limits) {
+    const bool limited = limits.fileSize || limits.addressSpace || limits.seconds > 0;
+    if (canStartAgain() && !limited && name == program()) return startAgain(arguments, out, err);
+    const pid_t process = fork();
+    if (process == 0) execute(name, arguments, out, err, limits);
+    return {process, -1};
 }
 
 int openFor(const std::filesystem::path& file) {
@@ -66,12 +86,11 @@ ProgramResult runProgram(const std::vector<std::string>& arguments, const Progra
     const std::string name = (program.empty() ? test::program() : program).string();
     const TempDir dir;
     const int out = openFor(dir / "out"), err = openFor(dir / "err");
-    const pid_t process = fork();
-    if (process == 0) execute(name, arguments, out, err, limits);
+    const StartedProgram started = start(name, arguments, out, err, limits);
     close(out);
     close(err);
     ProgramResult result;
-    waitFor(process, result);
+    waitFor(started, result);
     result.out = readText(dir / "out");
     result.err = readText(dir / "err");
     return result;
@@ -80,17 +99,18 @@ ProgramResult runProgram(const std::vector<std::string>& arguments, const Progra
 RunningProgram::RunningProgram(const std::vector<std::string>& arguments) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-    const std::string name = program().string();
-    process_ = fork();
-    if (process_ == 0) execute(name, arguments, open("/dev/null", O_WRONLY), ends[1], {});
+    const int out = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    started_ = start(program().string(), arguments, out, ends[1], {});
+    close(out);
     close(ends[1]);
     err_ = fdopen(ends[0], "r");
 }
 
 RunningProgram::~RunningProgram() {
-    if (process_ > 0) {
-        kill(process_, SIGKILL);
-        waitpid(process_, nullptr, 0);
+    if (started_.process > 0) {
+        signal(SIGKILL);
+        ProgramResult ignored;
+        waitFor(started_, ignored);
     }
     fclose(err_);
 }
@@ -114,13 +134,13 @@ bool RunningProgram::awaitSamples(int samples) {
     return false;
 }
 
-void RunningProgram::signal(int number) { kill(process_, number); }
+void RunningProgram::signal(int number) { kill(started_.process, number); }
 
 ProgramResult RunningProgram::wait() {
     ProgramResult result;
     for (int c; (c = getc(err_)) != EOF;) result.err += static_cast<char>(c);
-    waitFor(process_, result);
-    process_ = -1;
+    waitFor(started_, result);
+    started_ = {};
     return result;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "tests/support/program_starter.h"
 
 namespace woodcock::test {
 
@@ -47,7 +47,7 @@ public:
     ProgramResult wait();
 
 private:
-    pid_t process_ = -1;
+    StartedProgram started_;
     FILE* err_ = nullptr;
 };
 

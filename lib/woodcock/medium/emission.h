@@ -50,6 +50,10 @@ public:
         const Box3d box = d_.worldFromIndex.box(extent_);
         return d_.movement && !extent_.empty() ? d_.movement->box(box) : box;
     }
+    /// Index-space box outside of which nothing is emitted, at all times.
+    const Box3d& extent() const { return extent_; }
+    /// Bounds of the field.
+    const grid::MajorantGrid& majorants() const { return majorants_; }
     /// q at a world position and a time within the shutter, by full trilinear interpolation.
     Rgb value(Vec3d world, float time = 0) const;
     /// Calls visit(t0, t1, bound) for the pieces of a ray before tMax where q may differ from 0 at

@@ -15,10 +15,9 @@ namespace {
 /// directions; and nobody asks for more than the picture.
 bool hasEvenBackground(const Scene& scene, const Needs& needs, const PathTracer::Options& options) {
     const light::LightSet& lights = scene.lights;
-    if (needs.surfaces || needs.emission || needs.motion || scene.camera.motion ||
-        !lights.meetable().empty() || options.stoppedLight || options.layers.depthSamples() ||
-        options.layers.stops || options.layers.parts.count() > 0 ||
-        options.approximations.clamp > 0)
+    if (needs.surfaces || needs.motion || scene.camera.motion || !lights.meetable().empty() ||
+        options.stoppedLight || options.layers.depthSamples() || options.layers.stops ||
+        options.layers.parts.count() > 0 || options.approximations.clamp > 0)
         return false;
     return std::ranges::all_of(lights.distant(), [&](int light) {
         const light::LightTraits& traits = lights.traits(light);
@@ -80,23 +79,39 @@ private:
     std::vector<std::int32_t> changes_;
 };
 
-/// Marks where a part may be seen: cell by cell where they are not too many. False: everywhere.
-bool mark(const medium::MediumPart& part, Marks& marks) {
-    const Affine3d& worldFromIndex = part.description().worldFromIndex;
+/// Marks where a field may be seen within an index-space box: cell by cell where they are not too
+/// many. False: everywhere.
+bool markField(const grid::MajorantGrid& majorants, const Affine3d& worldFromIndex,
+               const Box3d& extent, Marks& marks) {
     constexpr std::size_t mostCells = 100'000;  // take some 20 ms
-    if (part.unbounded() || part.readElsewhere() || part.description().movement) return false;
-    if (!part.field() || part.extent().empty() || part.majorants().entries() > mostCells)
-        return part.extent().empty() || marks.add(worldFromIndex, part.extent());
+    if (extent.empty()) return true;
+    if (majorants.entries() > mostCells) return marks.add(worldFromIndex, extent);
     bool all = true;
-    part.majorants().forEachEntry([&](Vec3i first, int log2Size, grid::Range range) {
-        if (!(range.max > 0)) return;
+    majorants.forEachEntry([&](Vec3i first, int log2Size, grid::Range range) {
+        if (range.max == 0 && range.min == 0) return;
         const Vec3d lower = first.as<double>();
         const double size = std::ldexp(1.0, log2Size);
-        const Box3d cell{max(lower, part.extent().lower),
-                         min(lower + Vec3d{size, size, size}, part.extent().upper)};
+        const Box3d cell{max(lower, extent.lower),
+                         min(lower + Vec3d{size, size, size}, extent.upper)};
         if (!cell.empty()) all = all && marks.add(worldFromIndex, cell);
     });
     return all;
+}
+
+bool mark(const medium::MediumPart& part, Marks& marks) {
+    const Affine3d& worldFromIndex = part.description().worldFromIndex;
+    if (part.unbounded() || part.readElsewhere() || part.description().movement) return false;
+    if (!part.field() || part.limits())
+        return part.extent().empty() || marks.add(worldFromIndex, part.extent());
+    return markField(part.majorants(), worldFromIndex, part.extent(), marks);
+}
+
+bool mark(const medium::EmissionPart& part, Marks& marks) {
+    const medium::EmissionPart::Description& d = part.description();
+    if (d.motion || d.movement) return false;
+    if (!d.field || d.field->limits())
+        return part.extent().empty() || marks.add(d.worldFromIndex, part.extent());
+    return markField(part.majorants(), d.worldFromIndex, part.extent(), marks);
 }
 
 }  // namespace
@@ -106,6 +121,8 @@ EmptyPixels::EmptyPixels(const Scene& scene, const Needs& needs, const PathTrace
     if (!hasEvenBackground(scene, needs, options)) return;
     Marks marks(scene.camera, options.width, options.height);
     for (const medium::MediumPart& part : scene.medium.parts)
+        if (!mark(part, marks)) return;
+    for (const medium::EmissionPart& part : scene.medium.emission)
         if (!mark(part, marks)) return;
     seen_ = marks.marked();
     for (const int light : scene.lights.distant()) {

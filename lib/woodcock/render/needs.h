@@ -16,7 +16,7 @@ struct Needs {
     bool lightSampling =
         false;              ///< a light that sampling the phase function would miss or sample badly
     bool surfaces = false;  ///< rays look for surfaces, and media lie within them
-    bool emission = false;  ///< media that emit: a point of every flight is sampled
+    bool emission = false;  ///< media that emit
     bool localLights = false;  ///< lights near or inside the medium: equiangular sampling
     bool motion = false;       ///< something moves while the shutter is open: paths draw a time
 

@@ -31,8 +31,9 @@
 // they know nothing of lights, materials or film. Every path has random numbers of its own. So the
 // order within a batch, and what else is in it, changes no result.
 //
-// Where a scene is made of media, suns and environments alone, `lanes/` takes the place of the
-// three stages in the middle: it traces all paths of the batch to their ends at once.
+// Where a scene is made of standing media, what they emit, suns and environments alone, `lanes/`
+// takes the place of the three stages in the middle: it traces all paths of the batch to their
+// ends.
 
 namespace woodcock::render {
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,12 @@ public:
         };
         grid.worldFromIndex =
             Affine3d::translate({-1, -1, -1}) * Affine3d::scale({2 / 15.0, 2 / 15.0, 2 / 15.0});
-        proof::writeVdb(dir_ / "ball.vdb", {grid});
+        proof::GridSpec heat = grid;
+        heat.name = "heat", heat.box = {{4, 2, 5}, {11, 13, 10}};
+        heat.value = [](Vec3i v) {
+            return std::pow(RandomStream(hashOf(33, v.x, v.y, v.z)).uniform(), 4);
+        };
+        proof::writeVdb(dir_ / "ball.vdb", {grid, heat});
     }
 
     render::Scene scene(const std::string& rest) const {
@@ -47,6 +53,7 @@ public:
     }
     static constexpr const char* air =
         "[[light]]\ntype = \"environment\"\nradiance = [0.3, 0.5, 0.7]\n";
+    static constexpr const char* fire = "emission = { grid = \"heat\", scale = [8, 3, 1] }\n";
     static constexpr const char* turned =
         "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60] }\n";
 
@@ -67,6 +74,9 @@ public:
             {"a disc", ball(cloud) + sun(3, 0.53) + air},
             {"droplets", ball(droplets) + ball(turned + cloud) + sun(3, 0.53) + air},
             {"no sun", ball(coloured) + air},
+            {"absorbing", ball("sigma_s = 2\nsigma_a = 3\n") + sun() + air},
+            {"fire", ball("sigma_s = 2\nsigma_a = 3\ng = 0.3\n" + std::string(fire)) + sun() + air},
+            {"coloured fires", ball(coloured + fire) + ball(turned + cloud + fire) + air},
             {"two suns", ball(coloured) + sun() + sun(1, 0.53) + air},
         };
     }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "tests/render/lanes/lane_subjects.h"
 #include "tests/support/expect_estimate.h"
@@ -79,7 +80,9 @@ std::vector<Moments> meansOfParts(const Scene& scene, PathTracer::Options option
 TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
     const std::string lights = S::sun() + "group = \"sun\"\n" + S::air + "group = \"air\"\n";
     for (const char* medium : {"sigma_s = 40\nsigma_a = 0.2\ng = 0.8\n",
-                               "sigma_s = [30, 20, 5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n",
+                               "sigma_s = [30, 20, 5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n"
+                               "emission = { grid = \"heat\", scale = [8, 3, 1] }\n"
+                               "group = \"fire\"\n",
                                "sigma_s = [1, 0.7, 0.5]\nsigma_a = [0.1, 0.2, 0.5]\ng = 0.5\n"}) {
         SCOPED_TRACE(medium);
         const Scene scene = subjects.scene(S::ball(medium) + lights);
@@ -89,6 +92,8 @@ TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
         options.layers.parts = {.kinds = true, .groups = {"sun", "air"}};
         const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
         options.cameraDepths = cameraDepths.get();
+        const bool glows = std::string_view(medium).find("emission") != std::string_view::npos;
+        if (glows) options.layers.parts.groups = {"fire", "sun", "air"};
         const auto lanes = meansOfParts(scene, options, 300, 1);
         options.lanes = false;
         const auto each = meansOfParts(scene, options, 300, 2);
@@ -103,6 +108,9 @@ TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
         EXPECT_GT(lanes[placeOf(LightKind::VolumeDirect)].mean(), 0.02);
         EXPECT_GT(lanes[placeOf(LightKind::VolumeIndirect)].mean(), 0.02);
         EXPECT_GT(lanes[placeOf(LightKind::Background)].mean(), 0.02);
+        if (glows) {
+            EXPECT_GT(lanes[placeOf(LightKind::Emission)].mean(), 1e-4);
+        }
     }
 }
 

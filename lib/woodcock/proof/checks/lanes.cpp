@@ -31,6 +31,20 @@ GridSpec raggedBall() {
     return grid;
 }
 
+/// A few hot voxels, in part outside of the ball, and coarser.
+GridSpec heat() {
+    GridSpec grid;
+    grid.name = "heat";
+    grid.box = {{0, 0, 0}, {9, 9, 9}};
+    grid.value = [](Vec3i v) {
+        const double u = RandomStream(hashOf(37, v.x, v.y, v.z)).uniform();
+        return u < 0.8 ? 0 : std::pow(8, u) - 5;
+    };
+    grid.worldFromIndex = Affine3d::translate({-0.6, -0.9, -0.7}) * Affine3d::rotate(1, 20) *
+                          Affine3d::scale({0.17, 0.2, 0.15});
+    return grid;
+}
+
 /// One value in a tile whose cells are wider than what else there is.
 GridSpec wideTile() {
     GridSpec grid;
@@ -164,8 +178,53 @@ std::vector<Subject> otherSubjects() {
     };
 }
 
+std::vector<Subject> glowingSubjects() {
+    const std::string lights = deltaSun + air;
+    const std::string hot = "emission = { grid = \"heat\", scale = [4, 2, 0.5] }\n";
+    const std::string bright = "emission = [0.5, 1, 2]\n";
+    const std::string fog = ball + mediumOf(1, 0.3, "g = 0.3"),
+                      smoke = ball + mediumOf(3, 5, "g = 0.6");
+    const std::string coloured = "sigma_s = [4, 2, 0.5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n";
+    const std::string turned =
+        "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60], scale = [1, 0.5, 0.8] "
+        "}\n";
+    const std::string far = "transform = { translate = [100000, 50000, -100000] }\n";
+    const std::string away =
+        "[camera]\neye = [100000, 50000.6, -99996.5]\nlook_at = [100000, 50000, -100000]\n"
+        "fov = 40\n";
+    return {
+        {"that glows", fog + bright + lights},
+        {"that hot voxels light", fog + hot + lights},
+        {"of smoke that hot voxels light", smoke + hot + lights},
+        {"that glows, of one scattering", fog + hot + lights, 1, 1},
+        {"that glows, of two scatterings", fog + hot + lights, 1, 2},
+        {"that glows and is thick",
+         ball + mediumOf(39, 1, "g = 0.7") + "emission = [5, 4, 3]\n" + lights, 0.3},
+        {"that glows in no other light", smoke + hot + air + hidden, 4},
+        {"that glows, chromatic", ball + coloured + hot + lights},
+        {"that glows, of two parts", smoke + bright + ball + turned + coloured + hot + lights},
+        {"that glows, of nearest voxels", fog + hot + lights + "[render]\nlookup = \"nearest\"\n"},
+        {"that glows, stored in 8 bits", smoke + "storage = \"fixed8\"\n" + hot + lights},
+        {"that glows, of Rayleigh",
+         ball + mediumOf(2, 0.1, "phase = { type = \"rayleigh\" }") + hot + lights},
+        {"that glows, of a table of colours",
+         ball +
+             mediumOf(2, 0.1,
+                      "phase = { type = \"table\", file = \"coloured.txt\", normalise = true }") +
+             hot + lights},
+        {"that glows far from the origin",
+         ball + far + mediumOf(2, 1, "g = 0.6") + hot + lights + away,
+         1,
+         {},
+         false},
+        {"that glows in a wide tile", tile + mediumOf(2, 1, "g = 0.6") + bright + lights},
+        {"that is lit by another that only glows",
+         fog + ball + "sigma_s = 0\nsigma_a = 0\n" + turned + hot + lights},
+    };
+}
+
 void compare(Lab& lab, const std::vector<Subject>& subjects) {
-    writeVdb(lab.file("ball.vdb"), {raggedBall()});
+    writeVdb(lab.file("ball.vdb"), {raggedBall(), heat()});
     writeVdb(lab.file("tile.vdb"), {wideTile()});
     writeTwoColouredSky(lab);
     writeColouredPhase(lab);
@@ -213,7 +272,9 @@ std::vector<Check> lanes() {
     return {{Kind::Sampling, "lanes and paths one by one",
              [](Lab& lab) { compare(lab, plainSubjects()); }},
             {Kind::Sampling, "lanes in all kinds of media",
-             [](Lab& lab) { compare(lab, otherSubjects()); }}};
+             [](Lab& lab) { compare(lab, otherSubjects()); }},
+            {Kind::Sampling, "lanes in media that glow",
+             [](Lab& lab) { compare(lab, glowingSubjects()); }}};
 }
 
 }  // namespace woodcock::proof

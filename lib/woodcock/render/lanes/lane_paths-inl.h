@@ -36,7 +36,8 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
         setLane(w_, lane, p.throughput);
         for (Floats* rows : {chance_, window_, prediction_, predicted_})
             setLane(rows, lane, Spectrum<N>());
-        if (auto* noted = collisionsOf(lane)) noted->clear();
+        collisionsToNote(traced_, batch_, l.path);  // makes room
+        if (!scene_.emission.empty()) lookForEmission(lane, nullptr);
         if (scatterCameraRay(lane)) {
             if (state_[lane] == Arrived) return;
             bringControls(lane);
@@ -49,10 +50,38 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
     state_[lane] = Idle;
 }
 
+/// Looks for what glows along the camera's ray or, where the path has scattered in `scatters`,
+/// along rays from there.
+template <int N>
+void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) {
+    constexpr int mostRays = 4;
+    const Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    EmissionVertex<N> vertex{.path = l.path,
+                             .set = l.set,
+                             .kind = kindOfLight(p, scatters ? 1 : 0),
+                             .position = scatters ? positionOf(lane) : p.origin,
+                             .direction = scatters ? directionOf(lane) : p.direction,
+                             .scatters = scatters,
+                             .throughput = throughputOf(lane),
+                             .key = p.random.bits(),
+                             .u = {p.equiangular, 0}};
+    if (!scatters && isToBeNoted(traced_, p)) vertex.depth.emplace(traced_, p);
+    if (scatters) {
+        vertex.rays = p.scatterings < 2 ? mostRays : 1;
+        if (l.quasiRandom)
+            vertex.u = numbers_[lane].light;
+        else
+            vertex.u = {p.random.uniform(), p.random.uniform()};
+    }
+    emission_.add(vertex);
+}
+
 /// Where the lane's flight is to note its collisions; null: nowhere.
 template <int N>
 std::vector<medium::FlightCollision>* LaneTracer<N>::collisionsOf(std::size_t lane) {
-    return collisionsToNote(traced_, batch_, lanes_[lane].path);
+    const bool notes = isToBeNoted(traced_, pathOf(lane));
+    return notes ? &batch_.collisions[lanes_[lane].path] : nullptr;
 }
 
 /// The path has left the medium.

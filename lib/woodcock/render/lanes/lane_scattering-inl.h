@@ -63,6 +63,7 @@ bool LaneTracer<N>::mayGoOn(std::size_t lane) {
         u.light = {p.random.uniform(), p.random.uniform()}, u.pick = p.random.uniform();
     }
     if (traced_.media.replaces()) enterMedium(lane);
+    if (!scene_.emission.empty() && !l.extra) lookForEmission(lane, &phaseOf(lane));
     if (samplesLights_)
         p.from = {positionOf(lane), directionOf(lane), &phaseOf(lane).part->phase(), p.time};
     return true;

@@ -108,8 +108,8 @@ void LanePart::setLattice(const medium::DepthGrid& grid) {
 
 std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
     const Needs& needs = traced.needs;
-    if (!traced.options.lanes || needs.surfaces || needs.emission || needs.localLights ||
-        needs.motion || !needs.scattering || traced.options.approximations.marchStep > 0 ||
+    if (!traced.options.lanes || needs.surfaces || needs.localLights || needs.motion ||
+        !needs.scattering || traced.options.approximations.marchStep > 0 ||
         traced.media.phasesOfSetOnward() || !traced.scene.lights.meetable().empty())
         return {};
     const auto& parts = traced.scene.medium.parts;
@@ -121,6 +121,16 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
     for (std::uint8_t set = 0; set < sets; ++set)
         for (const medium::MediumPart& part : traced.mediumOfSet(set).parts)
             scene.parts.emplace_back(part);
+    for (const LanePart& part : scene.parts) {
+        const Rgb& e = part.part->extinction();
+        scene.greyExtinction &= e[0] == e[1] && e[1] == e[2];
+    }
+    if (needs.emission)
+        for (std::uint8_t set = 0; set < sets; ++set) {
+            auto lattice = EmissionLattice::make(traced.media[traced.media.number(set, 0)]);
+            if (!lattice) return {};
+            scene.emission.push_back(std::move(*lattice));
+        }
     const MediumSummary& medium = traced.media[0];
     scene.thick = medium.meanExtinction * length(medium.bounds.size()) > thickFrom;
     scene.addLights();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "woodcock/render/lanes/emission_lattice.h"
 #include "woodcock/render/traced_scene.h"
 
 namespace woodcock::render {
@@ -50,6 +51,8 @@ struct LaneScene {
     Rgb environment{};
     int environmentLight = -1;
     bool environmentSeen = false;  ///< by camera rays, of all of these
+    bool greyExtinction = true;
+    std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
     /// Depths along camera rays; null: they are walked.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "woodcock/render/batch.h"
+#include "woodcock/render/lanes/lane_emission-inl.h"
 #include "woodcock/render/lanes/lane_rows-inl.h"
 #include "woodcock/render/lanes/lane_scene.h"
 #include "woodcock/render/stages/event_numbers.h"
@@ -52,6 +53,7 @@ struct Process {
 ///     lane_collisions-inl.h  decides tentative collisions
 ///     lane_sun-inl.h         brings sunlight to where paths scatter
 ///     lane_scattering-inl.h  what else happens there: turns, further flights, splitting, roulette
+///     lane_emission-inl.h    brings the light of what glows, by rays of its own
 ///
 /// What all lanes do is done in vectors, and look-ups lane by lane.
 template <int N>
@@ -61,6 +63,7 @@ public:
         : scene_(scene),
           traced_(scene.traced),
           batch_(batch),
+          emission_(scene, batch),
           several_(scene.partCount > 1),
           samplesLights_(!scene.others.empty() || (scene.sun >= 0 && !scene.delta)) {}
 
@@ -78,9 +81,10 @@ public:
                 step(walking);
                 decideCollisions();
             } else {
-                return;
+                break;
             }
         }
+        emission_.run();
     }
 
     const medium::TrackingCounters& counters() const { return counters_; }
@@ -166,6 +170,7 @@ private:
 
     // ---- lane_paths-inl.h
     void nextPath(std::size_t lane);
+    void lookForEmission(std::size_t lane, const LanePart* scatters);
     std::vector<medium::FlightCollision>* collisionsOf(std::size_t lane);
     void leave(std::size_t lane);
     double hitWeight(std::size_t lane, int light);
@@ -230,6 +235,7 @@ private:
     const LaneScene& scene_;
     const TracedScene& traced_;
     Batch<N, false>& batch_;
+    EmissionTracer<N> emission_;
     const bool several_;        // parts
     const bool samplesLights_;  // with numbers, from PathState::from
     std::vector<float> picks_, probabilities_;
