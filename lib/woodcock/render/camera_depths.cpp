@@ -8,6 +8,7 @@
 
 #include "woodcock/camera/projection.h"
 #include "woodcock/medium/line_depths.h"
+#include "woodcock/render/media_table.h"
 
 namespace woodcock::render {
 
@@ -45,7 +46,7 @@ std::size_t bytesOfFields(const medium::Medium& medium) {
 }  // namespace
 
 std::unique_ptr<const CameraDepths> CameraDepths::make(const Scene& scene, int width, int height) {
-    if (!canHaveLines(scene)) return nullptr;
+    if (!canHaveLines(scene) || isThick(MediumSummary(scene.medium))) return nullptr;
     std::unique_ptr<CameraDepths> depths(new CameraDepths(scene, width, height));
     if (!depths->layOut()) return nullptr;
     return depths;
@@ -102,6 +103,17 @@ bool CameraDepths::layOut() {
         return true;
     }
     return false;
+}
+
+double CameraDepths::bytesAtMost() const {
+    const double lines = double{1} * across_ * down_;
+    return lines * (sizeof(float*) + sizeof(float) * (steps_ + 1.0) *
+                                         static_cast<double>(scene_.medium.parts.size()));
+}
+
+double bytesOfCameraDepths(const Scene& scene, int width, int height) {
+    const auto depths = scene.surfaces ? nullptr : CameraDepths::make(scene, width, height);
+    return depths ? depths->bytesAtMost() : 0;
 }
 
 CameraDepths::~CameraDepths() {

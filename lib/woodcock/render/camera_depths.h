@@ -24,9 +24,12 @@ public:
     static constexpr std::size_t mostParts = 8;
     /// Null where the camera is inside of the medium's box or moves, where the medium has no end,
     /// moves, or has fields of several channels, and where the lattice would be too coarse to show
-    /// what the medium is like. The scene must outlive it.
+    /// what the medium is like. Null in thick media, too: where a camera ray scatters decides
+    /// little there. The scene must outlive it.
     static std::unique_ptr<const CameraDepths> make(const Scene& scene, int width, int height);
     ~CameraDepths();
+
+    double bytesAtMost() const;  ///< once all lines are made
 
     double near() const { return near_; }        ///< distance of the first node of each line
     double spacing() const { return spacing_; }  ///< of nodes along a ray, in world units
@@ -68,5 +71,8 @@ private:
     std::unique_ptr<std::atomic<float*>[]> lines_;
     mutable std::array<std::mutex, 64> making_;
 };
+
+/// Memory that the lines of a render of the scene take at most, in bytes.
+double bytesOfCameraDepths(const Scene& scene, int width, int height);
 
 }  // namespace woodcock::render
