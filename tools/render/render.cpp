@@ -40,10 +40,11 @@
 #include "woodcock/base/whole_file.h"
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
+#include "woodcock/render/camera_depths.h"
 #include "woodcock/render/precision.h"
-#include "woodcock/render/sun_depths.h"
 #include "woodcock/render/saved_state.h"
 #include "woodcock/render/session.h"
+#include "woodcock/render/sun_depths.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/scene_file.h"
@@ -416,7 +417,7 @@ private:
                                                (trials.size() > 1 ? 2 : 1) * scenes) +
                              pixels * (filmBytesPerPixel(settings_, description_) +
                                        writingBytesPerPixel(settings_, description_, outputs)) +
-                             sunDepthBytes_;
+                             depthBytes_;
         const RenderEstimate estimate =
             estimateAll(std::move(trials), std::max<std::size_t>(1, plan_.drawn.size()), fixed,
                         largest, denoisingTime(pixels));
@@ -431,8 +432,7 @@ private:
         trial.fileBytes = bytesOfVolumes(description_);
         trial.sceneBytes = bytesOf(loaded_);
         const render::Scene scene = scene::buildScene(description_, std::move(loaded_));
-        sunDepthBytes_ =
-            std::max(sunDepthBytes_, render::bytesOfSunDepths(scene, settings_.approximations));
+        depthBytes_ = std::max(depthBytes_, bytesOfDepths(scene));
         trial.loadSeconds += secondsSince(start);
         if (!measureRender(scene, settings_, trial, [] { return !interrupted(); }))
             endWith(exitInterrupted);
@@ -450,6 +450,12 @@ private:
 
     static double secondsSince(Clock::time_point start) {
         return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    /// Memory that grids of optical depths take at most.
+    double bytesOfDepths(const render::Scene& scene) const {
+        return render::bytesOfSunDepths(scene, settings_.approximations) +
+               render::bytesOfCameraDepths(scene, settings_.width, settings_.height);
     }
 
     static std::uintmax_t bytesOfVolumes(const scene::SceneDescription& scene) {
@@ -479,7 +485,7 @@ private:
         for (const std::string& warning : warnings.ofMotion(scene)) spdlog::warn("{}", warning);
 
         checkMemoryLeft(settings_, description_, outputs, options_.keepsCheckpoint(),
-                        render::bytesOfSunDepths(scene, settings_.approximations));
+                        bytesOfDepths(scene));
         if (!place_ || place_->index == 0) reportNeeds(scene);
         const image::StateFacts facts = factsOf(description_);
         const std::string& digest = facts.at("scene");
@@ -595,7 +601,7 @@ private:
     scene::SceneDescription description_;
     scene::Denoise askedDenoising_ = scene::Denoise::Never;  // before the denoiser was looked for
     std::optional<denoise::Denoiser> denoiser_;
-    double sunDepthBytes_ = 0;  // of the trial that takes most, where time and memory are estimated
+    double depthBytes_ = 0;  // of the trial that takes most, where time and memory are estimated
     std::optional<double> denoiseSeconds_;  // of the last picture
     render::RenderSettings settings_;
     scene::LoadedScene loaded_;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "woodcock/medium/look_up.h"
+#include "woodcock/medium/line_depths.h"
 
 namespace woodcock::medium {
 
@@ -184,34 +184,15 @@ const float* DepthGrid::makeColumn(std::size_t index) const {
 /// The nodes of one line: first the depth of each step, then their sums from the far end. A step
 /// is integrated by two points, which is quick and good enough for what is corrected.
 void DepthGrid::fillLine(Vec3d start, float* nodes) const {
-    constexpr double gauss = 0.57735026918962576;
     const int steps = length_ - 1;
     std::vector<double> depth(static_cast<std::size_t>(length_ * channels_));
     for (const MediumPart& part : medium_->parts) {
-        const grid::IndexRay ray = part.indexRay(start, towards_);
         const Rgb sigma = channels_ == 1 ? Rgb(part.extinction().maximum()) : part.extinction();
-        PartWalk walk(part, ray, steps * spacing_);
-        for (grid::Segment s; walk.next(s);) {
-            if (!(s.range.max > 0)) continue;
-            // Rounding may put a segment a little beyond the ends of the line.
-            int k = std::clamp(static_cast<int>(s.t0 * perSpacing_), 0, steps - 1);
-            for (double a = s.t0; a < s.t1; ++k) {
-                const double b = k + 1 < steps ? std::clamp((k + 1) * spacing_, a, s.t1) : s.t1;
-                const double middle = (a + b) / 2, half = (b - a) / 2;
-                for (int c = 0; c < channels_; ++c) {
-                    double f = 2 * double{s.range.max};
-                    if (s.range.min != s.range.max) {
-                        const grid::Field& field = *part.field();
-                        const int channel = field.channels() == 1 ? 0 : c;
-                        f = double{field.trilinear(ray.at(middle - gauss * half), channel)} +
-                            double{field.trilinear(ray.at(middle + gauss * half), channel)};
-                    }
-                    depth[static_cast<std::size_t>(k * channels_ + c)] +=
-                        half * f * double{sigma[c]};
-                }
-                a = b;
-            }
-        }
+        integrateSteps(part, part.indexRay(start, towards_), steps, spacing_, channels_,
+                       [&](int k, int c, double integral) {
+                           depth[static_cast<std::size_t>(k * channels_ + c)] +=
+                               integral * double{sigma[c]};
+                       });
     }
     for (int c = 0; c < channels_; ++c) {
         double sum = 0;

@@ -14,11 +14,15 @@ bool flightsMeetLight(const Scene& scene, const Needs& needs) {
 
 }  // namespace
 
+bool isThick(const MediumSummary& medium) {
+    constexpr double thick = 30;
+    return !medium.medium->parts.empty() &&
+           medium.meanExtinction * length(medium.bounds.size()) > thick;
+}
+
 bool thickAndPeaked(const MediumSummary& medium) {
-    constexpr double thick = 30, peaked = 8;
-    if (medium.medium->parts.empty() ||
-        medium.meanExtinction * length(medium.bounds.size()) < thick)
-        return false;
+    constexpr double peaked = 8;
+    if (!isThick(medium)) return false;
     // How much the density of a sampled direction varies: its mean over that of isotropic light.
     const medium::PhaseFunction& phase = medium.medium->parts.front().phase();
     constexpr int points = 64;

@@ -12,8 +12,11 @@
 
 namespace woodcock::render {
 
-/// Whether paths in a medium are long, and a single next event is noisy as the phase function has a
-/// peak: see several_events.h. Elsewhere several events cost more than they bring.
+/// Whether paths in a medium are long, as the mean optical depth of its diagonal tells.
+bool isThick(const MediumSummary& medium);
+
+/// Whether they are, and a single next event is noisy as the phase function has a peak: see
+/// several_events.h. Elsewhere several events cost more than they bring.
 bool thickAndPeaked(const MediumSummary& medium);
 
 /// The media of a scene by number. They come in sets, each of as many: first the scene's own,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
@@ -37,8 +38,9 @@ struct PathState {
     PathResult* result;
     SampleSequence sequence;
     RandomStream random;
-    Vec3d origin, direction;  ///< of the flight ahead
-    float time = 0;           ///< of the whole path, within the shutter: see camera::CameraRay
+    Vec3d origin, direction;         ///< of the flight ahead
+    std::array<double, 2> raster{};  ///< of the camera ray, in pixels
+    float time = 0;  ///< of the whole path, within the shutter: see camera::CameraRay
     Spectrum<N> throughput{1.0f};
     /// Of absorbing media on the camera's ray: 1 - throughput without rounding.
     Spectrum<N> opacity{};

@@ -116,6 +116,7 @@ public:
           needs_(findNeeds(scene)),
           approximateMedia_(scene, settings.approximations),
           sunDepths_(scene, settings.approximations, approximateMedia_),
+          cameraDepths_(CameraDepths::make(scene, settings.width, settings.height)),
           tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
           state_{image::Film(settings.width, settings.height, crop,
                              {.surfaces = needs_.surfaces,
@@ -398,6 +399,7 @@ private:
                 .stoppedLight = state_.mattes || state_.deep,
                 .approximateMedia = &approximateMedia_,
                 .sunDepths = &sunDepths_,
+                .cameraDepths = cameraDepths_.get(),
                 .emptyPixels = emptyPixels_ ? &*emptyPixels_ : nullptr};
     }
 
@@ -411,6 +413,7 @@ private:
     const Needs needs_;
     const ApproximateMedia approximateMedia_;
     const SunDepths sunDepths_;
+    const std::unique_ptr<const CameraDepths> cameraDepths_;
     std::optional<EmptyPixels> emptyPixels_;  // made from the other options
     /// One for each thread that renders, made when it first does.
     tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;

@@ -51,6 +51,8 @@ protected:
             const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
             PathTracer::Options options;
             options.width = options.height = 8, options.seed = 7, options.sunDepths = &depths;
+            const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+            options.cameraDepths = cameraDepths.get();
             EXPECT_TRUE(LaneScene::make(TracedScene(scene, findNeeds(scene), options)));
             check(scene, options);
         }

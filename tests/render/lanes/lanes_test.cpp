@@ -41,6 +41,8 @@ TEST_F(Lanes, EveryPathInAFurnaceBringsTheSame) {
             const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
             PathTracer::Options options;
             options.width = options.height = 10, options.sunDepths = &depths;
+            const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+            options.cameraDepths = cameraDepths.get();
             const TracedScene traced(scene, findNeeds(scene), options);
             const auto lanes = LaneScene::make(traced);
             ASSERT_TRUE(lanes);
@@ -80,13 +82,16 @@ TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
     for (const char* medium : {"sigma_s = 40\nsigma_a = 0.2\ng = 0.8\n",
                                "sigma_s = [30, 20, 5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n"
                                "emission = { grid = \"heat\", scale = [8, 3, 1] }\n"
-                               "group = \"fire\"\n"}) {
+                               "group = \"fire\"\n",
+                               "sigma_s = [1, 0.7, 0.5]\nsigma_a = [0.1, 0.2, 0.5]\ng = 0.5\n"}) {
         SCOPED_TRACE(medium);
         const Scene scene = subjects.scene(S::ball(medium) + lights);
         const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
         PathTracer::Options options;
         options.width = options.height = 6, options.sunDepths = &depths;
         options.layers.parts = {.kinds = true, .groups = {"sun", "air"}};
+        const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+        options.cameraDepths = cameraDepths.get();
         const bool glows = std::string_view(medium).find("emission") != std::string_view::npos;
         if (glows) options.layers.parts.groups = {"fire", "sun", "air"};
         const auto lanes = meansOfParts(scene, options, 300, 1);
@@ -176,6 +181,8 @@ TEST_F(Lanes, StopsAreThoseOfPathsOneByOne) {
         PathTracer::Options options;
         options.width = options.height = 6;
         options.stoppedLight = options.layers.stops = true;
+        const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
+        options.cameraDepths = cameraDepths.get();
         const std::vector<PathJob> jobs = jobsOf(6, 4);
         std::array<std::array<Moments, 4>, 2> means;  // alpha, stopped light, and its depths
         for (const bool lanes : {false, true}) {

@@ -81,7 +81,8 @@ struct Subject {
     double effort = 1;  ///< so many times the seeds of the others
     std::optional<int> maxScatterings{};
     bool camera = true;  ///< the usual one is to be added
-    /// Of what the grid of depths to the sun is to be made, where that is to be wrong.
+    /// Of what the depths to the sun and along camera rays are to be made, where they are to be
+    /// wrong.
     std::string gridOf = {};
 };
 
@@ -104,13 +105,13 @@ std::vector<Subject> plainSubjects() {
         {"of five scatterings", cloud + lights, 1, 5},
         {"thick, by a grid of a tenth of the density",
          cloud + lights,
-         0.3,
+         0.6,
          {},
          true,
          ball + mediumOf(6, 0, "g = 0.85") + lights},
         {"by a grid of thrice the density, elsewhere",
          fog + lights,
-         1,
+         3,
          {},
          true,
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
@@ -238,6 +239,8 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
         const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
         SmallPicture picture{
             .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
+        const auto cameraDepths = render::CameraDepths::make(other, picture.side, picture.side);
+        picture.cameraDepths = cameraDepths.get();
         const std::string name = std::string("picture ") + subject.name;
         Case used{.name = name + ", traced in lanes", .expected = 1};
         used.measured = inLanes(scene, picture);

@@ -16,6 +16,7 @@ render::PathTracer::Options optionsOf(const SmallPicture& picture) {
     options.width = options.height = picture.side;
     options.maxScatterings = picture.maxScatterings;
     options.lanes = picture.lanes, options.sunDepths = picture.sunDepths;
+    options.cameraDepths = picture.cameraDepths;
     return options;
 }
 

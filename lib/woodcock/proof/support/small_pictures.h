@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "woodcock/base/statistics.h"
+#include "woodcock/render/camera_depths.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/sun_depths.h"
 
@@ -15,8 +16,9 @@ namespace woodcock::proof {
 struct SmallPicture {
     int side = 6, samples = 4;
     std::optional<int> maxScatterings{};
-    bool lanes = true;                             ///< see PathTracer::Options
-    const render::SunDepths* sunDepths = nullptr;  ///< the same
+    bool lanes = true;                                   ///< see PathTracer::Options
+    const render::SunDepths* sunDepths = nullptr;        ///< the same
+    const render::CameraDepths* cameraDepths = nullptr;  ///< the same
 };
 
 /// Means over a small picture, of which each seed's is a sample.

@@ -38,8 +38,13 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
             setLane(rows, lane, Spectrum<N>());
         collisionsToNote(traced_, batch_, l.path);  // makes room
         if (!scene_.emission.empty()) lookForEmission(lane, nullptr);
-        if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
-        leave(lane);
+        if (scatterCameraRay(lane)) {
+            if (state_[lane] == Arrived) return;
+            bringControls(lane);
+        } else {
+            if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
+            leave(lane);
+        }
         p.alive = false;
     }
     state_[lane] = Idle;
@@ -49,21 +54,26 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
 /// along rays from there.
 template <int N>
 void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) {
-    constexpr int mostRays = 4;
     const Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
+    Spectrum<N> throughput = throughputOf(lane);
+    if (scatters && l.fromCamera) throughput *= l.correction;  // what comes later has it no more
     EmissionVertex<N> vertex{.path = l.path,
                              .set = l.set,
                              .kind = kindOfLight(p, scatters ? 1 : 0),
                              .position = scatters ? positionOf(lane) : p.origin,
                              .direction = scatters ? directionOf(lane) : p.direction,
                              .scatters = scatters,
-                             .throughput = throughputOf(lane),
+                             .throughput = throughput,
                              .key = p.random.bits(),
                              .u = {p.equiangular, 0}};
     if (!scatters && isToBeNoted(traced_, p)) vertex.depth.emplace(traced_, p);
     if (scatters) {
-        vertex.rays = p.scatterings < 2 ? mostRays : 1;
+        // As many as its light is worth: of 3 to 99 rays for a weight of 1, 6 measured best.
+        constexpr float raysPerWeight = 6, mostRays = 4;
+        if (p.scatterings < 2)
+            vertex.rays = static_cast<int>(
+                std::clamp(std::ceil(raysPerWeight * throughput.maximum()), 1.0f, mostRays));
         if (l.quasiRandom)
             vertex.u = numbers_[lane].light;
         else
@@ -185,6 +195,7 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
               (toRgb(laneOf(prediction_, lane)) - window * static_cast<float>(1 / (4 * pi))) *
                   scene_.centre.weight,
               kind, lights.group(scene_.sun));
+    if (lanes_[lane].fromCamera) endCameraPath(lane);
 }
 
 }  // namespace woodcock::render::HWY_NAMESPACE

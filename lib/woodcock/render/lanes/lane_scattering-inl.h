@@ -44,7 +44,7 @@ bool LaneTracer<N>::mayGoOn(std::size_t lane) {
     Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
     if (!l.extra) {
-        if (seen(p)) {
+        if (seen(p) && !l.fromCamera) {
             p.throughput = throughputOf(lane);
             endCameraFlight(lane, true);
         }
@@ -254,7 +254,7 @@ void LaneTracer<N>::play(Mask departing, F random) {
     const Mask dies = random >= survival;
     for (int c = 0; c < N; ++c) {
         const F before = w_[c].get(), after = hn::IfThenZeroElse(dies, before / survival);
-        if (scene_.thick)
+        if (scene_.thick || scene_.cameraDepths)
             chance_[c].set(plays, chance_[c].get() + equilibrium_[c].get() * (after - before));
         w_[c].set(plays, after);
     }

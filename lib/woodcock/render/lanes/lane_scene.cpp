@@ -13,8 +13,6 @@ constexpr std::size_t mostParts = 8;
 /// The optical depth of a voxel up to which tentative collisions are few in a cell. Deeper media
 /// need RefinedWalk.
 constexpr double deepestVoxel = 32;
-/// The mean optical depth of the medium's diagonal from which paths are long.
-constexpr double thickFrom = 30;
 
 double longestEdgeOfVoxel(const Affine3d& worldFromIndex) {
     double longest = 0;
@@ -131,10 +129,23 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
             if (!lattice) return {};
             scene.emission.push_back(std::move(*lattice));
         }
-    const MediumSummary& medium = traced.media[0];
-    scene.thick = medium.meanExtinction * length(medium.bounds.size()) > thickFrom;
+    scene.thick = isThick(traced.media[0]);
     scene.addLights();
+    scene.addCameraDepths();
     return scene;
+}
+
+void LaneScene::addCameraDepths() {
+    if (!others.empty()) return;  // what waits for a shadow ray cannot be corrected any more
+    cameraDepths = traced.options.cameraDepths;
+    if (!cameraDepths) return;
+    Rgb scattering, extinction;
+    for (std::size_t k = 0; k < partCount; ++k)
+        scattering += parts[k].part->scattering(), extinction += parts[k].part->extinction();
+    for (int c = 0; c < 3; ++c) {
+        if (!(extinction[c] > 0)) continue;
+        cameraAlbedo[c] = scattering[c] / extinction[c];
+    }
 }
 
 void LaneScene::addLights() {

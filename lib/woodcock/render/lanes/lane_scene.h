@@ -55,6 +55,11 @@ struct LaneScene {
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
+    /// Depths along camera rays; null: they are walked.
+    const CameraDepths* cameraDepths = nullptr;
+    /// Of all parts: how much each channel counts where points are drawn along a camera ray, and
+    /// what an even environment is expected to bring to there.
+    Rgb cameraAlbedo;
 
     /// Nothing where the scene needs more than lanes can do; its paths are then traced one by one.
     static std::optional<LaneScene> make(const TracedScene& traced);
@@ -62,6 +67,7 @@ struct LaneScene {
 private:
     explicit LaneScene(const TracedScene& t) : traced(t) {}
     void addLights();
+    void addCameraDepths();
 };
 
 }  // namespace woodcock::render

@@ -48,6 +48,7 @@ struct Process {
 /// their own, by what they do:
 ///
 ///     lane_paths-inl.h       gives lanes their paths, and ends them
+///     lane_camera-inl.h      draws where camera rays scatter, where that needs no walk
 ///     lane_walk-inl.h        from cell to cell, until a tentative collision
 ///     lane_collisions-inl.h  decides tentative collisions
 ///     lane_sun-inl.h         brings sunlight to where paths scatter
@@ -120,6 +121,13 @@ private:
         bool quasiRandom = false;        ///< also for the turn and the flight ahead
         std::int64_t scatterings = 0;    ///< of the branches before
 
+        // Of a path that scatterCameraRay() has begun:
+        bool fromCamera = false;
+        Vec3d cameraDirection;
+        Spectrum<N> passes, correction;  ///< of the camera ray; of all that scatters on it
+        /// What each part stops where it scatters, before the correction.
+        Spectrum<N> stopped[CameraDepths::mostParts];
+
         // Of several flights from where the path has turned:
         bool extra = false;  ///< this is one of them, and not the path's own
         int flights = 1, extraLeft = 0, ownStratum = 0;
@@ -170,6 +178,13 @@ private:
     void endCameraFlight(std::size_t lane, bool scattered);
     void endBranch(std::size_t lane);
     void bringControls(std::size_t lane);
+
+    // ---- lane_camera-inl.h
+    bool scatterCameraRay(std::size_t lane);
+    void correctCameraRay(std::size_t lane, double t, const Spectrum<N>& estimate, float chance);
+    bool scatterAt(std::size_t lane, double t, const Spectrum<N>& weight);
+    void endCameraPath(std::size_t lane);
+    void noteCameraStops(std::size_t lane);
 
     // ---- lane_walk-inl.h
     bool begin(std::size_t lane, Vec3d origin, float depth);

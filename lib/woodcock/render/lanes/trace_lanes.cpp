@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "woodcock/render/lanes/lane_camera-inl.h"
 #include "woodcock/render/lanes/lane_collisions-inl.h"
 #include "woodcock/render/lanes/lane_emission-inl.h"
 #include "woodcock/render/lanes/lane_paths-inl.h"

@@ -152,6 +152,16 @@ void noteStops(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t
         AbsorptionStops(toRgb(p.throughput), batch.depths[i]).forEach(left, add);
 }
 
+void addStop(const TracedScene& traced, image::StoppedLight& stopped, double depth,
+             std::size_t part, double amount) {
+    const double left = leftOf(stopped);
+    stopped.stops.push_back({.near = depth,
+                             .far = depth,
+                             .before = left,
+                             .after = left - amount,
+                             .owner = ownerOf(traced.scene, 0, static_cast<int>(part))});
+}
+
 template <int N>
 void noteFirstSurface(const TracedScene& traced, const PathState<N, true>& p) {
     image::StoppedLight& stopped = *p.result->stopped;

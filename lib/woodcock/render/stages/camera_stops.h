@@ -61,6 +61,10 @@ void noteOnCameraRay(const TracedScene& traced, Batch<N, Surfaces>& batch, doubl
     ray.cameraDepth = static_cast<float>(PlanarDepth(traced, p).at(t));
 }
 
+/// The same of one part of the outer medium, which stops so much at a depth.
+void addStop(const TracedScene& traced, image::StoppedLight& stopped, double depth,
+             std::size_t part, double amount);
+
 /// The camera ray of path p ends at distance t, as the path scatters there.
 template <int N, bool Surfaces>
 void noteFirstScattering(const TracedScene& traced, const PathState<N, Surfaces>& p, double t) {

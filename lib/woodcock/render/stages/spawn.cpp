@@ -25,6 +25,7 @@ void spawn(const TracedScene& traced, Batch<N, Surfaces>& batch, const PathJob& 
          .random = RandomStream(hashOf(options.seed, 0x70617468, job.x, job.y, job.sample)),
          .origin = ray.origin,
          .direction = ray.direction,
+         .raster = {job.x + u[0], job.y + u[1]},
          .time = ray.time,
          .flight = 1 - u[2],
          .mediumSet = traced.media.setAfter(0)});

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "woodcock/render/camera_depths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "woodcock/camera/projection.h"
+#include "woodcock/medium/line_depths.h"
+#include "woodcock/render/media_table.h"
+
+namespace woodcock::render {
+
+namespace {
+
+/// How many of the finest voxels lie from node to node, where the memory allows it; and at most.
+constexpr double voxelsBetweenNodes = 2, mostVoxelsBetweenNodes = 16;
+/// Memory that all lines may take: so much, or a quarter of the medium's fields.
+constexpr std::size_t mostLineBytes = 64u << 20;
+
+bool canHaveLines(const Scene& scene) {
+    const auto& parts = scene.medium.parts;
+    return !parts.empty() && parts.size() <= CameraDepths::mostParts && !scene.camera.motion &&
+           std::ranges::all_of(parts, [](const medium::MediumPart& part) {
+               return part.field() && part.field()->channels() == 1 && !part.unbounded() &&
+                      !part.extinctionVaries() && !part.moved() && !part.readElsewhere() &&
+                      !part.description().movement && !part.support().empty();
+           });
+}
+
+double finestVoxel(const medium::Medium& medium) {
+    double finest = std::numeric_limits<double>::infinity();
+    for (const medium::MediumPart& part : medium.parts)
+        for (const Vec3d& axis : part.description().worldFromIndex.column)
+            finest = std::min(finest, length(axis));
+    return finest;
+}
+
+std::size_t bytesOfFields(const medium::Medium& medium) {
+    std::size_t bytes = 0;
+    for (const medium::MediumPart& part : medium.parts) bytes += part.field()->bytes();
+    return bytes;
+}
+
+}  // namespace
+
+std::unique_ptr<const CameraDepths> CameraDepths::make(const Scene& scene, int width, int height) {
+    if (!canHaveLines(scene) || isThick(MediumSummary(scene.medium))) return nullptr;
+    std::unique_ptr<CameraDepths> depths(new CameraDepths(scene, width, height));
+    if (!depths->layOut()) return nullptr;
+    return depths;
+}
+
+CameraDepths::CameraDepths(const Scene& scene, int width, int height)
+    : scene_(scene), rays_(scene.camera, width, height), width_(width), height_(height) {}
+
+bool CameraDepths::layOut() {
+    const Box3d box = scene_.medium.worldBounds();
+    const bool perspective = scene_.camera.kind == camera::Camera::Kind::Perspective;
+    const Vec3d eye = scene_.camera.worldFromCamera.translation;
+    const Vec3d forward = rays_.at(width_ / 2.0, height_ / 2.0).direction;
+    double x1 = 0, y1 = 0, nearest = 1e300, farthest = 0;
+    x0_ = width_, y0_ = height_;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner = box.corner(i);
+        const auto at = camera::pixelOf(scene_.camera, corner, width_, height_);
+        const double distance = perspective ? length(corner - eye) : dot(corner - eye, forward);
+        if (!at || !(distance > 0)) return false;
+        x0_ = std::min(x0_, (*at)[0]), x1 = std::max(x1, (*at)[0]);
+        y0_ = std::min(y0_, (*at)[1]), y1 = std::max(y1, (*at)[1]);
+        nearest = std::min(nearest, distance), farthest = std::max(farthest, distance);
+    }
+    if (perspective) nearest = length(max(box.lower, min(box.upper, eye)) - eye);
+    x0_ = std::clamp(x0_, 0.0, width_ * 1.0), x1 = std::clamp(x1, 0.0, width_ * 1.0);
+    y0_ = std::clamp(y0_, 0.0, height_ * 1.0), y1 = std::clamp(y1, 0.0, height_ * 1.0);
+    if (!(x1 > x0_ && y1 > y0_ && nearest > 0)) return false;
+    const double middle = (nearest + farthest) / 2;
+    const auto place = [&](double x) {
+        const camera::CameraRay ray = rays_.at(x, height_ / 2.0);
+        return ray.origin + ray.direction * middle;
+    };
+    const double pixel = length(place(width_ / 2.0 + 1) - place(width_ / 2.0));
+    const double finest = finestVoxel(scene_.medium);
+    const auto most =
+        static_cast<double>(std::max(mostLineBytes, bytesOfFields(scene_.medium) / 4));
+    constexpr double coarser = 1.1;
+    near_ = nearest;
+    const auto nodes = [](double size, double step) { return std::ceil(size / step) + 1; };
+    for (double voxels = voxelsBetweenNodes; voxels <= mostVoxelsBetweenNodes; voxels *= coarser) {
+        spacing_ = voxels * finest, step_ = spacing_ / pixel;
+        const double across = nodes(x1 - x0_, step_), down = nodes(y1 - y0_, step_),
+                     along = nodes(farthest - nearest, spacing_);
+        if (across * down * along * sizeof(float) *
+                static_cast<double>(scene_.medium.parts.size()) >
+            most)
+            continue;
+        across_ = std::max(2, static_cast<int>(across)),
+        down_ = std::max(2, static_cast<int>(down));
+        steps_ = std::max(1, static_cast<int>(along) - 1);
+        lines_ = std::make_unique<std::atomic<float*>[]>(static_cast<std::size_t>(across_) *
+                                                         static_cast<std::size_t>(down_));
+        return true;
+    }
+    return false;
+}
+
+double CameraDepths::bytesAtMost() const {
+    const double lines = double{1} * across_ * down_;
+    return lines * (sizeof(float*) + sizeof(float) * (steps_ + 1.0) *
+                                         static_cast<double>(scene_.medium.parts.size()));
+}
+
+double bytesOfCameraDepths(const Scene& scene, int width, int height) {
+    const auto depths = scene.surfaces ? nullptr : CameraDepths::make(scene, width, height);
+    return depths ? depths->bytesAtMost() : 0;
+}
+
+CameraDepths::~CameraDepths() {
+    for (int i = 0; i < across_ * down_; ++i) delete[] lines_[static_cast<std::size_t>(i)].load();
+}
+
+CameraDepths::Ray CameraDepths::at(double x, double y) const {
+    const auto find = [&](double at, int lines, int& first) {
+        const double inside = std::clamp(at / step_, 0.0, lines - 1.0);
+        first = std::min(static_cast<int>(inside), lines - 2);
+        return static_cast<float>(inside - first);
+    };
+    int i, j;
+    const float u = find(x - x0_, across_, i), v = find(y - y0_, down_, j);
+    return {{line(i, j), line(i + 1, j), line(i, j + 1), line(i + 1, j + 1)},
+            {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v},
+            scene_.medium.parts.size()};
+}
+
+float CameraDepths::Ray::spread(int node, std::size_t part) const {
+    const std::size_t i = static_cast<std::size_t>(node) * parts + part;
+    const auto [least, most] = std::minmax({lines[0][i], lines[1][i], lines[2][i], lines[3][i]});
+    return most - least;
+}
+
+const float* CameraDepths::line(int i, int j) const {
+    const auto index = static_cast<std::size_t>(j) * static_cast<std::size_t>(across_) +
+                       static_cast<std::size_t>(i);
+    const float* made = lines_[index].load(std::memory_order_acquire);
+    return made ? made : makeLine(index);
+}
+
+const float* CameraDepths::makeLine(std::size_t index) const {
+    const std::lock_guard lock(making_[index % making_.size()]);
+    if (const float* made = lines_[index].load(std::memory_order_acquire)) return made;
+    auto nodes = std::make_unique<float[]>(static_cast<std::size_t>(steps_ + 1) *
+                                           scene_.medium.parts.size());
+    const auto across = static_cast<std::size_t>(across_);
+    fill(x0_ + static_cast<double>(index % across) * step_,
+         y0_ + static_cast<double>(index / across) * step_, nodes.get());
+    lines_[index].store(nodes.get(), std::memory_order_release);
+    return nodes.release();
+}
+
+void CameraDepths::fill(double x, double y, float* nodes) const {
+    const camera::CameraRay ray = rays_.at(x, y);
+    const std::size_t parts = scene_.medium.parts.size();
+    std::vector<double> steps(static_cast<std::size_t>(steps_));
+    for (std::size_t p = 0; p < parts; ++p) {
+        const medium::MediumPart& part = scene_.medium.parts[p];
+        std::ranges::fill(steps, 0.0);
+        medium::integrateSteps(
+            part, part.indexRay(ray.origin + ray.direction * near_, ray.direction), steps_,
+            spacing_, 1,
+            [&](int k, int, double integral) { steps[static_cast<std::size_t>(k)] += integral; });
+        double sum = 0;
+        for (std::size_t k = 0; k <= steps.size(); ++k) {
+            nodes[k * parts + p] = static_cast<float>(sum);
+            if (k < steps.size()) sum += steps[k];
+        }
+    }
+}
+
+}  // namespace woodcock::render

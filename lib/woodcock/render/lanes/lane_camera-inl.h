@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each set of instructions: see trace_lanes.cpp.
+#if defined(WOODCOCK_LANE_CAMERA) == defined(HWY_TARGET_TOGGLE)
+#ifdef WOODCOCK_LANE_CAMERA
+#undef WOODCOCK_LANE_CAMERA
+#else
+#define WOODCOCK_LANE_CAMERA
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "woodcock/medium/optical_depth.h"
+#include "woodcock/render/camera_depths.h"
+#include "woodcock/render/lanes/lane_tracer-inl.h"
+#include "woodcock/render/stages/camera_stops.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace woodcock::render::HWY_NAMESPACE {
+
+/// So often the point of a camera ray is drawn evenly, so that it may be wherever the medium is.
+inline constexpr double evenPoints = 1.0 / 32;
+/// Corrections of camera rays are made at least so often.
+inline constexpr float rarestCameraCorrection = 1.0f / 256;
+/// Elsewhere their chance is this times d^1.5, where neighbouring lines differ by d.
+inline constexpr float correctionsPerDepth = 0.2f;
+/// A transmittance is estimated as no less than exp() of minus this, so that it can be corrected by
+/// a factor.
+inline constexpr float deepestCameraDepth = 30;
+
+/// The optical depth of each channel along a camera ray, as CameraDepths has it.
+template <int N>
+class DepthsAhead {
+public:
+    DepthsAhead(const CameraDepths& depths, const CameraDepths::Ray& ray, const LanePart* parts)
+        : depths_(depths), ray_(ray), parts_(parts), whole_(atNode(depths.steps())) {}
+
+    Spectrum<N> atNode(int node) const {
+        Spectrum<N> depth;
+        for (std::size_t k = 0; k < ray_.parts; ++k)
+            depth += channels<N>(parts_[k].part->extinction()) * ray_.density(node, k);
+        return depth;
+    }
+    const Spectrum<N>& whole() const { return whole_; }
+
+    /// By how much the lines around the ray differ, up to a node.
+    float spread(int node) const {
+        float sum = 0;
+        for (std::size_t k = 0; k < ray_.parts; ++k)
+            sum += parts_[k].part->largestExtinction() * ray_.spread(node, k);
+        return sum;
+    }
+
+    /// The distance at which a channel has this depth; less than in all.
+    double find(int channel, float depth) const {
+        int low = 0, high = depths_.steps();
+        while (high - low > 1) {
+            const int middle = (low + high) / 2;
+            (atNode(middle)[channel] > depth ? high : low) = middle;
+        }
+        const float a = atNode(low)[channel], b = atNode(high)[channel];
+        const double share = b > a ? std::clamp(double{(depth - a) / (b - a)}, 0.0, 1.0) : 0.5;
+        return depths_.near() + (low + share) * depths_.spacing();
+    }
+
+    /// At a distance: the step there, the depth, and by how much it grows along the ray.
+    struct Place {
+        int step;
+        Spectrum<N> depth, slope;
+    };
+    Place at(double t) const {
+        const double inside = std::clamp((t - depths_.near()) / depths_.spacing(), 0.0,
+                                         double{static_cast<float>(depths_.steps())});
+        const int step = std::min(static_cast<int>(inside), depths_.steps() - 1);
+        const Spectrum<N> a = atNode(step), more = atNode(step + 1) - a;
+        return {step, a + more * static_cast<float>(inside - step),
+                more * static_cast<float>(1 / depths_.spacing())};
+    }
+
+private:
+    const CameraDepths& depths_;
+    const CameraDepths::Ray& ray_;
+    const LanePart* parts_;
+    Spectrum<N> whole_;
+};
+
+template <int N>
+Spectrum<N> transmittanceOf(const Spectrum<N>& depth) {
+    return Spectrum<N>::map(
+        [&](int c) { return std::exp(-std::min(depth[c], deepestCameraDepth)); });
+}
+
+/// The chance of a correction, by how much lines differ up to the point and in all, and by how much
+/// passes.
+inline float correctionChance(float toPoint, float whole, float passes) {
+    const auto unsure = [](float spread) { return spread * std::sqrt(spread); };
+    return std::clamp(
+        correctionsPerDepth * (unsure(toPoint) * (1 - passes) + unsure(whole) * passes),
+        rarestCameraCorrection, 1.0f);
+}
+
+/// Draws where a camera ray scatters, by the depths along it, and weights the path by what
+/// scatters there. The light behind the medium is added for what passes. So no chance decides
+/// between the two. False: the ray has no such depths.
+///
+/// All that the path brings is proportional to the transmittance up to where it scatters, which the
+/// depths estimate. As in correctedTransmittance(), rare exact integrations correct it: by a factor
+/// for the path, see endCameraPath().
+template <int N>
+bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
+    Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    l.fromCamera = scene_.cameraDepths && l.set == 0;
+    if (!l.fromCamera) return false;
+    l.cameraDirection = p.direction, l.correction = Spectrum<N>(1.0f);
+    const CameraDepths::Ray ray = scene_.cameraDepths->at(p.raster[0], p.raster[1]);
+    const DepthsAhead<N> ahead(*scene_.cameraDepths, ray, scene_.parts.data());
+    l.passes = transmittanceOf<N>(ahead.whole());
+    std::ranges::fill(l.stopped, Spectrum<N>());
+    double t0 = std::numeric_limits<double>::infinity(), t1 = 0;
+    for (std::size_t k = 0; k < scene_.partCount; ++k) {
+        const medium::MediumPart& part = *scene_.parts[k].part;
+        double enters = 0, leaves = std::numeric_limits<double>::infinity();
+        if (grid::clip(part.indexRay(p.origin, p.direction), part.support(), enters, leaves))
+            t0 = std::min(t0, enters), t1 = std::max(t1, leaves);
+    }
+    state_[lane] = Idle;
+    if (!(t0 < t1)) {
+        l.passes = Spectrum<N>(1.0f);
+        return true;
+    }
+    // Of each channel, the share of the points that are drawn by its depth.
+    float shares[N], sum = 0;
+    for (int c = 0; c < N; ++c)
+        sum += shares[c] = -std::expm1(-ahead.whole()[c]) * scene_.cameraAlbedo[c];
+    const double even = sum > 0 ? evenPoints : 1;
+    double u = p.flight, t = t0 + (t1 - t0) * u / even;
+    if (u >= even) {
+        u = (u - even) / (1 - even) * double{sum};
+        int c = 0;
+        while (c + 1 < N && u >= double{shares[c]}) u -= double{shares[c++]};
+        const auto scattered = std::min(1.0f - 0x1p-24f, static_cast<float>(u / double{shares[c]}));
+        t = ahead.find(c, -std::log1p(scattered * std::expm1(-ahead.whole()[c])));
+    }
+    const typename DepthsAhead<N>::Place place = ahead.at(t);
+    double density = t > t0 && t < t1 ? even / (t1 - t0) : 0;
+    for (int c = 0; c < N; ++c)
+        if (sum > 0)
+            density += (1 - even) * double{scene_.cameraAlbedo[c] / sum} * double{place.slope[c]} *
+                       std::exp(-double{place.depth[c]});
+    l.flightStart = t;
+    const float chance = correctionChance(
+        ahead.spread(place.step + 1), ahead.spread(scene_.cameraDepths->steps()), l.passes.mean());
+    const Spectrum<N> estimate = transmittanceOf<N>(place.depth);
+    if (p.random.uniform() < double{chance}) correctCameraRay(lane, t, estimate, chance);
+    return density > 0 ? scatterAt(lane, t, estimate * static_cast<float>(1 / density)) : true;
+}
+
+/// Integrates a camera ray exactly, up to `t` and beyond.
+template <int N>
+void LaneTracer<N>::correctCameraRay(std::size_t lane, double t, const Spectrum<N>& estimate,
+                                     float chance) {
+    Lane& l = lanes_[lane];
+    const PathState<N, false>& p = pathOf(lane);
+    const medium::Medium& medium = traced_.mediumOfSet(0);
+    const Spectrum<N> before = channels<N>(
+                          medium::exactOpticalDepth(medium, p.origin, p.direction, 0, t)),
+                      behind = channels<N>(
+                          medium::exactOpticalDepth(medium, p.origin, p.direction, t,
+                                                    std::numeric_limits<double>::infinity()));
+    for (int c = 0; c < N; ++c) {
+        l.correction[c] += (std::exp(-before[c]) / estimate[c] - 1) / chance;
+        l.passes[c] += (std::exp(-before[c] - behind[c]) - l.passes[c]) / chance;
+    }
+}
+
+/// Puts the lane's path to a point of its camera ray, where it scatters; its throughput becomes
+/// `weight` times the density of the scattering. It scatters nowhere where nothing is there.
+template <int N>
+bool LaneTracer<N>::scatterAt(std::size_t lane, double t, const Spectrum<N>& weight) {
+    Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    const Vec3d at = p.origin + p.direction * t;
+    Spectrum<N> scattered[CameraDepths::mostParts];
+    float shares[CameraDepths::mostParts], sum = 0;
+    for (std::size_t k = 0; k < scene_.partCount; ++k) {
+        const medium::MediumPart& part = *scene_.parts[k].part;
+        const float f = part.field()->trilinear(part.indexRay(at, p.direction).origin);
+        scattered[k] = weight * channels<N>(part.scattering()) * f;
+        sum += shares[k] = scattered[k].mean();
+        l.stopped[k] = weight * channels<N>(part.extinction()) * f;
+        for (int c = 0; c < N; ++c) chance_[c][lane] += l.stopped[k][c] * scene_.cameraAlbedo[c];
+    }
+    if (!(sum > 0)) return true;
+    double u = several_ ? p.random.uniform() * double{sum} : 0;
+    std::size_t k = 0;
+    while (k + 1 < scene_.partCount && (u >= double{shares[k]} || !(shares[k] > 0)))
+        u -= double{shares[k++]};
+    if (!(shares[k] > 0)) return true;
+    l.processes.resize(scene_.partCount);
+    enter(scene_.parts[numberOf(lane, k)], at, p.direction, 0, l.processes[k]);
+    if (l.processes[k].ended) return true;
+    l.processes[k].t = 0, l.part = k;
+    limit_[lane] = huge;
+    put(lane, l.processes[k]);
+    scatterIn(lane);
+    setLane(w_, lane, scattered[k] * (sum / shares[k]));
+    state_[lane] = Arrived;
+    ++counters_.collisions;
+    return true;
+}
+
+/// All is known that a path brings that scatterCameraRay() has begun: corrects it, and adds the
+/// light from behind the medium.
+template <int N>
+void LaneTracer<N>::endCameraPath(std::size_t lane) {
+    const Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    const light::LightSet& lights = traced_.scene.lights;
+    const Rgb correction = toRgb(l.correction);
+    p.radiance *= correction;
+    if (batch_.layers.splitsLight())
+        for (Rgb& part : batch_.layers.partsOf(*p.result)) part *= correction;
+    if (scene_.environmentLight >= 0) {
+        const auto scattered =
+            Spectrum<N>::map([&](int c) { return (1 - l.passes[c]) * scene_.cameraAlbedo[c]; });
+        bring(batch_, p, toRgb(scattered) * scene_.environment, image::LightKind::VolumeIndirect,
+              lights.group(scene_.environmentLight));
+    }
+    p.result->film.alpha = 1 - l.passes.mean();
+    for (const int light : lights.distant()) {
+        const Rgb radiance = lights.distantRadiance(light, l.cameraDirection, true);
+        if (!(radiance.maximum() > 0)) continue;
+        const Rgb arrived = toRgb(l.passes) * radiance;
+        bring(batch_, p, arrived, image::LightKind::Background, lights.group(light));
+        p.result->film.background += arrived;
+    }
+    if (traced_.options.stoppedLight) noteCameraStops(lane);
+}
+
+/// Notes where a camera ray that scatterCameraRay() has drawn has lost its light. What its parts
+/// stop at the point adds up to alpha on average. The rest has a mean of zero, wherever it is
+/// counted: where half of the depth is.
+template <int N>
+void LaneTracer<N>::noteCameraStops(std::size_t lane) {
+    const Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    p.direction = l.cameraDirection;
+    image::StoppedLight& stopped = *p.result->stopped;
+    const CameraDepths::Ray ray = scene_.cameraDepths->at(p.raster[0], p.raster[1]);
+    const DepthsAhead<N> ahead(*scene_.cameraDepths, ray, scene_.parts.data());
+    Spectrum<N> rest = Spectrum<N>(1.0f) - l.passes;
+    double amounts[CameraDepths::mostParts], shares[CameraDepths::mostParts],
+        left = double{p.result->film.alpha}, depth = 0;
+    for (std::size_t k = 0; k < scene_.partCount; ++k) {
+        const Spectrum<N> atPoint = l.stopped[k] * l.correction;
+        rest = rest - atPoint;
+        left -= amounts[k] = double{atPoint.mean()};
+        depth += shares[k] = double{ray.density(scene_.cameraDepths->steps(), k) *
+                                    scene_.parts[k].part->largestExtinction()};
+    }
+    int channel = 0;
+    for (int c = 1; c < N; ++c)
+        if (ahead.whole()[c] > ahead.whole()[channel]) channel = c;
+    const double half = ahead.find(channel, ahead.whole()[channel] / 2);
+    const PlanarDepth planar(traced_, p);
+    const auto addRest = [&] {
+        for (std::size_t k = 0; k < scene_.partCount; ++k)
+            addStop(traced_, stopped, planar.at(half), k,
+                    left * (depth > 0 ? shares[k] / depth : (k == 0 ? 1.0 : 0.0)));
+    };
+    const bool atPoint = std::ranges::any_of(std::span(l.stopped).first(scene_.partCount),
+                                             [](const auto& s) { return s.maximum() > 0; });
+    if (!atPoint || half < l.flightStart) addRest();
+    for (std::size_t k = 0; atPoint && k < scene_.partCount; ++k)
+        addStop(traced_, stopped, planar.at(l.flightStart), k, amounts[k]);
+    if (atPoint && half >= l.flightStart) addRest();
+    if (scene_.environmentLight >= 0) {
+        const auto control =
+            Spectrum<N>::map([&](int c) { return rest[c] * scene_.cameraAlbedo[c]; });
+        stopped.arrivals.push_back({planar.at(half), toRgb(control) * scene_.environment, false});
+    }
+    stopped.firstEvent = {planar.at(atPoint ? l.flightStart : half), {}, false};
+}
+
+}  // namespace woodcock::render::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
