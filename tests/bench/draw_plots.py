@@ -45,8 +45,8 @@ def draw_cost():
     )
     axes.axvline(1, color="black", lw=1)
     axes.set_xscale("log")
-    axes.set_xlim(0.6, 22)
-    axes.set_xticks([1, 2, 5, 10, 20], ["1 (Woodcock)", "2", "5", "10", "20"])
+    axes.set_xlim(0.6, 120)
+    axes.set_xticks([1, 3, 10, 30, 100], ["1 (Woodcock)", "3", "10", "30", "100"])
     axes.minorticks_off()
     axes.set_xlabel("time to the same noise, as a multiple of Woodcock's")
     bars = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in COLOUR_OF.values()]
