@@ -16,6 +16,8 @@ namespace {
 
 /// How many of the finest voxels lie from node to node, where the memory allows it; and at most.
 constexpr double voxelsBetweenNodes = 2, mostVoxelsBetweenNodes = 16;
+/// Small media have at least so many nodes along their diagonal: their voxels are coarse.
+constexpr double fewestNodes = 80;
 /// Memory that all lines may take: so much, or a quarter of the medium's fields.
 constexpr std::size_t mostLineBytes = 64u << 20;
 
@@ -81,7 +83,8 @@ bool CameraDepths::layOut() {
         return ray.origin + ray.direction * middle;
     };
     const double pixel = length(place(width_ / 2.0 + 1) - place(width_ / 2.0));
-    const double finest = finestVoxel(scene_.medium);
+    const double finest = std::min(finestVoxel(scene_.medium),
+                                   length(box.size()) / (fewestNodes * voxelsBetweenNodes));
     const auto most =
         static_cast<double>(std::max(mostLineBytes, bytesOfFields(scene_.medium) / 4));
     constexpr double coarser = 1.1;
