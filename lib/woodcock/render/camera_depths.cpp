@@ -92,6 +92,7 @@ bool CameraDepths::layOut() {
     const auto nodes = [](double size, double step) { return std::ceil(size / step) + 1; };
     for (double voxels = voxelsBetweenNodes; voxels <= mostVoxelsBetweenNodes; voxels *= coarser) {
         spacing_ = voxels * finest, step_ = spacing_ / pixel;
+        if (step_ > std::min(width_, height_)) return false;
         const double across = nodes(x1 - x0_, step_), down = nodes(y1 - y0_, step_),
                      along = nodes(farthest - nearest, spacing_);
         if (across * down * along * sizeof(float) *
