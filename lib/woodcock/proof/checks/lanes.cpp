@@ -74,6 +74,14 @@ const std::string secondSun =
     "[[light]]\ntype = \"sun\"\ndirection = [0.5, -0.1, -0.8]\nirradiance = [1, 2, 3]\n";
 const std::string air = "[[light]]\ntype = \"environment\"\nradiance = [0.3, 0.5, 0.7]\n";
 const std::string hidden = "visible = false\n";
+const std::string coloured = "sigma_s = [4, 2, 0.5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n";
+const std::string turned =
+    "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60], scale = [1, 0.5, 0.8] "
+    "}\n";
+const std::string far = "transform = { translate = [100000, 50000, -100000] }\n";
+const std::string away =
+    "[camera]\neye = [100000, 50000.6, -99996.5]\nlook_at = [100000, 50000, -100000]\n"
+    "fov = 40\n";
 
 struct Subject {
     const char* name;
@@ -129,15 +137,7 @@ std::vector<Subject> plainSubjects() {
 
 std::vector<Subject> otherSubjects() {
     const std::string lights = deltaSun + air;
-    const std::string coloured = "sigma_s = [4, 2, 0.5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n";
     const std::string deep = "sigma_s = [60, 40, 20]\nsigma_a = [0, 0.5, 4]\ng = 0.7\n";
-    const std::string turned =
-        "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60], scale = [1, 0.5, 0.8] "
-        "}\n";
-    const std::string far = "transform = { translate = [100000, 50000, -100000] }\n";
-    const std::string away =
-        "[camera]\neye = [100000, 50000.6, -99996.5]\nlook_at = [100000, 50000, -100000]\n"
-        "fov = 40\n";
     const auto withPhase = [&](const std::string& kind, double sigma = 5) {
         return ball + mediumOf(sigma, 0.1, "phase = { type = " + kind + " }") + lights;
     };
@@ -184,14 +184,6 @@ std::vector<Subject> glowingSubjects() {
     const std::string bright = "emission = [0.5, 1, 2]\n";
     const std::string fog = ball + mediumOf(1, 0.3, "g = 0.3"),
                       smoke = ball + mediumOf(3, 5, "g = 0.6");
-    const std::string coloured = "sigma_s = [4, 2, 0.5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n";
-    const std::string turned =
-        "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60], scale = [1, 0.5, 0.8] "
-        "}\n";
-    const std::string far = "transform = { translate = [100000, 50000, -100000] }\n";
-    const std::string away =
-        "[camera]\neye = [100000, 50000.6, -99996.5]\nlook_at = [100000, 50000, -100000]\n"
-        "fov = 40\n";
     return {
         {"that glows", fog + bright + lights},
         {"that hot voxels light", fog + hot + lights},
