@@ -110,6 +110,41 @@ public:
         return voxel(stochasticVoxel(p, bits), channel);
     }
 
+    /// The eight voxels of the lattice's cell from `v` to one voxel further along each axis: x
+    /// first, then y.
+    std::array<float, 8> cellVoxels(Vec3i v, int channel = 0) const {
+        std::array<float, 8> values;
+        constexpr int last = (1 << blockLog2) - 1;
+        if ((v.x & last) == last || (v.y & last) == last || (v.z & last) == last) {
+            for (int i = 0; i < 8; ++i)
+                values[static_cast<std::size_t>(i)] =
+                    voxel(v + Vec3i{i & 1, i >> 1 & 1, i >> 2}, channel);
+            return values;
+        }
+        const std::uint32_t ref = *table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value;
+        if (ref & constantBit) {
+            values.fill(valueOf(ref, v, channel));
+            return values;
+        }
+        const std::size_t channels = channelCount(),
+                          first = (std::size_t{ref} * 512 + offset(v)) * channels +
+                                  static_cast<std::size_t>(channel);
+        const auto read = [&](auto&& valueAt) {
+            for (std::size_t i = 0; i < 8; ++i)
+                values[i] =
+                    valueAt(first + ((i & 1) * 64 + (i >> 1 & 1) * 8 + (i >> 2)) * channels);
+        };
+        if (storage_ == Storage::Float)
+            read([&](std::size_t i) { return floats_[i]; });
+        else if (storage_ == Storage::Half)
+            read([&](std::size_t i) { return decodeHalf(words_[i]); });
+        else
+            for (int i = 0; i < 8; ++i)
+                values[static_cast<std::size_t>(i)] =
+                    valueOf(ref, v + Vec3i{i & 1, i >> 1 & 1, i >> 2}, channel);
+        return values;
+    }
+
     /// The voxels of one block, found once for many reads.
     class BlockVoxels {
     public:

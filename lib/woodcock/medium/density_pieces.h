@@ -12,11 +12,12 @@ namespace woodcock::medium {
 
 // The density of a part along a ray, piece by piece. Along each piece it is one polynomial, whose
 // integral is known. Each kind of piece says the integral of a channel of f over [a, b] of the
-// ray, which must lie within the piece.
+// ray, which must lie within the piece, and may say that it is the same in all channels.
 
 /// f is constant: outside of the support, in a homogeneous box, and where a cell's bounds agree.
 struct ConstantPiece {
     Rgb f;
+    bool grey() const { return false; }
     double integral(double a, double b, int channel) const {
         // An endless piece of nothing is nothing.
         return f[channel] > 0 ? (b - a) * double{f[channel]} : 0;
@@ -28,27 +29,16 @@ struct ConstantPiece {
 class LatticePiece {
 public:
     LatticePiece(const grid::Field& field, const grid::IndexRay& ray, Vec3i cell)
-        : ray_(ray), cell_(cell.as<double>()) {
-        const auto read = [&](auto&& voxel) {
-            for (int c = 0; c < field.channels(); ++c)
-                for (int i = 0; i < 8; ++i)
-                    corners_[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] =
-                        voxel(cell + Vec3i{i & 1, i >> 1 & 1, i >> 2}, c);
-        };
-        constexpr int last = (1 << grid::blockLog2) - 1;
-        if ((cell.x & last) != last && (cell.y & last) != last && (cell.z & last) != last)
-            read(grid::Field::BlockVoxels(
-                field,
-                {cell.x >> grid::blockLog2, cell.y >> grid::blockLog2, cell.z >> grid::blockLog2}));
-        else
-            read([&](Vec3i v, int c) { return field.voxel(v, c); });
-        if (field.channels() == 1) sharedChannel_ = 0;
+        : ray_(ray), cell_(cell.as<double>()), channels_(field.channels()) {
+        for (int c = 0; c < channels_; ++c)
+            corners_[static_cast<std::size_t>(c)] = field.cellVoxels(cell, c);
     }
 
+    bool grey() const { return channels_ == 1; }
     double integral(double a, double b, int channel) const {
         constexpr double node = 0.57735026918962576;
         const double middle = (a + b) / 2, half = (b - a) / 2;
-        const auto& v = corners_[static_cast<std::size_t>(std::min(channel, sharedChannel_))];
+        const auto& v = corners_[grey() ? 0 : static_cast<std::size_t>(channel)];
         return half * (at(v, middle - half * node) + at(v, middle + half * node));
     }
 
@@ -62,7 +52,7 @@ private:
 
     const grid::IndexRay& ray_;
     Vec3d cell_;
-    int sharedChannel_ = 2;
+    int channels_;
     std::array<std::array<float, 8>, 3> corners_;
 };
 
@@ -73,6 +63,7 @@ struct MovedPiece {
     const grid::IndexRay& ray;
     float time;
 
+    bool grey() const { return part.field()->channels() == 1; }
     double integral(double a, double b, int channel) const {
         const double step = b - a;
         const auto points =
@@ -84,6 +75,16 @@ struct MovedPiece {
         return sum * step / points;
     }
 };
+
+/// The integrals of N channels of a piece's f over [a, b] of the ray.
+template <int N, class Piece>
+std::array<double, N> integrals(const Piece& piece, double a, double b) {
+    std::array<double, N> of;
+    of.fill(piece.integral(a, b, 0));
+    if (!piece.grey())
+        for (int c = 1; c < N; ++c) of[static_cast<std::size_t>(c)] = piece.integral(a, b, c);
+    return of;
+}
 
 /// Visits the unit cells of a lattice that [t0, t1] of a ray crosses, in order: visit(cell, t0, t1)
 /// until it returns false. `shift`: of the lattice's planes against the integers. False: ended so.

@@ -19,9 +19,10 @@ Rgb exactOpticalDepth(const Medium& medium, Vec3d origin, Vec3d direction, doubl
     for (const MediumPart& part : medium.parts) {
         const grid::IndexRay ray = part.indexRay(origin + direction * t0, direction, time);
         walkDensity(part, ray, t1 - t0, time, [&](const auto& piece, double a, double b) {
+            const std::array<double, 3> f = integrals<3>(piece, a, b);
             for (int c = 0; c < 3; ++c)
                 if (part.extinction()[c] > 0)
-                    depth[c] += piece.integral(a, b, c) * double{part.extinction()[c]};
+                    depth[c] += f[static_cast<std::size_t>(c)] * double{part.extinction()[c]};
             return true;
         });
     }
@@ -37,11 +38,12 @@ Spectrum<N> exactTransmittance(const Medium& medium, Vec3d origin, Vec3d directi
     for (const MediumPart& part : medium.parts) {
         const auto add = [&](const auto& piece, double a, double b) {
             ++counters.segments;
+            const std::array<double, N> f = integrals<N>(piece, a, b);
             double least = std::numeric_limits<double>::infinity();
             for (int c = 0; c < N; ++c) {
                 double& d = depth[static_cast<std::size_t>(c)];
                 if (part.extinction()[c] > 0)
-                    d += piece.integral(a, b, c) * double{part.extinction()[c]};
+                    d += f[static_cast<std::size_t>(c)] * double{part.extinction()[c]};
                 least = std::min(least, d);
             }
             return least < vanished;
