@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "woodcock/camera/projection.h"
+#include "woodcock/medium/corrected_transmittance.h"
 #include "woodcock/medium/line_depths.h"
 #include "woodcock/render/media_table.h"
 
@@ -95,24 +96,32 @@ bool CameraDepths::layOut() {
         if (step_ > std::min(width_, height_)) return false;
         const double across = nodes(x1 - x0_, step_), down = nodes(y1 - y0_, step_),
                      along = nodes(farthest - nearest, spacing_);
-        if (across * down * along * sizeof(float) *
+        if (2 * across * down * along * sizeof(float) *
                 static_cast<double>(scene_.medium.parts.size()) >
             most)
             continue;
         across_ = std::max(2, static_cast<int>(across)),
         down_ = std::max(2, static_cast<int>(down));
         steps_ = std::max(1, static_cast<int>(along) - 1);
-        lines_ = std::make_unique<std::atomic<float*>[]>(static_cast<std::size_t>(across_) *
-                                                         static_cast<std::size_t>(down_));
+        const double coarse = voxels / voxelsBetweenNodes;
+        rarestCorrection_ = static_cast<float>(
+            std::min(1.0 / 32, double{medium::rarestCorrection} * coarse * coarse));
+        lines_ = std::make_unique<std::atomic<float*>[]>(lineCount());
         return true;
     }
     return false;
 }
 
+/// Those of the lattice, by rows; then those in the middle of four, by rows.
+std::size_t CameraDepths::lineCount() const {
+    const auto across = static_cast<std::size_t>(across_), down = static_cast<std::size_t>(down_);
+    return across * down + (across - 1) * (down - 1);
+}
+
 double CameraDepths::bytesAtMost() const {
-    const double lines = double{1} * across_ * down_;
-    return lines * (sizeof(float*) + sizeof(float) * (steps_ + 1.0) *
-                                         static_cast<double>(scene_.medium.parts.size()));
+    return static_cast<double>(lineCount()) *
+           (sizeof(float*) +
+            sizeof(float) * (steps_ + 1.0) * static_cast<double>(scene_.medium.parts.size()));
 }
 
 double bytesOfCameraDepths(const Scene& scene, int width, int height) {
@@ -121,31 +130,38 @@ double bytesOfCameraDepths(const Scene& scene, int width, int height) {
 }
 
 CameraDepths::~CameraDepths() {
-    for (int i = 0; i < across_ * down_; ++i) delete[] lines_[static_cast<std::size_t>(i)].load();
+    for (std::size_t i = 0; i < lineCount(); ++i) delete[] lines_[i].load();
 }
 
 CameraDepths::Ray CameraDepths::at(double x, double y) const {
-    const auto find = [&](double at, int lines, int& first) {
+    const auto find = [&](double at, int lines, std::size_t& first) {
         const double inside = std::clamp(at / step_, 0.0, lines - 1.0);
-        first = std::min(static_cast<int>(inside), lines - 2);
-        return static_cast<float>(inside - first);
+        const int cell = std::min(static_cast<int>(inside), lines - 2);
+        first = static_cast<std::size_t>(cell);
+        return static_cast<float>(inside - cell - 0.5);
     };
-    int i, j;
+    std::size_t i, j;
     const float u = find(x - x0_, across_, i), v = find(y - y0_, down_, j);
-    return {{line(i, j), line(i + 1, j), line(i, j + 1), line(i + 1, j + 1)},
-            {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v},
+    const auto across = static_cast<std::size_t>(across_), down = static_cast<std::size_t>(down_);
+    const std::size_t first = j * across + i;
+    const float* of[2][2];  // by v, u
+    for (std::size_t k = 0; k < 4; ++k)
+        of[k >> 1][k & 1] = line(first + (k >> 1) * across + (k & 1));
+    const bool alongV = std::abs(u) >= std::abs(v);  // the nearest side
+    const float away = alongV ? std::abs(u) : std::abs(v), along = alongV ? v : u;
+    const std::size_t side = (alongV ? u : v) > 0;
+    Ray ray{{},
+            line(across * down + j * (across - 1) + i),
+            {away - along, away + along, 1 - 2 * away},
             scene_.medium.parts.size()};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t at = k < 2 ? side : 1 - side, end = k & 1;
+        ray.lines[k] = alongV ? of[end][at] : of[at][end];
+    }
+    return ray;
 }
 
-float CameraDepths::Ray::spread(int node, std::size_t part) const {
-    const std::size_t i = static_cast<std::size_t>(node) * parts + part;
-    const auto [least, most] = std::minmax({lines[0][i], lines[1][i], lines[2][i], lines[3][i]});
-    return most - least;
-}
-
-const float* CameraDepths::line(int i, int j) const {
-    const auto index = static_cast<std::size_t>(j) * static_cast<std::size_t>(across_) +
-                       static_cast<std::size_t>(i);
+const float* CameraDepths::line(std::size_t index) const {
     const float* made = lines_[index].load(std::memory_order_acquire);
     return made ? made : makeLine(index);
 }
@@ -155,9 +171,13 @@ const float* CameraDepths::makeLine(std::size_t index) const {
     if (const float* made = lines_[index].load(std::memory_order_acquire)) return made;
     auto nodes = std::make_unique<float[]>(static_cast<std::size_t>(steps_ + 1) *
                                            scene_.medium.parts.size());
-    const auto across = static_cast<std::size_t>(across_);
-    fill(x0_ + static_cast<double>(index % across) * step_,
-         y0_ + static_cast<double>(index / across) * step_, nodes.get());
+    const auto across = static_cast<std::size_t>(across_), down = static_cast<std::size_t>(down_);
+    const bool middle = index >= across * down;
+    const std::size_t place = middle ? index - across * down : index,
+                      row = middle ? across - 1 : across;
+    const double shift = middle ? 0.5 : 0;
+    fill(x0_ + (static_cast<double>(place % row) + shift) * step_,
+         y0_ + (static_cast<double>(place / row) + shift) * step_, nodes.get());
     lines_[index].store(nodes.get(), std::memory_order_release);
     return nodes.release();
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -13,9 +15,9 @@
 namespace woodcock::render {
 
 /// The densities of the scene's medium, integrated along rays of the camera: at the nodes of a
-/// lattice whose lines are camera rays, a fixed number of pixels apart. Between lines they are
-/// interpolated. So they are near the truth and no more: densities for sampling, and a control
-/// variate.
+/// lattice whose lines are camera rays, a fixed number of pixels apart, and one more in the middle
+/// of each four. Between lines they are interpolated. So they are near the truth and no more:
+/// densities for sampling, and a control variate.
 ///
 /// Lines are made when they are first read. What they hold does not depend on who reads them when.
 /// Shared by all threads.
@@ -35,21 +37,32 @@ public:
     double near() const { return near_; }        ///< distance of the first node of each line
     double spacing() const { return spacing_; }  ///< of nodes along a ray, in world units
     int steps() const { return steps_; }
+    /// How often corrections of what the lines say must be made at least, as voxels may lie between
+    /// lines unseen: more often where lines are farther apart.
+    float rarestCorrection() const { return rarestCorrection_; }
 
-    /// The four lines around a camera ray. Of each node they have as many numbers as the medium has
-    /// parts: the integral of the part's density up to there.
+    /// The lines around a camera ray: four, of which it lies nearest to the side between the first
+    /// two, and the one in their middle. Of each node they have as many numbers as the medium has
+    /// parts: the integral of the part's density up to there. A ray interpolates the first two and
+    /// the middle.
     struct Ray {
         const float* lines[4];
-        float weights[4];
+        const float* middle;
+        float weights[3];
         std::size_t parts;
 
         float density(int node, std::size_t part) const {
             const std::size_t i = static_cast<std::size_t>(node) * parts + part;
-            return weights[0] * lines[0][i] + weights[1] * lines[1][i] + weights[2] * lines[2][i] +
-                   weights[3] * lines[3][i];
+            return weights[0] * lines[0][i] + weights[1] * lines[1][i] + weights[2] * middle[i];
         }
-        /// By how much the lines differ.
-        float spread(int node, std::size_t part) const;
+        /// How wrong density() may be: by how much the mean of the four misses the one in their
+        /// middle; and a little of how they differ, for what the middle does not see.
+        float error(int node, std::size_t part) const {
+            const std::size_t i = static_cast<std::size_t>(node) * parts + part;
+            const float a = lines[0][i], b = lines[1][i], c = lines[2][i], d = lines[3][i];
+            const auto [least, most] = std::minmax({a, b, c, d, middle[i]});
+            return std::abs((a + b + c + d) / 4 - middle[i]) + (most - least) / 20;
+        }
     };
     /// Of a ray through a place of the picture, in pixels. Outside of the lattice, the nearest ray
     /// counts.
@@ -58,7 +71,8 @@ public:
 private:
     CameraDepths(const Scene& scene, int width, int height);
     bool layOut();
-    const float* line(int i, int j) const;
+    std::size_t lineCount() const;
+    const float* line(std::size_t index) const;
     const float* makeLine(std::size_t index) const;
     void fill(double x, double y, float* nodes) const;
 
@@ -66,9 +80,10 @@ private:
     const camera::CameraRays rays_;
     const int width_, height_;
     double x0_ = 0, y0_ = 0, step_ = 1;  ///< of the first line, and to the next one; pixels
-    int across_ = 0, down_ = 0;          ///< lines
+    int across_ = 0, down_ = 0;          ///< lines, but for those in the middle of four
     double near_ = 0, spacing_ = 1;
     int steps_ = 0;
+    float rarestCorrection_ = 1;
     std::unique_ptr<std::atomic<float*>[]> lines_;
     mutable std::array<std::mutex, 64> making_;
 };
