@@ -47,11 +47,20 @@ HWY_INLINE void LaneTracer<N>::decideCollisions() {
 template <int N>
 HWY_INLINE Mask LaneTracer<N>::decide(Mask colliding, const F f[N], F random) {
     const F mu = mu_.get(), zero = hn::Zero(lanesF), one = all(1);
+    const Mask counts =
+        scene_.environmentSeen ? colliding : hn::And(colliding, scattered_.get() > zero);
+    if (scene_.diffusion) findExpected(bitsOf(colliding));
     if constexpr (N == 1) {
         const F absorption = absorption_[0].get() * f[0], left = mu - absorption;
-        w_[0].set(colliding,
-                  hn::IfThenElseZero(left > zero, w_[0].get() * (one - absorption / mu)));
-        return random * left < scattering_[0].get() * f[0];
+        const F scattering = scattering_[0].get() * f[0], passes = one - absorption / mu;
+        const F after = hn::IfThenElseZero(left > zero, w_[0].get() * passes);
+        const Mask scatters = random * left < scattering;
+        if (scene_.diffusion) {
+            const F share = hn::Min(passes, scattering / mu);
+            noteDecision(0, counts, scatters, share, passes - share, after);
+        }
+        w_[0].set(colliding, after);
+        return scatters;
     } else {
         F scattering[N], null[N], scatterWeight = zero, weight = zero;
         for (int c = 0; c < N; ++c) {
@@ -65,17 +74,11 @@ HWY_INLINE Mask LaneTracer<N>::decide(Mask colliding, const F f[N], F random) {
         const F p = hn::IfThenElseZero(weight > zero, scatterWeight / weight);
         const Mask scatters = random < p;
         const F inverse = one / (mu * hn::IfThenElse(scatters, p, one - p));
-        // The chance of the decision makes the throughput noisy. What that does to the light of an
-        // even environment is known on average: see LanePart::equilibrium.
-        const Mask counts =
-            scene_.environmentSeen ? colliding : hn::And(colliding, scattered_.get() > zero);
         for (int c = 0; c < N; ++c) {
-            const F before = w_[c].get();
-            const F after = before * hn::IfThenElse(scatters, scattering[c], null[c]) * inverse;
-            const F expected = before * (one - absorption_[c].get() * f[c] / mu);
+            const F after =
+                w_[c].get() * hn::IfThenElse(scatters, scattering[c], null[c]) * inverse;
             if (scene_.thick)
-                chance_[c].set(counts,
-                               chance_[c].get() + equilibrium_[c].get() * (after - expected));
+                noteDecision(c, counts, scatters, scattering[c] / mu, null[c] / mu, after);
             w_[c].set(colliding, after);
         }
         return scatters;

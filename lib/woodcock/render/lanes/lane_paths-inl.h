@@ -169,6 +169,7 @@ void LaneTracer<N>::endBranch(std::size_t lane) {
     scatterIn(lane);
     l.phase = b.phase, g_[lane] = phaseOf(lane).g;
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
+    if (scene_.diffusion) findExpected(1u << lane);
     setLane(w_, lane, b.throughput), setLane(predicted_, lane, b.predicted);
     share_[lane] = 1;
     l.scatterings -= b.scatterings;  // they are the first branch's too
@@ -188,7 +189,7 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
     constexpr auto kind = image::LightKind::VolumeIndirect;
     const Rgb window = toRgb(laneOf(window_, lane));
     if (scene_.environmentLight >= 0)
-        bring(batch_, p, (toRgb(laneOf(chance_, lane)) + window) * scene_.environment * -1.0f, kind,
+        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.environment * -1.0f, kind,
               lights.group(scene_.environmentLight));
     if (scene_.sun >= 0)
         bring(batch_, p,

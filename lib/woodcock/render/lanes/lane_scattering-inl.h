@@ -169,9 +169,12 @@ bool LaneTracer<N>::keepWindow(std::size_t lane, float target) {
         const bool survives = static_cast<float>(p.random.uniform()) * target < weight;
         if (survives) factor = target / weight;
         const LanePart& part = partOf(lane);
-        for (int c = 0; c < N; ++c)
-            window_[c][lane] += w[c] * (factor - 1) * part.equilibrium[c] /
-                                (1 + part.diffusion[c] * sunDepth_[c][lane]);
+        for (int c = 0; c < N; ++c) {
+            const float more = w[c] * (factor - 1);
+            const float forSun = part.equilibrium[c] / (1 + part.diffusion[c] * sunDepth_[c][lane]);
+            window_[c][lane] += more * forSun;
+            chance_[c][lane] += more * (scene_.diffusion ? expectedToScatter(lane, c) : forSun);
+        }
         if (!survives) return false;
     }
     setLane(w_, lane, w * factor);
@@ -203,7 +206,10 @@ void LaneTracer<N>::depart(Mask departing) {
         u0[i] = belowOne(n.phase[0]), u1[i] = belowOne(n.phase[1]);
         depth[i] = static_cast<float>(-std::log(n.flight));
     });
+    F before[N];
+    for (int c = 0; c < N; ++c) before[c] = g_.get() * aheadIn(c);
     turn(departing, bits, u0.get(), u1.get());
+    if (scene_.diffusion) noteTurn(bits, before);
     Floats more;
     more.set(scene_.sun >= 0 ? takePrediction(departing) : hn::Zero(lanesF));
     play(departing, uniform(words[3]));
@@ -255,7 +261,8 @@ void LaneTracer<N>::play(Mask departing, F random) {
     for (int c = 0; c < N; ++c) {
         const F before = w_[c].get(), after = hn::IfThenZeroElse(dies, before / survival);
         if (scene_.thick || scene_.cameraDepths)
-            chance_[c].set(plays, chance_[c].get() + equilibrium_[c].get() * (after - before));
+            chance_[c].set(plays,
+                           chance_[c].get() + expectedWith(c, aheadIn(c)) * (after - before));
         w_[c].set(plays, after);
     }
 }

@@ -94,13 +94,13 @@ LanePart::LanePart(const medium::MediumPart& p) : part(&p) {
     windowScale = std::clamp(1 - forward, 0.25f, 0.5f);
 }
 
-void LanePart::setLattice(const medium::DepthGrid& grid) {
-    const Affine3d map = grid.latticeFromWorld() * part->description().worldFromIndex *
+void LanePart::setLattice(float (&rows)[3][4], const Affine3d& latticeFromWorld) const {
+    const Affine3d map = latticeFromWorld * part->description().worldFromIndex *
                          Affine3d::translate(low.as<double>());
     for (int row = 0; row < 3; ++row) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            latticeFromIndex[row][axis] = static_cast<float>(map.column[axis][row]);
-        latticeFromIndex[row][3] = static_cast<float>(map.translation[row]);
+            rows[row][axis] = static_cast<float>(map.column[axis][row]);
+        rows[row][3] = static_cast<float>(map.translation[row]);
     }
 }
 
@@ -161,7 +161,7 @@ void LaneScene::addLights() {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const std::size_t set = i / partCount;
             sunDepths[set] = traced.sunDepth(static_cast<std::uint8_t>(set), sun);
-            parts[i].setLattice(*sunDepths[set]);
+            parts[i].setLattice(parts[i].latticeFromIndex, sunDepths[set]->latticeFromWorld());
         }
         delta = !lights.traits(sun).distant;
         centre = lights.sample(sun, {}, 0, 0);
@@ -174,6 +174,10 @@ void LaneScene::addLights() {
         environment += meanRadiance(lights, light);
         environmentSeen &= lights.traits(light).visible;
     }
+    if (thick && environmentLight >= 0) diffusion = DiffusionLattice::make(traced.scene.medium);
+    if (diffusion)
+        for (LanePart& part : parts)
+            part.setLattice(part.cellsFromIndex, diffusion->latticeFromWorld());
 }
 
 }  // namespace woodcock::render

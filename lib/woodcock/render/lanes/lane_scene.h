@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "woodcock/render/lanes/diffusion_lattice.h"
 #include "woodcock/render/lanes/emission_lattice.h"
 #include "woodcock/render/traced_scene.h"
 
@@ -19,6 +20,7 @@ struct LanePart {
     float g;                         ///< of Henyey-Greenstein
     float latticeFromIndex[3][4]{};  ///< from voxels, of which `low` is the first, to those of
                                      ///< LaneScene::sunDepths; by rows
+    float cellsFromIndex[3][4]{};    ///< the same to the cells of LaneScene::diffusion
     Rgb albedo;                      ///< sigma_s / sigma_t
     /// What deep inside of the part an even environment loses: 1 - sqrt((1 - albedo) / (1 - g
     /// albedo)), the similarity parameter of van de Hulst 1980.
@@ -27,7 +29,8 @@ struct LanePart {
     float windowScale;  ///< see LaneTracer::keepWindow()
 
     explicit LanePart(const medium::MediumPart& part);
-    void setLattice(const medium::DepthGrid& grid);
+    /// Fills one of these maps.
+    void setLattice(float (&map)[3][4], const Affine3d& latticeFromWorld) const;
 };
 
 /// A scene whose paths are traced in the lanes of vectors: see trace_lanes.h. It refers to the
@@ -55,6 +58,8 @@ struct LaneScene {
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
+    /// Where paths are thick and absorption makes the environment's light noisy.
+    std::optional<DiffusionLattice> diffusion;
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
     /// Of all parts: how much each channel counts where points are drawn along a camera ray, and

@@ -51,6 +51,7 @@ struct Process {
 ///     lane_camera-inl.h      draws where camera rays scatter, where that needs no walk
 ///     lane_walk-inl.h        from cell to cell, until a tentative collision
 ///     lane_collisions-inl.h  decides tentative collisions
+///     lane_diffusion-inl.h   takes off what chance does to the light of an even environment
 ///     lane_sun-inl.h         brings sunlight to where paths scatter
 ///     lane_scattering-inl.h  what else happens there: turns, further flights, splitting, roulette
 ///     lane_emission-inl.h    brings the light of what glows, by rays of its own
@@ -205,6 +206,14 @@ private:
     void lookUp(std::uint32_t bits, const U words[4], F f[N]);
     void noteCollision(std::size_t lane, bool ends);
 
+    // ---- lane_diffusion-inl.h
+    void findExpected(std::uint32_t bits);
+    F aheadIn(int c) const;
+    F expectedWith(int c, F more) const;
+    float expectedToScatter(std::size_t lane, int c);
+    void noteTurn(std::uint32_t turned, const F before[N]);
+    void noteDecision(int c, Mask colliding, Mask scatters, F scattering, F null, F after);
+
     // ---- lane_sun-inl.h
     struct SunDepths;
     SunDepths readSunDepths(std::uint32_t bits);
@@ -255,8 +264,11 @@ private:
     // Of the part that walks:
     Ints low_[3]{}, high_[3]{}, latticeCells_[3]{};
     Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
-    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, sunColour_[N]{}, albedo_[N]{},
-        equilibrium_[N]{};
+    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, cells_[3][4]{}, sunColour_[N]{},
+        albedo_[N]{};
+    // What a path is expected to bring of an even environment, for its throughput: going anywhere,
+    // and more by how much along each axis.
+    Floats expected_[N]{}, expectedAhead_[N][3]{};
     // Control variates, as throughput: what chance, windows and predictions have brought too much.
     Floats chance_[N]{}, window_[N]{}, prediction_[N]{}, predicted_[N]{};
     Floats scattered_{};  // 1 behind the first scattering

@@ -9,6 +9,7 @@
 
 #include "woodcock/render/lanes/lane_camera-inl.h"
 #include "woodcock/render/lanes/lane_collisions-inl.h"
+#include "woodcock/render/lanes/lane_diffusion-inl.h"
 #include "woodcock/render/lanes/lane_emission-inl.h"
 #include "woodcock/render/lanes/lane_paths-inl.h"
 #include "woodcock/render/lanes/lane_scattering-inl.h"

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each set of instructions: see trace_lanes.cpp.
+#if defined(WOODCOCK_LANE_DIFFUSION) == defined(HWY_TARGET_TOGGLE)
+#ifdef WOODCOCK_LANE_DIFFUSION
+#undef WOODCOCK_LANE_DIFFUSION
+#else
+#define WOODCOCK_LANE_DIFFUSION
+#endif
+
+#include "woodcock/render/lanes/lane_tracer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace woodcock::render::HWY_NAMESPACE {
+
+// A path in an even environment is expected to bring a share of its radiance, which the diffusion
+// approximation tells roughly. What chance then decides makes the path bring more or less than it
+// was expected to. That difference has a mean of zero, whatever is expected. So it is taken off:
+// LaneTracer::chance_ sums it up.
+
+/// Of what is expected of a turn, this much is taken off. Of 0.5, 0.75, 1 and 1.25, it measured
+/// best: the approximation makes too much of directions near the medium's surface.
+inline constexpr float expectedOfTurns = 0.75f;
+
+/// Reads DiffusionLattice at the positions of these lanes.
+template <int N>
+HWY_INLINE void LaneTracer<N>::findExpected(std::uint32_t bits) {
+    const Vec3i cells = scene_.diffusion->cells();
+    F at[3], within[3];
+    for (int i = 0; i < 3; ++i)
+        at[i] = hn::ConvertTo(lanesF, corner_[i].get() - low_[i].get()) + u_[i].get();
+    I number = hn::Zero(lanesI);
+    for (int i = 2; i >= 0; --i) {
+        const F x = at[0] * cells_[i][0].get() + at[1] * cells_[i][1].get() +
+                    at[2] * cells_[i][2].get() + cells_[i][3].get();
+        const F last = all(static_cast<float>(cells[i] - 1));
+        const I cell = hn::ConvertTo(lanesI, hn::Max(hn::Zero(lanesF), hn::Min(x, last)));
+        within[i] = x - hn::ConvertTo(lanesF, cell) - all(0.5f);
+        number = number * hn::Set(lanesI, cells[i]) + cell;
+    }
+    Ints numbers;
+    numbers.set(number);
+    Floats phi[N]{}, path[N]{}, slope[N][3]{};
+    forEachLane(bits, [&](std::size_t i) {
+        const DiffusionLattice::Cell& cell = scene_.diffusion->content()[numbers[i]];
+        for (std::size_t c = 0; c < N; ++c) {
+            const DiffusionLattice::Channel& channel = cell.channels[c];
+            phi[c][i] = channel.phi, path[c][i] = channel.path;
+            for (std::size_t k = 0; k < 3; ++k) slope[c][k][i] = channel.slope[k];
+        }
+    });
+    const Mask where = maskOf(bits);
+    for (int c = 0; c < N; ++c) {
+        F here = phi[c].get();
+        for (int k = 0; k < 3; ++k) {
+            here = here + within[k] * slope[c][k].get();
+            expectedAhead_[c][k].set(where, path[c].get() * slope[c][k].get());
+        }
+        expected_[c].set(where, here);
+    }
+}
+
+/// By how much more is expected of paths that go in the lanes' directions than of those that go
+/// anywhere. Of paths that scatter from there by a phase function of mean cosine g it is g times as
+/// much.
+template <int N>
+HWY_INLINE F LaneTracer<N>::aheadIn(int c) const {
+    return v_[0].get() * expectedAhead_[c][0].get() + v_[1].get() * expectedAhead_[c][1].get() +
+           v_[2].get() * expectedAhead_[c][2].get();
+}
+
+/// What is expected in all, given how much `more` it is than of paths that go anywhere.
+template <int N>
+HWY_INLINE F LaneTracer<N>::expectedWith(int c, F more) const {
+    return hn::Max(hn::Zero(lanesF), hn::Min(all(1), expected_[c].get() + more));
+}
+
+/// What is expected of a lane that has scattered and is to turn.
+template <int N>
+float LaneTracer<N>::expectedToScatter(std::size_t lane, int c) {
+    float ahead = 0;
+    for (std::size_t k = 0; k < 3; ++k) ahead += v_[k][lane] * expectedAhead_[c][k][lane];
+    return std::clamp(expected_[c][lane] + g_[lane] * ahead, 0.0f, 1.0f);
+}
+
+/// Takes off what turns bring too much by their directions, given how much more was expected of
+/// them. Only of those that are drawn by Henyey and Greenstein's phase function, whose mean cosine
+/// is g in every channel.
+template <int N>
+void LaneTracer<N>::noteTurn(std::uint32_t turned, const F before[N]) {
+    std::uint32_t bits = 0;
+    forEachLane(turned,
+                [&](std::size_t i) { bits |= std::uint32_t{phaseOf(i).henyeyGreenstein} << i; });
+    const Mask known = maskOf(bits);
+    for (int c = 0; c < N; ++c) {
+        const F more = all(expectedOfTurns) * (aheadIn(c) - before[c]);
+        chance_[c].set(known, chance_[c].get() + w_[c].get() * more);
+    }
+}
+
+/// Takes off what tentative collisions bring too much by being decided as they were, given the
+/// shares of what scatters and what goes on, and the throughput afterwards.
+template <int N>
+HWY_INLINE void LaneTracer<N>::noteDecision(int c, Mask colliding, Mask scatters, F scattering,
+                                            F null, F after) {
+    const F ahead = aheadIn(c);
+    const F scattered = expectedWith(c, g_.get() * ahead), others = expectedWith(c, ahead);
+    chance_[c].set(colliding, chance_[c].get() +
+                                  after * hn::IfThenElse(scatters, scattered, others) -
+                                  w_[c].get() * (scattering * scattered + null * others));
+}
+
+}  // namespace woodcock::render::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
