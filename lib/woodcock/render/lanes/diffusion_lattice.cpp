@@ -83,29 +83,40 @@ void DiffusionLattice::survey(const medium::Medium& medium, Rates rates[3]) cons
 /// By successive over-relaxation of the finite volumes' equations.
 std::vector<float> DiffusionLattice::solve(const Rates& rates) const {
     constexpr float relaxation = 1.8f;
-    constexpr int sweeps = 80;
+    constexpr int sweeps = 60;
     const auto stepY = static_cast<std::size_t>(cells_.x),
-               stepZ = stepY * static_cast<std::size_t>(cells_.y);
-    // Of half a cell: how it resists diffusion.
-    std::vector<float> resistance(content_.size()), phi(content_.size(), 1);
-    for (std::size_t i = 0; i < phi.size(); ++i)
-        resistance[i] = 1.5f * rates.transport[i] + emptyCell / 2;
-    const auto conductance = [&](std::size_t i, std::size_t k) {
-        return 1 / (resistance[i] + resistance[k]);
+               stepZ = stepY * static_cast<std::size_t>(cells_.y), count = content_.size();
+    // Of half a cell: how it resists diffusion. Of the face to the next cell along each axis: how
+    // well it conducts.
+    const auto resistance = [&](std::size_t i) {
+        return 1.5f * rates.transport[i] + emptyCell / 2;
     };
-    for (int sweep = 0; sweep < sweeps; ++sweep)
+    const std::size_t steps[3] = {1, stepY, stepZ};
+    std::vector<float> faces[3], weight(count), phi(count, 1);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        faces[axis].resize(count);
+        for (std::size_t i = 0; i + steps[axis] < count; ++i)
+            faces[axis][i] = 1 / (resistance(i) + resistance(i + steps[axis]));
+    }
+    const auto forInner = [&](auto&& act) {
         for (int z = 1; z + 1 < cells_.z; ++z)
             for (int y = 1; y + 1 < cells_.y; ++y)
-                for (int x = 1; x + 1 < cells_.x; ++x) {
-                    const std::size_t i = numberOf(x, y, z);
-                    float sum = 0, weight = rates.absorption[i];
-                    for (const std::size_t k :
-                         {i - 1, i + 1, i - stepY, i + stepY, i - stepZ, i + stepZ}) {
-                        const float through = conductance(i, k);
-                        sum += through * phi[k], weight += through;
-                    }
-                    phi[i] += relaxation * (sum / weight - phi[i]);
-                }
+                for (int x = 1; x + 1 < cells_.x; ++x) act(numberOf(x, y, z));
+    };
+    forInner([&](std::size_t i) {
+        float sum = rates.absorption[i];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            sum += faces[axis][i] + faces[axis][i - steps[axis]];
+        weight[i] = relaxation / sum;
+    });
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        forInner([&](std::size_t i) {
+            float sum = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                sum += faces[axis][i] * phi[i + steps[axis]] +
+                       faces[axis][i - steps[axis]] * phi[i - steps[axis]];
+            phi[i] = (1 - relaxation) * phi[i] + weight[i] * sum;
+        });
     for (float& v : phi) v = std::clamp(v, 0.0f, 1.0f);
     return phi;
 }

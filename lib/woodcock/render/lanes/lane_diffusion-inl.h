@@ -23,7 +23,7 @@ inline constexpr float expectedOfTurns = 0.75f;
 
 /// Reads DiffusionLattice at the positions of these lanes.
 template <int N>
-HWY_INLINE void LaneTracer<N>::findExpected(std::uint32_t bits) {
+HWY_NOINLINE void LaneTracer<N>::findExpected(std::uint32_t bits) {
     const Vec3i cells = scene_.diffusion->cells();
     F at[3], within[3];
     for (int i = 0; i < 3; ++i)
@@ -100,8 +100,8 @@ void LaneTracer<N>::noteTurn(std::uint32_t turned, const F before[N]) {
 /// Takes off what tentative collisions bring too much by being decided as they were, given the
 /// shares of what scatters and what goes on, and the throughput afterwards.
 template <int N>
-HWY_INLINE void LaneTracer<N>::noteDecision(int c, Mask colliding, Mask scatters, F scattering,
-                                            F null, F after) {
+HWY_NOINLINE void LaneTracer<N>::noteDecision(int c, Mask colliding, Mask scatters, F scattering,
+                                              F null, F after) {
     const F ahead = aheadIn(c);
     const F scattered = expectedWith(c, g_.get() * ahead), others = expectedWith(c, ahead);
     chance_[c].set(colliding, chance_[c].get() +

@@ -23,9 +23,13 @@ template <int N>
 void LaneTracer<N>::arrive(std::uint32_t arrived) {
     std::uint32_t lit = 0;
     forEachLane(arrived, [&](std::size_t i) { lit |= std::uint32_t{mayGoOn(i)} << i; });
-    Floats depth;
-    depth.set(hn::Zero(lanesF));
-    if (scene_.sun >= 0) depth.set(addSunlight(lit));
+    Floats growth;  // of the window's target, with the optical depth to the sun; see keepWindow()
+    growth.set(all(1));
+    if (scene_.sun >= 0) {
+        const F depth = addSunlight(lit);
+        if (scene_.thick)
+            growth.set(all(1) / decay(all(0.7f) * logarithm(all(1) + all(0.25f) * depth)));
+    }
     if (!scene_.others.empty())
         forEachLane(lit, [&](std::size_t i) {
             if (!lanes_[i].extra) addOtherLight(i);
@@ -34,7 +38,7 @@ void LaneTracer<N>::arrive(std::uint32_t arrived) {
         if (lanes_[i].extra)
             endExtra(i);
         else
-            goOn(i, depth[i]);
+            goOn(i, growth[i]);
     });
 }
 
@@ -116,7 +120,7 @@ void LaneTracer<N>::findProbabilities(const light::ScatterPoint& from) {
 
 /// Has a path that has scattered draw its next direction and flight, or ends it.
 template <int N>
-void LaneTracer<N>::goOn(std::size_t lane, float sunDepth) {
+void LaneTracer<N>::goOn(std::size_t lane, float growth) {
     PathState<N, false>& p = pathOf(lane);
     ++p.scatterings;
     scattered_[lane] = 1, share_[lane] = 1;
@@ -131,8 +135,7 @@ void LaneTracer<N>::goOn(std::size_t lane, float sunDepth) {
         setLane(w_, lane, p.throughput);
     }
     if (scene_.thick && scene_.sun >= 0) {
-        const float scale = partOf(lane).windowScale;
-        if (!keepWindow(lane, scale * std::pow(1 + sunDepth / 4, 0.7f))) {
+        if (!keepWindow(lane, partOf(lane).windowScale * growth)) {
             endBranch(lane);
             return;
         }

@@ -156,7 +156,9 @@ private:
     Vec3d positionOf(std::size_t lane);
     Spectrum<N> throughputOf(std::size_t lane) { return laneOf(w_, lane); }
     static Spectrum<N> laneOf(Floats* rows, std::size_t lane) {
-        return Spectrum<N>::map([&](int c) { return rows[c][lane]; });
+        Spectrum<N> s;
+        for (int c = 0; c < N; ++c) s[c] = rows[c][lane];
+        return s;
     }
     static void setLane(Floats* rows, std::size_t lane, const Spectrum<N>& s) {
         for (int c = 0; c < N; ++c) rows[c][lane] = s[c];
@@ -230,7 +232,7 @@ private:
     void enterMedium(std::size_t lane);
     void addOtherLight(std::size_t lane);
     void findProbabilities(const light::ScatterPoint& from);
-    void goOn(std::size_t lane, float sunDepth);
+    void goOn(std::size_t lane, float growth);
     bool keepWindow(std::size_t lane, float target);
     void depart(Mask departing);
     void turn(Mask departing, std::uint32_t bits, F u0, F u1);
