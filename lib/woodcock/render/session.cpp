@@ -117,6 +117,7 @@ public:
           approximateMedia_(scene, settings.approximations),
           sunDepths_(scene, settings.approximations, approximateMedia_),
           cameraDepths_(CameraDepths::make(scene, settings.width, settings.height)),
+          diffusion_(needs_.surfaces ? nullptr : DiffusionLattice::make(scene)),
           tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
           state_{image::Film(settings.width, settings.height, crop,
                              {.surfaces = needs_.surfaces,
@@ -400,6 +401,7 @@ private:
                 .approximateMedia = &approximateMedia_,
                 .sunDepths = &sunDepths_,
                 .cameraDepths = cameraDepths_.get(),
+                .diffusion = diffusion_.get(),
                 .emptyPixels = emptyPixels_ ? &*emptyPixels_ : nullptr};
     }
 
@@ -414,6 +416,7 @@ private:
     const ApproximateMedia approximateMedia_;
     const SunDepths sunDepths_;
     const std::unique_ptr<const CameraDepths> cameraDepths_;
+    const std::unique_ptr<const DiffusionLattice> diffusion_;
     std::optional<EmptyPixels> emptyPixels_;  // made from the other options
     /// One for each thread that renders, made when it first does.
     tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;

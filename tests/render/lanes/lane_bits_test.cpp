@@ -53,6 +53,8 @@ protected:
             options.width = options.height = 8, options.seed = 7, options.sunDepths = &depths;
             const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
             options.cameraDepths = cameraDepths.get();
+            const auto diffusion = DiffusionLattice::make(scene);
+            options.diffusion = diffusion.get();
             EXPECT_TRUE(LaneScene::make(TracedScene(scene, findNeeds(scene), options)));
             check(scene, options);
         }

@@ -16,9 +16,10 @@ namespace woodcock::proof {
 struct SmallPicture {
     int side = 6, samples = 4;
     std::optional<int> maxScatterings{};
-    bool lanes = true;                                   ///< see PathTracer::Options
-    const render::SunDepths* sunDepths = nullptr;        ///< the same
-    const render::CameraDepths* cameraDepths = nullptr;  ///< the same
+    bool lanes = true;                                    ///< see PathTracer::Options
+    const render::SunDepths* sunDepths = nullptr;         ///< the same
+    const render::CameraDepths* cameraDepths = nullptr;   ///< the same
+    const render::DiffusionLattice* diffusion = nullptr;  ///< the same
 };
 
 /// Means over a small picture, of which each seed's is a sample.

@@ -174,7 +174,7 @@ void LaneScene::addLights() {
         environment += meanRadiance(lights, light);
         environmentSeen &= lights.traits(light).visible;
     }
-    if (thick && environmentLight >= 0) diffusion = DiffusionLattice::make(traced.scene.medium);
+    if (thick && environmentLight >= 0) diffusion = traced.options.diffusion;
     if (diffusion)
         for (LanePart& part : parts)
             part.setLattice(part.cellsFromIndex, diffusion->latticeFromWorld());

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "woodcock/render/lanes/diffusion_lattice.h"
 #include "woodcock/render/lanes/emission_lattice.h"
 #include "woodcock/render/traced_scene.h"
 
@@ -58,8 +57,8 @@ struct LaneScene {
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
-    /// Where paths are thick and absorption makes the environment's light noisy.
-    std::optional<DiffusionLattice> diffusion;
+    /// What paths are expected to bring of the environment's light; null: it is not known.
+    const DiffusionLattice* diffusion = nullptr;
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
     /// Of all parts: how much each channel counts where points are drawn along a camera ray, and

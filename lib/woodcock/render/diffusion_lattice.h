@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "woodcock/base/affine.h"
-#include "woodcock/medium/medium.h"
+#include "woodcock/render/scene.h"
 
 namespace woodcock::render {
 
@@ -28,9 +28,12 @@ public:
         Channel channels[3];
     };
 
-    /// Nothing where nothing absorbs, or nothing scatters: then no path brings more or less than
-    /// another. `around`: of the medium.
-    static std::optional<DiffusionLattice> make(const medium::Medium& medium);
+    /// Null where nothing absorbs, or nothing scatters, or the medium has no end. The medium's
+    /// parts stand still.
+    static std::unique_ptr<const DiffusionLattice> make(const medium::Medium& medium);
+    /// The same for a render: null also where it does not pay, as paths scatter too seldom, or
+    /// where no light comes from far away.
+    static std::unique_ptr<const DiffusionLattice> make(const Scene& scene);
 
     /// From world space to cells, the first of which begins at the origin.
     const Affine3d& latticeFromWorld() const { return latticeFromWorld_; }
