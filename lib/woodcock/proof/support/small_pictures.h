@@ -7,6 +7,7 @@
 
 #include "woodcock/base/statistics.h"
 #include "woodcock/render/camera_depths.h"
+#include "woodcock/render/diffusion_lattice.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/sun_depths.h"
 
