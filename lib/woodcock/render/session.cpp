@@ -449,9 +449,8 @@ std::string compositingFlaw(const Approximations& approximations, bool deep) {
             what);
     if (!deep) return "";
     if (approximations.similarityAfter == 0)
-        return "deep pixels need the true media on camera rays, and similarity_after = 0 (as the "
-               "quality draft has it) replaces them. Set similarity_after = 1 or more, or another "
-               "quality";
+        return "deep pixels need the true media on camera rays, and similarity_after = 0 replaces "
+               "them. Set similarity_after = 1 or more";
     if (approximations.clamp > 0)
         return "deep pixels need each path's whole radiance, and clamp cuts it. Set clamp = 0";
     return "";
