@@ -19,6 +19,7 @@
 #include "woodcock/render/deep_bins.h"
 #include "woodcock/render/empty_pixels.h"
 #include "woodcock/render/path_tracer.h"
+#include "woodcock/render/preparation.h"
 #include "woodcock/render/repeated_call.h"
 #include "woodcock/render/sample_plan.h"
 #include "woodcock/render/stages/inner_loops.h"
@@ -71,6 +72,13 @@ void prepare(const Scene& scene, const Approximations& approximations) {
             medium::prepareMarch(medium, marchSettings(approximations));
 }
 
+/// The given one where it fits, else a new one.
+std::shared_ptr<const Preparation> fitting(std::shared_ptr<const Preparation> given,
+                                           const Scene& scene, const RenderSettings& s) {
+    if (given && given->fits(scene, s.width, s.height, s.approximations)) return given;
+    return std::make_shared<const Preparation>(scene, s.width, s.height, s.approximations);
+}
+
 std::optional<image::MatteFilm> mattesOf(const RenderSettings& settings, image::Film::Window crop) {
     if (settings.mattes.empty()) return std::nullopt;
     return image::MatteFilm(crop, settings.mattes);
@@ -109,15 +117,12 @@ struct Pass {
 class Session {
 public:
     Session(const Scene& scene, const RenderSettings& settings, image::Film::Window crop,
-            Checkpoints checkpoints)
+            Checkpoints checkpoints, std::shared_ptr<const Preparation> prepared)
         : scene_(scene),
           settings_(settings),
           crop_(crop),
           needs_(findNeeds(scene)),
-          approximateMedia_(scene, settings.approximations),
-          sunDepths_(scene, settings.approximations, approximateMedia_),
-          cameraDepths_(CameraDepths::make(scene, settings.width, settings.height)),
-          diffusion_(needs_.surfaces ? nullptr : DiffusionLattice::make(scene)),
+          prepared_(fitting(std::move(prepared), scene, settings)),
           tracers_([this] { return PathTracer::make(scene_, needs_, tracerOptions()); }),
           state_{image::Film(settings.width, settings.height, crop,
                              {.surfaces = needs_.surfaces,
@@ -398,10 +403,10 @@ private:
                 .approximations = settings_.approximations,
                 .layers = settings_.layers,
                 .stoppedLight = state_.mattes || state_.deep,
-                .approximateMedia = &approximateMedia_,
-                .sunDepths = &sunDepths_,
-                .cameraDepths = cameraDepths_.get(),
-                .diffusion = diffusion_.get(),
+                .approximateMedia = &prepared_->approximateMedia(),
+                .sunDepths = &prepared_->sunDepths(),
+                .cameraDepths = prepared_->cameraDepths(),
+                .diffusion = prepared_->diffusion(),
                 .emptyPixels = emptyPixels_ ? &*emptyPixels_ : nullptr};
     }
 
@@ -413,10 +418,7 @@ private:
     const RenderSettings settings_;
     const image::Film::Window crop_;
     const Needs needs_;
-    const ApproximateMedia approximateMedia_;
-    const SunDepths sunDepths_;
-    const std::unique_ptr<const CameraDepths> cameraDepths_;
-    const std::unique_ptr<const DiffusionLattice> diffusion_;
+    const std::shared_ptr<const Preparation> prepared_;
     std::optional<EmptyPixels> emptyPixels_;  // made from the other options
     /// One for each thread that renders, made when it first does.
     tbb::enumerable_thread_specific<std::unique_ptr<PathTracer>> tracers_;
@@ -448,9 +450,8 @@ std::string compositingFlaw(const Approximations& approximations, bool deep) {
             what);
     if (!deep) return "";
     if (approximations.similarityAfter == 0)
-        return "deep pixels need the true media on camera rays, and similarity_after = 0 (as the "
-               "quality draft has it) replaces them. Set similarity_after = 1 or more, or another "
-               "quality";
+        return "deep pixels need the true media on camera rays, and similarity_after = 0 replaces "
+               "them. Set similarity_after = 1 or more";
     if (approximations.clamp > 0)
         return "deep pixels need each path's whole radiance, and clamp cuts it. Set clamp = 0";
     return "";
@@ -459,11 +460,19 @@ std::string compositingFlaw(const Approximations& approximations, bool deep) {
 RenderResult render(const Scene& scene, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onProgress,
                     Checkpoints checkpoints) {
+    return renderPrepared(scene, settings, {}, onProgress, std::move(checkpoints));
+}
+
+RenderResult renderPrepared(const Scene& scene, const RenderSettings& settings,
+                            std::shared_ptr<const Preparation> prepared,
+                            const std::function<bool(const RenderProgress&)>& onProgress,
+                            Checkpoints checkpoints) {
     const image::Film::Window crop =
         settings.crop.value_or(image::Film::Window{0, 0, settings.width, settings.height});
     validate(settings, crop);
     prepare(scene, settings.approximations);
-    return Session(scene, settings, crop, std::move(checkpoints)).run(onProgress);
+    return Session(scene, settings, crop, std::move(checkpoints), std::move(prepared))
+        .run(onProgress);
 }
 
 }  // namespace woodcock::render

@@ -47,11 +47,12 @@ std::vector<std::string> renderKeys(Wanted wanted) {
 
 const std::vector<RenderChoice>& qualityChoices(Quality quality) {
     static const std::array<std::vector<RenderChoice>, 4> choices{
-        {{{"similarity_after", "0"},
+        {{{"similarity_after", "1"},
+          {"level_of_detail", "1"},
           {"storage", "\"half\""},
           {"transparent_shadows", "true"},
           {"adaptive", "true"}},
-         {{"similarity_after", "4"},
+         {{"similarity_after", "2"},
           {"storage", "\"half\""},
           {"transparent_shadows", "true"},
           {"adaptive", "true"},

@@ -57,6 +57,14 @@ Pixels pixelsOf(const image::Film& film) {
 
 }  // namespace
 
+std::shared_ptr<const render::Preparation> BuiltScene::preparation(
+    PictureSize size, const render::Approximations& approximations) const {
+    for (const auto& p : prepared)
+        if (p->fits(scene, size.width, size.height, approximations)) return p;
+    return prepared.emplace_back(std::make_shared<const render::Preparation>(
+        scene, size.width, size.height, approximations));
+}
+
 bool SceneStore::has(const scene::SceneDescription& scene) const {
     const scene::SceneDescription key = loadKey(scene);
     return std::any_of(entries_.begin(), entries_.end(),
@@ -95,8 +103,9 @@ std::optional<std::vector<Stage>> renderStages(const Subject& subject, std::uint
         settings.endSample = count;
         const double cpuStart = processorSeconds();
         const Stopwatch watch;
-        render::RenderResult result = render::render(
-            *subject.scene, settings, [&](const render::RenderProgress&) { return goOn(); });
+        render::RenderResult result =
+            render::renderPrepared(*subject.scene, settings, subject.prepared,
+                                   [&](const render::RenderProgress&) { return goOn(); });
         seconds += watch.seconds();
         cpuSeconds += processorSeconds() - cpuStart;
         if (result.reason == render::StopReason::Interrupted) return std::nullopt;

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <list>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "woodcock/denoise/denoiser.h"
+#include "woodcock/render/preparation.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/scene/description.h"
 #include "woodcock/trade/estimate.h"
@@ -33,6 +35,12 @@ struct BuiltScene {
     render::Scene scene;
     double loadSeconds = 0;  ///< loading and building
     std::size_t bytes = 0;   ///< held by fields and majorants
+    /// What renders of it share. Its time would count for much in small pictures, and counts for
+    /// little in large ones.
+    mutable std::vector<std::shared_ptr<const render::Preparation>> prepared = {};
+
+    std::shared_ptr<const render::Preparation> preparation(
+        PictureSize size, const render::Approximations& approximations) const;
 };
 
 /// Loads each scene once: candidates that differ only in rendering share it.
@@ -53,12 +61,16 @@ private:
 /// scene's own size, at which it was loaded.
 struct Subject {
     const render::Scene* scene = nullptr;
+    std::shared_ptr<const render::Preparation> prepared;
     scene::RenderDescription render;
     std::optional<denoise::Denoiser> denoiser;  ///< of its pictures; absent: none
     Subject() = default;
     Subject(const BuiltScene& built, const scene::SceneDescription& description, PictureSize size,
             std::optional<denoise::Denoiser> pictureDenoiser = {})
-        : scene(&built.scene), render(description.render), denoiser(std::move(pictureDenoiser)) {
+        : scene(&built.scene),
+          prepared(built.preparation(size, description.render.approximations)),
+          render(description.render),
+          denoiser(std::move(pictureDenoiser)) {
         render.width = size.width, render.height = size.height;
     }
 };

@@ -8,6 +8,7 @@
 #include "woodcock/base/error.h"
 #include "woodcock/base/parse.h"
 #include "woodcock/base/statistics.h"
+#include "woodcock/render/preparation.h"
 
 namespace woodcock::trade {
 namespace {
@@ -30,9 +31,15 @@ struct Run {
     render::RenderResult result;
 };
 
-Run run(const render::Scene& scene, const render::RenderSettings& settings) {
+/// A scene, and what its renders share.
+struct Prepared {
+    const render::Scene& scene;
+    std::shared_ptr<const render::Preparation> preparation = {};
+};
+
+Run run(const Prepared& of, const render::RenderSettings& settings) {
     const double start = processorSeconds();
-    Run r{0, 0, 0, render::render(scene, settings)};
+    Run r{0, 0, 0, render::renderPrepared(of.scene, settings, of.preparation)};
     r.seconds = (processorSeconds() - start) / settings.endSample;
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
@@ -47,7 +54,7 @@ Run run(const render::Scene& scene, const render::RenderSettings& settings) {
 
 double wallSecondsOf(const render::Scene& scene, const render::RenderSettings& settings) {
     const double start = wallSeconds();
-    run(scene, settings);
+    run({scene}, settings);
     return wallSeconds() - start;
 }
 
@@ -81,13 +88,20 @@ NeedCost measure(const render::Scene& scene, Need need, render::RenderSettings s
     std::vector<double> with, without, ratios, variances;
     Moments difference;
     const std::uint64_t seed = settings.seed;
-    run(forced, settings);
+    const auto prepared = [&](const render::Scene& of) {
+        const auto preparation = std::make_shared<const render::Preparation>(
+            of, settings.width, settings.height, settings.approximations);
+        preparation->fill(settings.threads, [&] { return wallSeconds() < end; });
+        return Prepared{of, preparation};
+    };
+    const Prepared needing = prepared(forced), plain = prepared(scene);
+    run(needing, settings);
     while (true) {
         settings.seed = seed + static_cast<std::uint64_t>(cost.pairs);
         // A B, B A, A B: a drift of the machine affects both.
         const bool swap = cost.pairs % 2;
-        const Run first = run(swap ? forced : scene, settings);
-        const Run second = run(swap ? scene : forced, settings);
+        const Run first = run(swap ? needing : plain, settings);
+        const Run second = run(swap ? plain : needing, settings);
         const Run &a = swap ? second : first, &b = swap ? first : second;
         without.push_back(a.seconds), with.push_back(b.seconds);
         ratios.push_back(b.seconds / a.seconds);

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+
+#include "woodcock/render/preparation.h"
+
 namespace woodcock::trade {
 namespace {
 
@@ -15,11 +19,13 @@ constexpr int mostSamples = 1 << 16;
 struct Job {
     TimedRender* render;
     render::RenderSettings settings;
+    std::shared_ptr<const render::Preparation> prepared = {};
     std::vector<double> microseconds = {};
 
     double run() {
         const double start = render->wallClock ? wallSeconds() : processorSeconds();
-        const render::RenderResult result = woodcock::render::render(render->scene, settings);
+        const render::RenderResult result =
+            woodcock::render::renderPrepared(render->scene, settings, prepared);
         const double taken = (render->wallClock ? wallSeconds() : processorSeconds()) - start;
         const render::RenderCounters& c = result.counters;
         microseconds.push_back(1e6 * taken / static_cast<double>(c.paths));
@@ -70,6 +76,10 @@ void timeRenders(std::vector<TimedRender>& renders, double seconds,
         Job job{&render, {}};
         job.settings.width = job.settings.height = render.wallClock ? threadedSide : side;
         job.settings.threads = render.threads;
+        job.prepared = std::make_shared<const render::Preparation>(
+            render.scene, job.settings.width, job.settings.height, job.settings.approximations);
+        const double fillEnd = wallSeconds() + 2 * oneRun;
+        job.prepared->fill(render.threads, [=] { return wallSeconds() < fillEnd; });
         const bool planned = plan(job, oneRun);
         if (!planned)
             leftOut += fmt::format("{}{} ({:.2g} s a run)", leftOut.empty() ? "" : ", ",

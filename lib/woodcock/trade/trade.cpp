@@ -22,7 +22,8 @@ constexpr int leastSamples = 4;
 constexpr int pilotSeeds = 2, pilotSamples = 2;
 constexpr int stagesOfSeed = 3;  ///< at most; see stageCounts()
 // Shares of the budget.
-constexpr double loadingShare = 0.25, renderingShare = 0.88, cropShare = 0.05, hardShare = 1.05;
+constexpr double fillingShare = 0.15, loadingShare = 0.25, renderingShare = 0.88, cropShare = 0.05,
+                 hardShare = 1.05;
 constexpr double unbiasedWeight = 0.25;  // whose squared bias decides nothing
 
 /// Each use has seeds of its own, so that results are independent.
@@ -196,6 +197,9 @@ private:
         for (const ResolvedCandidate& r : resolved_)
             subjects_.emplace_back(store_.get(r.scene), r.scene, size_, denoiserOf(r.scene));
         referenceSubject_ = Subject(store_.get(reference_), reference_, size_);
+        tell("grids of optical depths are made");
+        const auto goOn = [&] { return left(fillingShare) > 0; };
+        for (const Subject& subject : subjects_) subject.prepared->fill(settings_.threads, goOn);
         if (size_.pixels() < full_.pixels())
             notes_.push_back(
                 fmt::format("measured at {} x {} pixels; seconds are scaled to {} x {}",
