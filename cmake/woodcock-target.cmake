@@ -32,12 +32,10 @@ function(woodcock_target name)
         $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Debug>>:-Wno-maybe-uninitialized>
         # Where several sources are compiled as one, they see each other's own names.
         $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>
-        -fno-math-errno -fno-trapping-math)
-    # The same bits on every processor: a fused multiply-add rounds once where two instructions
-    # round twice. Plain x86-64 has none.
-    if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-        target_compile_options(${name} PRIVATE -ffp-contract=off)
-    endif()
+        -fno-math-errno -fno-trapping-math
+        # The same bits on every processor, whatever flags you add: a fused multiply-add rounds once
+        # where two instructions round twice.
+        -ffp-contract=off)
     if(WOODCOCK_BUILD_FUZZERS)
         target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link,address)
         target_link_options(${name} PUBLIC -fsanitize=address)

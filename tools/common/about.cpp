@@ -73,15 +73,13 @@ std::string aboutProgram() {
     return fmt::format(
         "woodcock {}\n"
         "commit:       {}\n"
-        "build:        {} {}, {}, uses {}\n"
+        "build:        {} {}, uses {}\n"
         "this machine: {} threads, has {}\n"
         "libraries:    {}, {}",
         version(), commit.empty() ? "unknown, as it was not built in a Git repository" : commit,
-        WOODCOCK_COMPILER, WOODCOCK_BUILD_TYPE,
-        WOODCOCK_NATIVE_BUILD ? "for one machine's processor (WOODCOCK_NATIVE)"
-                              : "for any processor of the architecture",
-        compiledFeatures(), std::thread::hardware_concurrency(), machineFeatures(),
-        WOODCOCK_LIBRARIES, image::imageLibraries());
+        WOODCOCK_COMPILER, WOODCOCK_BUILD_TYPE, compiledFeatures(),
+        std::thread::hardware_concurrency(), machineFeatures(), WOODCOCK_LIBRARIES,
+        image::imageLibraries());
 }
 
 }  // namespace woodcock::tool

@@ -26,7 +26,7 @@ Json build() {
 #else
     const bool assertions = true;
 #endif
-    return {{"compiler", compiler}, {"native", bool{WOODCOCK_NATIVE}}, {"assertions", assertions}};
+    return {{"compiler", compiler}, {"assertions", assertions}};
 }
 
 Json caseJson(const proof::Case& c) {

@@ -78,10 +78,10 @@ Graph::Entry ax(NodeReader& r) {
     return entry;
 }
 
-constexpr NodeType types[]{{"ax", ax}};
+constexpr NodeType axTypes[]{{"ax", ax}};
 
 }  // namespace
 
-std::span<const NodeType> axNodes() { return types; }
+std::span<const NodeType> axNodes() { return axTypes; }
 
 }  // namespace woodcock::bake

@@ -305,27 +305,27 @@ Graph::Entry colourRamp(NodeReader& r) {
     return {.node = std::make_unique<ColourRamp>(std::move(stops))};
 }
 
-constexpr NodeType types[]{{"add", add},
-                           {"multiply", multiply},
-                           {"min", least},
-                           {"max", most},
-                           {"smooth_min", smoothMin},
-                           {"smooth_max", smoothMax},
-                           {"subtract", subtract},
-                           {"mix", mix},
-                           {"remap", remap},
-                           {"falloff", falloff},
-                           {"displace", displace},
-                           {"erode", erode},
-                           {"power", power},
-                           {"abs", absolute},
-                           {"exp", exponential},
-                           {"vector", vectorOf},
-                           {"length", length},
-                           {"colour_ramp", colourRamp}};
+constexpr NodeType combinationTypes[]{{"add", add},
+                                      {"multiply", multiply},
+                                      {"min", least},
+                                      {"max", most},
+                                      {"smooth_min", smoothMin},
+                                      {"smooth_max", smoothMax},
+                                      {"subtract", subtract},
+                                      {"mix", mix},
+                                      {"remap", remap},
+                                      {"falloff", falloff},
+                                      {"displace", displace},
+                                      {"erode", erode},
+                                      {"power", power},
+                                      {"abs", absolute},
+                                      {"exp", exponential},
+                                      {"vector", vectorOf},
+                                      {"length", length},
+                                      {"colour_ramp", colourRamp}};
 
 }  // namespace
 
-std::span<const NodeType> combinationNodes() { return types; }
+std::span<const NodeType> combinationNodes() { return combinationTypes; }
 
 }  // namespace woodcock::bake

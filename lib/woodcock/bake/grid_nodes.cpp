@@ -122,10 +122,10 @@ Graph::Entry mesh(NodeReader& r) {
     return {.node = gridNode(fieldOf(grid), grid::affineOf(*grid.transform().baseMap()))};
 }
 
-constexpr NodeType types[]{{"grid", grid}, {"mesh", mesh}};
+constexpr NodeType gridTypes[]{{"grid", grid}, {"mesh", mesh}};
 
 }  // namespace
 
-std::span<const NodeType> gridNodes() { return types; }
+std::span<const NodeType> gridNodes() { return gridTypes; }
 
 }  // namespace woodcock::bake

@@ -85,10 +85,10 @@ Graph::Entry transform(NodeReader& r) {
                                        Affine3d::rotate(0, turn.x) * Affine3d::scale(scale)));
 }
 
-constexpr NodeType types[]{{"warp", warp}, {"transform", transform}};
+constexpr NodeType mappingTypes[]{{"warp", warp}, {"transform", transform}};
 
 }  // namespace
 
-std::span<const NodeType> mappingNodes() { return types; }
+std::span<const NodeType> mappingNodes() { return mappingTypes; }
 
 }  // namespace woodcock::bake

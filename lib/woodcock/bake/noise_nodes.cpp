@@ -223,12 +223,12 @@ Graph::Entry curl(NodeReader& r) {
     return {.node = std::make_unique<CurlNode>(f)};
 }
 
-constexpr NodeType types[]{{"perlin", perlin}, {"simplex", simplex}, {"worley", worley},
-                           {"fbm", fbm},       {"billow", billow},   {"ridged", ridged},
-                           {"curl", curl}};
+constexpr NodeType noiseTypes[]{{"perlin", perlin}, {"simplex", simplex}, {"worley", worley},
+                                {"fbm", fbm},       {"billow", billow},   {"ridged", ridged},
+                                {"curl", curl}};
 
 }  // namespace
 
-std::span<const NodeType> noiseNodes() { return types; }
+std::span<const NodeType> noiseNodes() { return noiseTypes; }
 
 }  // namespace woodcock::bake

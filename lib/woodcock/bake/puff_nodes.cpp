@@ -177,10 +177,10 @@ Graph::Entry points(NodeReader& r) {
     return {.node = std::make_unique<Puffs>(std::move(all), width)};
 }
 
-constexpr NodeType types[]{{"puffs", puffs}, {"points", points}};
+constexpr NodeType puffTypes[]{{"puffs", puffs}, {"points", points}};
 
 }  // namespace
 
-std::span<const NodeType> puffNodes() { return types; }
+std::span<const NodeType> puffNodes() { return puffTypes; }
 
 }  // namespace woodcock::bake

@@ -128,12 +128,12 @@ Graph::Entry position(NodeReader& r) {
             })};
 }
 
-constexpr NodeType types[]{
+constexpr NodeType shapeTypes[]{
     {"sphere", sphere}, {"box", box},       {"capsule", capsule},          {"ring", ring},
     {"plane", plane},   {"menger", menger}, {"height_field", heightField}, {"position", position}};
 
 }  // namespace
 
-std::span<const NodeType> shapeNodes() { return types; }
+std::span<const NodeType> shapeNodes() { return shapeTypes; }
 
 }  // namespace woodcock::bake

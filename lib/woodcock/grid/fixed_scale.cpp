@@ -10,7 +10,7 @@ namespace woodcock::grid {
 
 namespace {
 
-constexpr double largest = std::numeric_limits<float>::max();
+constexpr double largestFloat = std::numeric_limits<float>::max();
 
 /// The smallest number of eight binary digits that is not below `v`. Its product with a code of 16
 /// bits is a float without rounding.
@@ -27,7 +27,7 @@ FixedScale FixedScale::of(float min, float max, unsigned last) {
     if (min < 0 && max >= 0) {
         const double step = std::max(ceilToEightDigits(range / (last - 1)),
                                      double{std::numeric_limits<float>::min()});
-        if (!(step * last <= largest))
+        if (!(step * last <= largestFloat))
             throw inputError(
                 "the values of one brick differ by more than fixed storage can hold; use float "
                 "storage");

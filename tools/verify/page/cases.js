@@ -58,11 +58,7 @@ function summary() {
     const b = report.build;
     const facts = {
         Version: `woodcock ${escape(report.version)}`,
-        Build: escape(
-            `${b.compiler}, ${
-                b.native ? "for this processor (native)" : "for any processor"
-            }${b.assertions ? ", assertions on" : ""}`,
-        ),
+        Build: escape(`${b.compiler}${b.assertions ? ", assertions on" : ""}`),
         Threads: report.threads,
         Date: escape(report.date.replace("T", " ").replace("Z", " UTC")),
         Effort: `${
