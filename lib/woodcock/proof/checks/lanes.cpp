@@ -89,9 +89,11 @@ struct Subject {
     double effort = 1;  ///< so many times the seeds of the others
     std::optional<int> maxScatterings{};
     bool camera = true;  ///< the usual one is to be added
-    /// Of what the depths to the sun and along camera rays, and what is known by diffusion, are to
-    /// be made, where they are to be wrong.
+    /// Of what the depths to the sun and along camera rays are to be made, where they are to be
+    /// wrong.
     std::string gridOf = {};
+    /// The same of what is known by diffusion.
+    std::string diffusionOf = {};
 };
 
 std::string mediumOf(double sigmaS, double sigmaA, const std::string& phase) {
@@ -124,11 +126,12 @@ std::vector<Subject> plainSubjects() {
          true,
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
              lights},
-        {"thick, by the diffusion of another medium, elsewhere",
+        {"thick, by the diffusion of another medium",
          ball + mediumOf(38, 2, "g = 0.5") + lights,
          1,
          {},
          true,
+         {},
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" +
              "sigma_s = [30, 45, 60]\nsigma_a = [0.2, 8, 30]\n" + lights},
         {"thick, in a disc's light", cloud + discSun + air, 0.2},
@@ -240,7 +243,9 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
             .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
         const auto cameraDepths = render::CameraDepths::make(other, picture.side, picture.side);
         picture.cameraDepths = cameraDepths.get();
-        const auto diffusion = render::DiffusionLattice::make(other);
+        const render::Scene elsewhere =
+            seen(subject.diffusionOf.empty() ? subject.text : subject.diffusionOf);
+        const auto diffusion = render::DiffusionLattice::make(elsewhere);
         picture.diffusion = diffusion.get();
         const std::string name = std::string("picture ") + subject.name;
         Case used{.name = name + ", traced in lanes", .expected = 1};
