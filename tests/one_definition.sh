@@ -7,7 +7,8 @@
 set -euo pipefail
 build=$(realpath -m "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None -DWOODCOCK_BUILD_TESTS=OFF -DCMAKE_UNITY_BUILD=ON \
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None -DWOODCOCK_BUILD_TESTS=OFF \
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 \
     -DCMAKE_CXX_FLAGS="-O0 -flto" -DCMAKE_EXE_LINKER_FLAGS="-flto=auto -Werror=odr"
 cmake --build "$build" --target woodcock_verify_program \
     --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
