@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).parent
 WIDTH, HEIGHT = 7.2, 2.9  # inches
 COLOUR_OF = {"Cycles 5.0": "#d95f02", "Mitsuba 3.9 (LLVM)": "#1f78b4"}
 CHANNELS = {"r": "#c0392b", "g": "#2e8b57", "b": "#2c5fa8"}
-SITTING_TO_SITTING = 0.2  # how far a ratio has moved between measurements, as a share of it
+SITTING_TO_SITTING = 0.3  # how far a ratio has moved between measurements, as a share of it
 
 
 def rows_of(name):
