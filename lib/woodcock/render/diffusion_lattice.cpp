@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "woodcock/render/diffusion_lattice.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -64,30 +66,36 @@ std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const medium::Med
 }
 
 void DiffusionLattice::survey(const medium::Medium& medium, Rates rates[3]) const {
-    for (int c = 0; c < 3; ++c)
-        rates[c].absorption.assign(content_.size(), 0),
-            rates[c].transport.assign(content_.size(), 0);
-    const Vec3d up = {0, 0, 1};
-    for (const medium::MediumPart& part : medium.parts) {
-        const auto forward = static_cast<float>(part.phase().meanCosine());
-        const int channels = part.field() && part.field()->channels() > 1 ? 3 : 1;
-        for (int y = 0; y < cells_.y * raysAcross; ++y)
-            for (int x = 0; x < cells_.x * raysAcross; ++x) {
-                const Vec3d start = origin_ + Vec3d{x + 0.5, y + 0.5, 0} * (edge_ / raysAcross);
-                medium::integrateSteps(
-                    part, part.indexRay(start, up), cells_.z, edge_, channels,
-                    [&](int z, int channel, double integral) {
-                        const std::size_t i = numberOf(x / raysAcross, y / raysAcross, z);
-                        const auto f = static_cast<float>(integral / (raysAcross * raysAcross));
-                        for (int c = 0; c < 3; ++c) {
-                            if (channels > 1 && c != channel) continue;
-                            rates[c].absorption[i] += part.absorption()[c] * f;
-                            rates[c].transport[i] +=
-                                (part.absorption()[c] + (1 - forward) * part.scattering()[c]) * f;
-                        }
-                    });
-            }
+    for (int c = 0; c < 3; ++c) {
+        rates[c].absorption.assign(content_.size(), 0);
+        rates[c].transport.assign(content_.size(), 0);
     }
+    tbb::parallel_for(0, cells_.y, [&](int y) {
+        for (const medium::MediumPart& part : medium.parts)
+            for (int ray = 0; ray < raysAcross * raysAcross * cells_.x; ++ray)
+                surveyRay(part, y, ray, rates);
+    });
+}
+
+/// Adds what one of the rays through a row of cells, from low to high z, finds in them.
+void DiffusionLattice::surveyRay(const medium::MediumPart& part, int row, int ray,
+                                 Rates rates[3]) const {
+    const int x = ray / raysAcross, y = row * raysAcross + ray % raysAcross;
+    const Vec3d start = origin_ + Vec3d{x + 0.5, y + 0.5, 0} * (edge_ / raysAcross);
+    const auto forward = static_cast<float>(part.phase().meanCosine());
+    const int channels = part.field() && part.field()->channels() > 1 ? 3 : 1;
+    medium::integrateSteps(
+        part, part.indexRay(start, {0, 0, 1}), cells_.z, edge_, channels,
+        [&](int z, int channel, double integral) {
+            const std::size_t i = numberOf(x / raysAcross, row, z);
+            const auto f = static_cast<float>(integral / (raysAcross * raysAcross));
+            for (int c = 0; c < 3; ++c) {
+                if (channels > 1 && c != channel) continue;
+                const float absorption = part.absorption()[c], scattering = part.scattering()[c];
+                rates[c].absorption[i] += absorption * f;
+                rates[c].transport[i] += (absorption + (1 - forward) * scattering) * f;
+            }
+        });
 }
 
 /// By successive over-relaxation of the finite volumes' equations.

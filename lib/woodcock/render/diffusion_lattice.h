@@ -48,6 +48,7 @@ private:
 
     DiffusionLattice() = default;
     void survey(const medium::Medium& medium, Rates rates[3]) const;
+    void surveyRay(const medium::MediumPart& part, int row, int ray, Rates rates[3]) const;
     std::vector<float> solve(const Rates& rates) const;
     void keep(const std::vector<float>& phi, const Rates& rates, int channel);
     std::size_t numberOf(int x, int y, int z) const {
