@@ -133,11 +133,11 @@ defect "lanes' flights in one direction count for one too few" 'Lanes.*' "lanes 
 
 defect "lanes' roulette is made up for twice" 'Lanes.*' "" \
     $lanes/lane_scattering-inl.h \
-    'window_[c][lane] += w[c] * (factor - 1)' 'window_[c][lane] += w[c] * (1 - factor)'
+    'const float more = w[c] * (factor - 1);' 'const float more = w[c] * (1 - factor);'
 
 defect "lanes' chance is what is left of it" 'Lanes.*' "lanes and paths one by one" \
     $lanes/lane_scattering-inl.h \
-    'equilibrium_[c].get() * (after - before));' 'equilibrium_[c].get() * after);'
+    'expectedWith(c, aheadIn(c)) * (after - before));' 'expectedWith(c, aheadIn(c)) * after);'
 
 defect "lanes that split predict as before" 'Lanes.*' "lanes and paths one by one" \
     $lanes/lane_scattering-inl.h \
