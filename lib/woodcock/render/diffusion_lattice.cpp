@@ -25,8 +25,12 @@ constexpr float emptyCell = 1;
 }  // namespace
 
 std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const Scene& scene) {
+    const auto isOrdinary = [](const medium::MediumPart& part) {
+        return part.field() && !part.unbounded() && !part.extinctionVaries() && !part.moved() &&
+               !part.readElsewhere() && !part.support().empty();
+    };
     if (scene.lights.distant().empty() || !isThick(MediumSummary(scene.medium)) ||
-        medium::moves(scene.medium))
+        medium::moves(scene.medium) || !std::ranges::all_of(scene.medium.parts, isOrdinary))
         return nullptr;
     return make(scene.medium);
 }
