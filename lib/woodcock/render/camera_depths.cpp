@@ -114,6 +114,7 @@ bool CameraDepths::layOut() {
 
 /// Those of the lattice, by rows; then those in the middle of four, by rows.
 std::size_t CameraDepths::lineCount() const {
+    if (across_ == 0) return 0;  // nothing could be laid out
     const auto across = static_cast<std::size_t>(across_), down = static_cast<std::size_t>(down_);
     return across * down + (across - 1) * (down - 1);
 }
