@@ -131,6 +131,7 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
         }
     scene.thick = isThick(traced.media[0]);
     scene.addLights();
+    scene.addDiffusion();
     scene.addCameraDepths();
     return scene;
 }
@@ -174,10 +175,14 @@ void LaneScene::addLights() {
         environment += meanRadiance(lights, light);
         environmentSeen &= lights.traits(light).visible;
     }
-    if (thick && environmentLight >= 0) diffusion = traced.options.diffusion;
-    if (diffusion)
-        for (LanePart& part : parts)
-            part.setLattice(part.cellsFromIndex, diffusion->latticeFromWorld());
+}
+
+void LaneScene::addDiffusion() {
+    if (!thick || environmentLight < 0) return;
+    diffusion = traced.options.diffusion;
+    if (!diffusion) return;
+    for (LanePart& part : parts)
+        part.setLattice(part.cellsFromIndex, diffusion->latticeFromWorld());
 }
 
 }  // namespace woodcock::render

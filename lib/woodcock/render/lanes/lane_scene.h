@@ -71,6 +71,7 @@ struct LaneScene {
 private:
     explicit LaneScene(const TracedScene& t) : traced(t) {}
     void addLights();
+    void addDiffusion();
     void addCameraDepths();
 };
 
