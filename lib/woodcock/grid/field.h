@@ -81,19 +81,22 @@ public:
         return valueOf(*table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value, v, channel);
     }
 
-    /// Trilinear interpolation at index-space position `p`, at most 2^31 voxels away.
-    float trilinear(Vec3d p, int channel = 0) const {
-        if (nearest_) return voxel(nearestVoxel(p), channel);
+    /// Trilinear interpolation at index-space position `p`, at most 2^31 voxels away: of N channels
+    /// from `channel` on.
+    template <int N>
+    std::array<float, N> interpolated(Vec3d p, int channel = 0) const {
+        std::array<float, N> values;
+        if (nearest_) {
+            for (int c = 0; c < N; ++c)
+                values[static_cast<std::size_t>(c)] = voxel(nearestVoxel(p), channel + c);
+            return values;
+        }
         const Vec3i v = floorToInt(p);
-        const Vec3d f = p - v.as<double>();
-        const auto lerp = [](double t, double a, double b) { return a + t * (b - a); };
-        const auto row = [&](int y, int z) {
-            return lerp(f.x, voxel(v + Vec3i{0, y, z}, channel),
-                        voxel(v + Vec3i{1, y, z}, channel));
-        };
-        return static_cast<float>(
-            lerp(f.z, lerp(f.y, row(0, 0), row(1, 0)), lerp(f.y, row(0, 1), row(1, 1))));
+        const auto cell = cellVoxels<N>(v, channel);
+        for (std::size_t c = 0; c < N; ++c) values[c] = interpolate(cell[c], p - v.as<double>());
+        return values;
     }
+    float trilinear(Vec3d p, int channel = 0) const { return interpolated<1>(p, channel)[0]; }
 
     /// One of the eight voxels around `p`, chosen with its trilinear weight. Its expectation is
     /// trilinear(p), at an eighth of the loads. Use it only where the value enters linearly. Pharr
@@ -111,38 +114,42 @@ public:
     }
 
     /// The eight voxels of the lattice's cell from `v` to one voxel further along each axis: x
-    /// first, then y.
-    std::array<float, 8> cellVoxels(Vec3i v, int channel = 0) const {
-        std::array<float, 8> values;
+    /// first, then y. Of N channels from `channel` on.
+    template <int N = 1>
+    std::array<std::array<float, 8>, N> cellVoxels(Vec3i v, int channel = 0) const {
+        std::array<std::array<float, 8>, N> values;
         constexpr int last = (1 << blockLog2) - 1;
-        if ((v.x & last) == last || (v.y & last) == last || (v.z & last) == last) {
-            for (int i = 0; i < 8; ++i)
-                values[static_cast<std::size_t>(i)] =
-                    voxel(v + Vec3i{i & 1, i >> 1 & 1, i >> 2}, channel);
+        // Bits, as in the numbers of voxels: the axes along which the cell ends in another block.
+        const unsigned into = unsigned{(v.x & last) == last} | unsigned{(v.y & last) == last} << 1 |
+                              unsigned{(v.z & last) == last} << 2;
+        std::array<std::uint32_t, 8> refs{};
+        refs[0] = *table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value;
+        if (!into && storage_ == Storage::Float && !(refs[0] & constantBit)) {
+            const std::size_t channels = channelCount();
+            const float* first = &floats_[(std::size_t{refs[0]} * 512 + offset(v)) * channels +
+                                          static_cast<std::size_t>(channel)];
+            for (unsigned i = 0; i < 8; ++i)
+                for (std::size_t c = 0; c < N; ++c)
+                    values[c][i] =
+                        first[((i & 1) * 64 + (i >> 1 & 1) * 8 + (i >> 2)) * channels + c];
             return values;
         }
-        const std::uint32_t ref = *table_.find({v.x >> 3, v.y >> 3, v.z >> 3}).value;
-        if (ref & constantBit) {
-            values.fill(valueOf(ref, v, channel));
-            return values;
+        for (unsigned i = 0; i < 8; ++i) {
+            const Vec3i at = v + Vec3i{static_cast<int>(i & 1), static_cast<int>(i >> 1 & 1),
+                                       static_cast<int>(i >> 2)};
+            if (i > 0 && (i & into) == i)
+                refs[i] = *table_.find({at.x >> 3, at.y >> 3, at.z >> 3}).value;
+            for (int c = 0; c < N; ++c)
+                values[static_cast<std::size_t>(c)][i] = valueOf(refs[i & into], at, channel + c);
         }
-        const std::size_t channels = channelCount(),
-                          first = (std::size_t{ref} * 512 + offset(v)) * channels +
-                                  static_cast<std::size_t>(channel);
-        const auto read = [&](auto&& valueAt) {
-            for (std::size_t i = 0; i < 8; ++i)
-                values[i] =
-                    valueAt(first + ((i & 1) * 64 + (i >> 1 & 1) * 8 + (i >> 2)) * channels);
-        };
-        if (storage_ == Storage::Float)
-            read([&](std::size_t i) { return floats_[i]; });
-        else if (storage_ == Storage::Half)
-            read([&](std::size_t i) { return decodeHalf(words_[i]); });
-        else
-            for (int i = 0; i < 8; ++i)
-                values[static_cast<std::size_t>(i)] =
-                    valueOf(ref, v + Vec3i{i & 1, i >> 1 & 1, i >> 2}, channel);
         return values;
+    }
+
+    /// Interpolates between the voxels of a cell; f: from the first of them, in [0, 1].
+    static float interpolate(const std::array<float, 8>& v, Vec3d f) {
+        const auto lerp = [](double t, double a, double b) { return a + t * (b - a); };
+        const auto row = [&](std::size_t i) { return lerp(f.x, v[i], v[i + 1]); };
+        return static_cast<float>(lerp(f.z, lerp(f.y, row(0), row(2)), lerp(f.y, row(4), row(6))));
     }
 
     /// The voxels of one block, found once for many reads.

@@ -30,8 +30,10 @@ class LatticePiece {
 public:
     LatticePiece(const grid::Field& field, const grid::IndexRay& ray, Vec3i cell)
         : ray_(ray), cell_(cell.as<double>()), channels_(field.channels()) {
-        for (int c = 0; c < channels_; ++c)
-            corners_[static_cast<std::size_t>(c)] = field.cellVoxels(cell, c);
+        if (grey())
+            corners_[0] = field.cellVoxels(cell)[0];
+        else
+            corners_ = field.cellVoxels<3>(cell);
     }
 
     bool grey() const { return channels_ == 1; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "woodcock/grid/motion.h"
@@ -34,7 +35,8 @@ template <int N>
 template <int N>
 Spectrum<N> read(const grid::Field& field, Vec3d index, InFull) {
     if (N == 1 || field.channels() == 1) return Spectrum<N>(field.trilinear(index));
-    return Spectrum<N>::map([&](int c) { return field.trilinear(index, c); });
+    const std::array<float, N> values = field.interpolated<N>(index);
+    return Spectrum<N>::map([&](int c) { return values[static_cast<std::size_t>(c)]; });
 }
 
 /// densityAt() of a part that is read elsewhere. Not inline: the other parts have more registers
