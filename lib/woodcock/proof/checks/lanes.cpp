@@ -200,6 +200,13 @@ std::vector<Subject> glowingSubjects() {
         {"of smoke that hot voxels light", smoke + hot + lights},
         {"that glows, of one scattering", fog + hot + lights, 1, 1},
         {"that glows, of two scatterings", fog + hot + lights, 1, 2},
+        {"that glows, by depths of thrice the density, elsewhere",
+         fog + hot + lights,
+         6,
+         {},
+         true,
+         ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
+             hot + lights},
         {"that glows and is thick",
          ball + mediumOf(39, 1, "g = 0.7") + "emission = [5, 4, 3]\n" + lights, 0.3},
         {"that glows in no other light", smoke + hot + air + hidden, 4},

@@ -66,7 +66,8 @@ void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) 
                              .scatters = scatters,
                              .throughput = throughput,
                              .key = p.random.bits(),
-                             .u = {p.equiangular, 0}};
+                             .u = {p.equiangular, 0},
+                             .raster = p.raster};
     if (!scatters && isToBeNoted(traced_, p)) vertex.depth.emplace(traced_, p);
     if (scatters) {
         // As many as its light is worth: of 3 to 99 rays for a weight of 1, 6 measured best.
