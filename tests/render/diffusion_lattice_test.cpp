@@ -24,6 +24,8 @@ medium::Medium cube(Rgb scattering, Rgb absorption) {
         .medium();
 }
 
+const DiffusionLattice::Light sky{.environment = {1, 1, 1}, .sun = {}};
+
 const DiffusionLattice::Channel& at(const DiffusionLattice& lattice, Vec3d world, int channel) {
     const Vec3i cell = floorToInt(lattice.latticeFromWorld().point(world));
     const Vec3i n = lattice.cells();
@@ -33,7 +35,7 @@ const DiffusionLattice::Channel& at(const DiffusionLattice& lattice, Vec3d world
 /// Far from the other faces phi falls as exp(-x sqrt(3 sigma_a sigma_tr)). Between cells of edge h
 /// the finite volumes' solution falls by r, where r + 1 / r = 2 + 3 sigma_a sigma_tr h^2.
 TEST(DiffusionLattice, FallsByTheDiffusionLength) {
-    const auto lattice = DiffusionLattice::make(cube({5, 5, 2}, {0.3f, 0.3f, 1}));
+    const auto lattice = DiffusionLattice::make(cube({5, 5, 2}, {0.3f, 0.3f, 1}), sky);
     ASSERT_TRUE(lattice);
     const double h = 1 / length(lattice->latticeFromWorld().column[0]);
     for (const int channel : {0, 2}) {
@@ -56,7 +58,7 @@ TEST(DiffusionLattice, FallsByTheDiffusionLength) {
 
 /// Radiance is at most that around the medium, and nowhere expected to be negative.
 TEST(DiffusionLattice, StaysWithinBounds) {
-    const auto lattice = DiffusionLattice::make(cube({0.2f, 5, 40}, {0.01f, 0.3f, 30}));
+    const auto lattice = DiffusionLattice::make(cube({0.2f, 5, 40}, {0.01f, 0.3f, 30}), sky);
     ASSERT_TRUE(lattice);
     const Vec3i n = lattice->cells();
     for (int i = 0; i < n.x * n.y * n.z; ++i)
@@ -70,9 +72,53 @@ TEST(DiffusionLattice, StaysWithinBounds) {
     EXPECT_GT(at(*lattice, {side / 2, side / 2, side / 2}, 0).phi, 0.5);
 }
 
+/// What the finite volumes of edge h lose by diffusion and absorption is what sunlight brings to
+/// them: (1 - g) sigma_s E T / (4 pi), where T = exp(-sigma_tr x) at depth x.
+TEST(DiffusionLattice, BalancesWhatSunlightScatters) {
+    const Rgb sun{3, 2, 1};
+    const auto lattice =
+        DiffusionLattice::make(cube({5, 5, 2}, {0.3f, 0.3f, 1}),
+                               {.environment = {}, .sun = sun, .towardsSun = {-1, 0, 0}});
+    ASSERT_TRUE(lattice);
+    const double h = 1 / length(lattice->latticeFromWorld().column[0]);
+    for (const int channel : {0, 1, 2}) {
+        const double scattering = channel < 2 ? 5 : 2, absorption = channel < 2 ? 0.3 : 1,
+                     transport = scattering + absorption;
+        const auto phi = [&](double x, double y, double z) {
+            return double{at(*lattice, {x, side / 2 + y, side / 2 + z}, channel).phi};
+        };
+        for (double x = 1.5 * h; x < 1; x += h) {
+            const double around = phi(x + h, 0, 0) + phi(x - h, 0, 0) + phi(x, h, 0) +
+                                  phi(x, -h, 0) + phi(x, 0, h) + phi(x, 0, -h);
+            const double lost =
+                absorption * h * phi(x, 0, 0) - (around - 6 * phi(x, 0, 0)) / (3 * transport * h);
+            const double brought =
+                scattering * h * double{sun[channel]} * std::exp(-transport * x) / (4 * pi);
+            EXPECT_NEAR(lost, brought, 0.01 * brought) << x;
+        }
+    }
+}
+
+/// Light adds up.
+TEST(DiffusionLattice, IsLinearInTheLight) {
+    const medium::Medium medium = cube({5, 5, 2}, {0.3f, 0.3f, 1});
+    const DiffusionLattice::Light sun{
+        .environment = {}, .sun = {3, 2, 1}, .towardsSun = {0.6, 0, 0.8}};
+    DiffusionLattice::Light both = sun;
+    both.environment = sky.environment;
+    const auto a = DiffusionLattice::make(medium, sky), b = DiffusionLattice::make(medium, sun),
+               sum = DiffusionLattice::make(medium, both);
+    ASSERT_TRUE(a && b && sum);
+    for (double x = 0.5; x < side; ++x)
+        for (const int c : {0, 2}) {
+            const Vec3d p{x, side / 3, side - x};
+            EXPECT_NEAR(at(*sum, p, c).phi, at(*a, p, c).phi + at(*b, p, c).phi, 1e-5);
+        }
+}
+
 TEST(DiffusionLattice, NeedsBothAbsorptionAndScattering) {
-    EXPECT_FALSE(DiffusionLattice::make(cube({1, 1, 1}, {})));
-    EXPECT_FALSE(DiffusionLattice::make(cube({}, {1, 1, 1})));
+    EXPECT_FALSE(DiffusionLattice::make(cube({1, 1, 1}, {}), sky));
+    EXPECT_FALSE(DiffusionLattice::make(cube({}, {1, 1, 1}), sky));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/light/even_light.h"
 #include "woodcock/medium/line_depths.h"
 #include "woodcock/render/media_table.h"
 
@@ -22,6 +23,23 @@ constexpr int raysAcross = 2;
 /// 2, this measured best.
 constexpr float emptyCell = 1;
 
+DiffusionLattice::Light lightOf(const light::LightSet& lights) {
+    DiffusionLattice::Light light;
+    int environment = -1;
+    for (const int i : lights.distant()) {
+        if (!light::isEven(lights, i)) continue;
+        light.environment += light::meanRadiance(lights, i);
+        if (environment < 0) environment = i;
+    }
+    const auto sun = std::ranges::find_if(
+        lights.sampled(), [&](int i) { return lights.traits(i).parallel.has_value(); });
+    if (sun == lights.sampled().end()) return light;
+    if (environment >= 0 && lights.group(environment) != lights.group(*sun)) return light;
+    light.sun = lights.sample(*sun, {}, 0, 0).weight;
+    light.towardsSun = *lights.traits(*sun).parallel;
+    return light;
+}
+
 }  // namespace
 
 std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const Scene& scene) {
@@ -29,13 +47,16 @@ std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const Scene& scen
         return part.field() && !part.unbounded() && !part.extinctionVaries() && !part.moved() &&
                !part.readElsewhere() && !part.support().empty();
     };
-    if (scene.lights.distant().empty() || !isThick(MediumSummary(scene.medium)) ||
-        medium::moves(scene.medium) || !std::ranges::all_of(scene.medium.parts, isOrdinary))
+    const Light light = lightOf(scene.lights);
+    if (!(light.environment.maximum() > 0 || light.sun.maximum() > 0) ||
+        !isThick(MediumSummary(scene.medium)) || medium::moves(scene.medium) ||
+        !std::ranges::all_of(scene.medium.parts, isOrdinary))
         return nullptr;
-    return make(scene.medium);
+    return make(scene.medium, light);
 }
 
-std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const medium::Medium& medium) {
+std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const medium::Medium& medium,
+                                                               const Light& light) {
     Rgb absorption, scattering;
     for (const medium::MediumPart& part : medium.parts)
         absorption += part.absorption(), scattering += part.scattering();
@@ -60,11 +81,21 @@ std::unique_ptr<const DiffusionLattice> DiffusionLattice::make(const medium::Med
     lattice.survey(medium, rates);
     for (int c = 0; c < 3; ++c) {
         const bool asBefore = c > 0 && rates[c].absorption == rates[c - 1].absorption &&
-                              rates[c].transport == rates[c - 1].transport;
-        if (asBefore)
+                              rates[c].transport == rates[c - 1].transport &&
+                              light.environment[c] == light.environment[c - 1] &&
+                              light.sun[c] == light.sun[c - 1];
+        if (asBefore) {
             for (Cell& cell : lattice.content_) cell.channels[c] = cell.channels[c - 1];
-        else
-            lattice.keep(lattice.solve(rates[c]), rates[c], c);
+            continue;
+        }
+        std::vector<float> source(lattice.content_.size());
+        if (light.sun[c] > 0) {
+            source = lattice.sunlight(rates[c], light.towardsSun);
+            for (std::size_t i = 0; i < source.size(); ++i)
+                source[i] *= (rates[c].transport[i] - rates[c].absorption[i]) * light.sun[c] *
+                             static_cast<float>(1 / (4 * pi));
+        }
+        lattice.keep(lattice.solve(rates[c], light.environment[c], source), rates[c], c);
     }
     return made;
 }
@@ -102,8 +133,30 @@ void DiffusionLattice::surveyRay(const medium::MediumPart& part, int row, int ra
         });
 }
 
-/// By successive over-relaxation of the finite volumes' equations.
-std::vector<float> DiffusionLattice::solve(const Rates& rates) const {
+/// The transmittance of `transport` from the middle of each cell to the sun, in steps of half a
+/// cell.
+std::vector<float> DiffusionLattice::sunlight(const Rates& rates, Vec3d towardsSun) const {
+    std::vector<float> passes(content_.size(), 1);
+    const Vec3d step = towardsSun * 0.5;
+    const Box3d inner{{1, 1, 1}, (cells_ - Vec3i{1, 1, 1}).as<double>()};
+    tbb::parallel_for(1, cells_.z - 1, [&](int z) {
+        for (int y = 1; y + 1 < cells_.y; ++y)
+            for (int x = 1; x + 1 < cells_.x; ++x) {
+                float depth = 0;
+                Vec3d at = Vec3d{x + 0.5, y + 0.5, z + 0.5} + step * 0.5;
+                for (; inner.contains(at); at += step) {
+                    const Vec3i cell = floorToInt(at);
+                    depth += rates.transport[numberOf(cell.x, cell.y, cell.z)];
+                }
+                passes[numberOf(x, y, z)] = std::exp(-0.5f * depth);
+            }
+    });
+    return passes;
+}
+
+/// By successive over-relaxation of the finite volumes' equations. `around`: phi at the border.
+std::vector<float> DiffusionLattice::solve(const Rates& rates, float around,
+                                           const std::vector<float>& source) const {
     constexpr float relaxation = 1.8f;
     constexpr int sweeps = 60;
     const auto stepY = static_cast<std::size_t>(cells_.x),
@@ -114,52 +167,48 @@ std::vector<float> DiffusionLattice::solve(const Rates& rates) const {
         return std::max(1.5f * rates.transport[i], emptyCell / 2);
     };
     const std::size_t steps[3] = {1, stepY, stepZ};
-    std::vector<float> faces[3], weight(count), phi(count, 1);
+    std::vector<float> faces[3], weight(count), phi(count, around);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         faces[axis].resize(count);
         for (std::size_t i = 0; i + steps[axis] < count; ++i)
             faces[axis][i] = 1 / (resistance(i) + resistance(i + steps[axis]));
     }
-    const auto forInner = [&](auto&& act) {
-        for (int z = 1; z + 1 < cells_.z; ++z)
-            for (int y = 1; y + 1 < cells_.y; ++y)
-                for (int x = 1; x + 1 < cells_.x; ++x) act(numberOf(x, y, z));
-    };
-    forInner([&](std::size_t i) {
+    forInner([&](int x, int y, int z) {
+        const std::size_t i = numberOf(x, y, z);
         float sum = rates.absorption[i];
         for (std::size_t axis = 0; axis < 3; ++axis)
             sum += faces[axis][i] + faces[axis][i - steps[axis]];
         weight[i] = relaxation / sum;
     });
     for (int sweep = 0; sweep < sweeps; ++sweep)
-        forInner([&](std::size_t i) {
-            float sum = 0;
+        forInner([&](int x, int y, int z) {
+            const std::size_t i = numberOf(x, y, z);
+            float sum = source[i];
             for (std::size_t axis = 0; axis < 3; ++axis)
                 sum += faces[axis][i] * phi[i + steps[axis]] +
                        faces[axis][i - steps[axis]] * phi[i - steps[axis]];
             phi[i] = (1 - relaxation) * phi[i] + weight[i] * sum;
         });
-    for (float& v : phi) v = std::clamp(v, 0.0f, 1.0f);
+    for (float& v : phi) v = std::max(v, 0.0f);
     return phi;
 }
 
 void DiffusionLattice::keep(const std::vector<float>& phi, const Rates& rates, int channel) {
     const auto stepY = static_cast<std::size_t>(cells_.x),
                stepZ = stepY * static_cast<std::size_t>(cells_.y);
-    for (int z = 1; z + 1 < cells_.z; ++z)
-        for (int y = 1; y + 1 < cells_.y; ++y)
-            for (int x = 1; x + 1 < cells_.x; ++x) {
-                const std::size_t i = numberOf(x, y, z), steps[3] = {1, stepY, stepZ};
-                Channel& out = content_[i].channels[channel];
-                out.phi = phi[i];
-                float square = 0;
-                for (int axis = 0; axis < 3; ++axis) {
-                    out.slope[axis] = (phi[i + steps[axis]] - phi[i - steps[axis]]) / 2;
-                    square += out.slope[axis] * out.slope[axis];
-                }
-                const float longest = phi[i] / std::max(1e-6f, std::sqrt(square));
-                out.path = std::min(1 / std::max(1e-3f, rates.transport[i]), longest);
-            }
+    const std::size_t steps[3] = {1, stepY, stepZ};
+    forInner([&](int x, int y, int z) {
+        const std::size_t i = numberOf(x, y, z);
+        Channel& out = content_[i].channels[channel];
+        out.phi = phi[i];
+        float square = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            out.slope[axis] = (phi[i + steps[axis]] - phi[i - steps[axis]]) / 2;
+            square += out.slope[axis] * out.slope[axis];
+        }
+        const float longest = phi[i] / std::max(1e-30f, std::sqrt(square));
+        out.path = std::min(1 / std::max(1e-3f, rates.transport[i]), longest);
+    });
 }
 
 }  // namespace woodcock::render

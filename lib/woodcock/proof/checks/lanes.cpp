@@ -154,6 +154,7 @@ std::vector<Subject> otherSubjects() {
     return {
         {"chromatic", ball + coloured + lights},
         {"chromatic and thick", ball + deep + lights, 0.3},
+        {"chromatic and thick, in the sun alone", ball + deep + deltaSun, 2},
         {"chromatic, in a disc's light", ball + deep + discSun + air + hidden, 0.3},
         {"of two parts", ball + mediumOf(3, 0.1, "g = 0.6") + ball + turned +
                              mediumOf(4, 0.5, "g = -0.3") + lights},

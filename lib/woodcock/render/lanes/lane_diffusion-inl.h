@@ -12,9 +12,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace woodcock::render::HWY_NAMESPACE {
 
-// A path in an even environment is expected to bring a share of its radiance, which the diffusion
-// approximation tells roughly. What chance then decides makes the path bring more or less than it
-// was expected to. That difference has a mean of zero, whatever is expected. So it is taken off:
+// A path is expected to bring some of the light from far away, which the diffusion approximation
+// tells roughly. What chance then decides makes the path bring more or less than it was expected
+// to. That difference has a mean of zero, whatever is expected. So it is taken off:
 // LaneTracer::chance_ sums it up.
 
 /// Of what is expected of a turn, this much is taken off. Of 0.5, 0.75, 1 and 1.25, it measured
@@ -37,24 +37,22 @@ HWY_NOINLINE void LaneTracer<N>::findExpected(std::uint32_t bits) {
         within[i] = x - hn::ConvertTo(lanesF, cell) - all(0.5f);
         number = number * hn::Set(lanesI, cells[i]) + cell;
     }
-    Ints numbers;
-    numbers.set(number);
-    Floats phi[N]{}, path[N]{}, slope[N][3]{};
-    forEachLane(bits, [&](std::size_t i) {
-        const DiffusionLattice::Cell& cell = scene_.diffusion->content()[numbers[i]];
-        for (std::size_t c = 0; c < N; ++c) {
-            const DiffusionLattice::Channel& channel = cell.channels[c];
-            phi[c][i] = channel.phi, path[c][i] = channel.path;
-            for (std::size_t k = 0; k < 3; ++k) slope[c][k][i] = channel.slope[k];
-        }
-    });
+    // Lanes that are not asked for have some cell, too.
+    constexpr int floats = sizeof(DiffusionLattice::Cell) / sizeof(float);
+    const float* content = &scene_.diffusion->content()->channels[0].phi;
+    I next = number * hn::Set(lanesI, floats);
+    const auto read = [&] {
+        const F value = hn::GatherIndex(lanesF, content, next);
+        next = next + hn::Set(lanesI, 1);
+        return value;
+    };
     const Mask where = maskOf(bits);
     for (int c = 0; c < N; ++c) {
-        F here = phi[c].get();
-        for (int k = 0; k < 3; ++k) {
-            here = here + within[k] * slope[c][k].get();
-            expectedAhead_[c][k].set(where, path[c].get() * slope[c][k].get());
-        }
+        F here = read();
+        F slope[3];
+        for (int k = 0; k < 3; ++k) slope[k] = read(), here = here + within[k] * slope[k];
+        const F path = read();
+        for (int k = 0; k < 3; ++k) expectedAhead_[c][k].set(where, path * slope[k]);
         expected_[c].set(where, here);
     }
 }
@@ -71,7 +69,7 @@ HWY_INLINE F LaneTracer<N>::aheadIn(int c) const {
 /// What is expected in all, given how much `more` it is than of paths that go anywhere.
 template <int N>
 HWY_INLINE F LaneTracer<N>::expectedWith(int c, F more) const {
-    return hn::Max(hn::Zero(lanesF), hn::Min(all(1), expected_[c].get() + more));
+    return hn::Max(hn::Zero(lanesF), expected_[c].get() + more);
 }
 
 /// What is expected of a lane that has scattered and is to turn.
@@ -79,7 +77,7 @@ template <int N>
 float LaneTracer<N>::expectedToScatter(std::size_t lane, int c) {
     float ahead = 0;
     for (std::size_t k = 0; k < 3; ++k) ahead += v_[k][lane] * expectedAhead_[c][k][lane];
-    return std::clamp(expected_[c][lane] + g_[lane] * ahead, 0.0f, 1.0f);
+    return std::max(0.0f, expected_[c][lane] + g_[lane] * ahead);
 }
 
 /// Takes off what turns bring too much by their directions, given how much more was expected of

@@ -189,9 +189,9 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
     const light::LightSet& lights = traced_.scene.lights;
     constexpr auto kind = image::LightKind::VolumeIndirect;
     const Rgb window = toRgb(laneOf(window_, lane));
-    if (scene_.environmentLight >= 0)
-        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.environment * -1.0f, kind,
-              lights.group(scene_.environmentLight));
+    if (scene_.chanceLight >= 0)
+        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.chanceUnit * -1.0f, kind,
+              lights.group(scene_.chanceLight));
     if (scene_.sun >= 0)
         bring(batch_, p,
               (toRgb(laneOf(prediction_, lane)) - window * static_cast<float>(1 / (4 * pi))) *

@@ -174,9 +174,13 @@ bool LaneTracer<N>::keepWindow(std::size_t lane, float target) {
         const LanePart& part = partOf(lane);
         for (int c = 0; c < N; ++c) {
             const float more = w[c] * (factor - 1);
-            const float forSun = part.equilibrium[c] / (1 + part.diffusion[c] * sunDepth_[c][lane]);
-            window_[c][lane] += more * forSun;
-            chance_[c][lane] += more * (scene_.diffusion ? expectedToScatter(lane, c) : forSun);
+            if (scene_.diffusion) {
+                chance_[c][lane] += more * expectedToScatter(lane, c);
+            } else {
+                const float expected =
+                    part.equilibrium[c] / (1 + part.diffusion[c] * sunDepth_[c][lane]);
+                window_[c][lane] += more * expected, chance_[c][lane] += more * expected;
+            }
         }
         if (!survives) return false;
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "woodcock/light/even_light.h"
+
 namespace woodcock::render {
 
 namespace {
@@ -34,38 +36,6 @@ bool canBeWalked(const medium::MediumPart& part) {
     const double densest = double{field->range().max} * part.largestExtinction();
     return isOrdinary(edge) && (densest == 0 || isOrdinary(densest)) &&
            densest * edge < deepestVoxel;
-}
-
-/// The mean over all directions of what a light far away sends, by evenly spread points: roughly,
-/// where it is not the same everywhere.
-Rgb meanRadiance(const light::LightSet& lights, int light) {
-    if (!lights.traits(light).sampled) return lights.distantRadiance(light, {0, 0, 1}, false);
-    constexpr int points = 1024;
-    constexpr double golden = 0.61803398874989485;
-    Rgb sum;
-    for (int i = 0; i < points; ++i) {
-        const double z = 1 - (2 * i + 1.0) / points, r = std::sqrt(1 - z * z);
-        const double phi = 2 * pi * golden * i;
-        sum += lights.distantRadiance(light, {r * std::cos(phi), r * std::sin(phi), z}, false);
-    }
-    return sum * (1.0f / points);
-}
-
-/// Whether such a light differs so little from its mean that sampling it is not worth the shadow
-/// rays: paths find its light well enough where they leave.
-bool isEven(const light::LightSet& lights, int light) {
-    if (!lights.traits(light).distant) return false;
-    constexpr int side = 32;
-    constexpr double mostEven = 4;
-    // Of points in proportion to the radiance: the mean of its square over that of itself.
-    double sum = 0;
-    for (int i = 0; i < side; ++i)
-        for (int j = 0; j < side; ++j) {
-            const light::LightSample s =
-                lights.sample(light, {}, (i + 0.5) / side, (j + 0.5) / side);
-            sum += double{lights.distantRadiance(light, s.direction, false).mean()};
-        }
-    return sum / (side * side) < mostEven * double{meanRadiance(lights, light).mean()};
 }
 
 }  // namespace
@@ -155,7 +125,7 @@ void LaneScene::addLights() {
         if (sun < 0 && traced.sunDepth(0, light) &&
             (!traced.media.replaces() || traced.sunDepth(1, light)))
             sun = light;
-        else if (!isEven(lights, light))
+        else if (!light::isEven(lights, light))
             others.push_back(light);
     }
     if (sun >= 0) {
@@ -172,15 +142,18 @@ void LaneScene::addLights() {
     for (const int light : lights.distant()) {
         if (light == sun || std::ranges::find(others, light) != others.end()) continue;
         if (environmentLight < 0) environmentLight = light;
-        environment += meanRadiance(lights, light);
+        environment += light::meanRadiance(lights, light);
         environmentSeen &= lights.traits(light).visible;
     }
 }
 
 void LaneScene::addDiffusion() {
-    if (!thick || environmentLight < 0) return;
+    chanceLight = environmentLight >= 0 ? environmentLight : sun;
+    chanceUnit = environment;
+    if (!thick || chanceLight < 0) return;
     diffusion = traced.options.diffusion;
     if (!diffusion) return;
+    chanceUnit = {1, 1, 1};
     for (LanePart& part : parts)
         part.setLattice(part.cellsFromIndex, diffusion->latticeFromWorld());
 }

@@ -57,8 +57,12 @@ struct LaneScene {
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
-    /// What paths are expected to bring of the environment's light; null: it is not known.
+    /// What paths are expected to bring of the light from far away; null: it is not known.
     const DiffusionLattice* diffusion = nullptr;
+    /// Radiance of which LaneTracer::chance_ has multiples, and the light that its control variate
+    /// counts to; -1: there is none.
+    Rgb chanceUnit{};
+    int chanceLight = -1;
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
     /// Of all parts: how much each channel counts where points are drawn along a camera ray, and

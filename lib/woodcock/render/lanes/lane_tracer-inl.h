@@ -51,7 +51,7 @@ struct Process {
 ///     lane_camera-inl.h      draws where camera rays scatter, where that needs no walk
 ///     lane_walk-inl.h        from cell to cell, until a tentative collision
 ///     lane_collisions-inl.h  decides tentative collisions
-///     lane_diffusion-inl.h   takes off what chance does to the light of an even environment
+///     lane_diffusion-inl.h   takes off what chance does to the light from far away
 ///     lane_sun-inl.h         brings sunlight to where paths scatter
 ///     lane_scattering-inl.h  what else happens there: turns, further flights, splitting, roulette
 ///     lane_emission-inl.h    brings the light of what glows, by rays of its own
@@ -268,8 +268,8 @@ private:
     Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
     Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, cells_[3][4]{}, sunColour_[N]{},
         albedo_[N]{};
-    // What a path is expected to bring of an even environment, for its throughput: going anywhere,
-    // and more by how much along each axis.
+    // What a path is expected to bring from far away, for its throughput: going anywhere, and by
+    // how much more along each axis.
     Floats expected_[N]{}, expectedAhead_[N][3]{};
     // Control variates, as throughput: what chance, windows and predictions have brought too much.
     Floats chance_[N]{}, window_[N]{}, prediction_[N]{}, predicted_[N]{};
