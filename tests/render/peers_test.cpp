@@ -141,7 +141,7 @@ TEST_F(Peers, OverlapInGreen) {
 /// Smoke that glows as a black body does. Cycles' colours of black bodies are a fit, whose error in
 /// blue, 0.06 %, more samples resolve.
 TEST_F(Peers, Fire) {
-    const Pair mine = ours("fire", 64), theirs = peer("fire_cycles");
+    const Pair mine = ours("fire", 8), theirs = peer("fire_cycles");
     for (int c = 0; c < 3; ++c) expectSamePicture(mine, theirs, c, 1e-3, {0.04f, 0.05f, 0.07f});
 }
 
