@@ -11,6 +11,10 @@
 #include "tests/support/same_films.h"
 #include "woodcock/proof/support/small_pictures.h"
 #include "woodcock/render/lanes/lane_scene.h"
+#include "woodcock/render/lanes/trace_lanes.h"
+#include "woodcock/render/stages/retire.h"
+#include "woodcock/render/stages/shadow_walk.h"
+#include "woodcock/render/stages/spawn.h"
 
 namespace woodcock::test {
 
@@ -57,6 +61,39 @@ TEST_F(Lanes, EveryPathInAFurnaceBringsTheSame) {
             }
             EXPECT_GT(events, 0);
         }
+}
+
+/// A flight may come to a face just when it has used up its optical depth. Here all begin so, most
+/// of them in empty cells, where nothing is to collide.
+TEST_F(Lanes, NothingCollidesInEmptyCells) {
+    for (const char* medium :
+         {"sigma_s = 60\nsigma_a = 0\n", "sigma_s = [60, 40, 30]\nsigma_a = 0\n"}) {
+        const Scene scene =
+            subjects.scene(S::ball(medium) + "[[light]]\ntype = \"environment\"\nradiance = 0.5\n");
+        PathTracer::Options options;
+        options.width = options.height = 10;
+        const TracedScene traced(scene, findNeeds(scene), options);
+        const auto expectAll = [&]<int N>(Batch<N, false> batch) {
+            const std::vector<PathJob> jobs = jobsOf(10, 4);
+            std::vector<PathResult> results(jobs.size());
+            batch.layers = LayerOutput(options.layers.parts, results, {});
+            for (std::size_t i = 0; i < jobs.size(); ++i) spawn(traced, batch, jobs[i], results[i]);
+            for (PathState<N, false>& path : batch.paths) path.flight = 1;
+            traceLanes(LaneScene::make(traced).value(), batch);
+            shadowWalk(traced, batch);
+            retire(traced, batch);
+            int passes = 0;
+            for (const PathResult& path : results) {
+                ASSERT_NEAR(path.film.radiance.mean(), 0.5, 2e-5) << path.film.events;
+                passes += path.film.events == 0;
+            }
+            EXPECT_GT(passes, 0);
+        };
+        if (traced.needs.chromatic)
+            expectAll(Batch<3, false>(scene.lights));
+        else
+            expectAll(Batch<1, false>(scene.lights));
+    }
 }
 
 /// The means over a picture of light by kind, then by group, over so many seeds.

@@ -177,7 +177,8 @@ HWY_INLINE void LaneTracer<N>::step(Mask walking) {
         face[i] = hn::IfThenElse(d_[i].get() >= zero, size - u, u) * inverse_[i].get();
     }
     const F toFace = hn::Min(face[0], hn::Min(face[1], face[2]));
-    const F toCollision = depth_.get() * perMu_.get();
+    // Nothing collides in empty cells, not even where no depth is left.
+    const F toCollision = hn::IfThenElse(mu_.get() > zero, depth_.get() * perMu_.get(), all(huge));
     const F toLimit = limit_.get() - t_.get();
     const F length = hn::Max(zero, hn::Min(toFace, hn::Min(toCollision, toLimit)));
     const Mask collides = hn::And(walking, hn::And(toCollision < toFace, toCollision < toLimit));
