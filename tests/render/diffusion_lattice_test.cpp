@@ -72,6 +72,18 @@ TEST(DiffusionLattice, StaysWithinBounds) {
     EXPECT_GT(at(*lattice, {side / 2, side / 2, side / 2}, 0).phi, 0.5);
 }
 
+TEST(DiffusionLattice, HasTheLightAroundOutsideOfTheMedium) {
+    const Rgb around{0.5f, 2, 7};
+    const auto lattice = DiffusionLattice::make(cube({5, 5, 2}, {0.3f, 0.3f, 1}),
+                                                {.environment = around, .sun = {1, 1, 1}});
+    ASSERT_TRUE(lattice);
+    for (const double x : {-0.01, side + 0.01})
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_EQ(at(*lattice, {x, side / 2, side / 2}, c).phi, around[c]);
+            EXPECT_EQ(at(*lattice, {x, side / 2, side / 2}, c).path, 0);
+        }
+}
+
 /// What the finite volumes of edge h lose by diffusion and absorption is what sunlight brings to
 /// them: (1 - g) sigma_s E T / (4 pi), where T = exp(-sigma_tr x) at depth x.
 TEST(DiffusionLattice, BalancesWhatSunlightScatters) {

@@ -197,10 +197,10 @@ void DiffusionLattice::keep(const std::vector<float>& phi, const Rates& rates, i
     const auto stepY = static_cast<std::size_t>(cells_.x),
                stepZ = stepY * static_cast<std::size_t>(cells_.y);
     const std::size_t steps[3] = {1, stepY, stepZ};
+    for (std::size_t i = 0; i < phi.size(); ++i) content_[i].channels[channel].phi = phi[i];
     forInner([&](int x, int y, int z) {
         const std::size_t i = numberOf(x, y, z);
         Channel& out = content_[i].channels[channel];
-        out.phi = phi[i];
         float square = 0;
         for (int axis = 0; axis < 3; ++axis) {
             out.slope[axis] = (phi[i + steps[axis]] - phi[i - steps[axis]]) / 2;

@@ -30,7 +30,7 @@ public:
     /// Of a channel in a cell: phi in its middle; how it grows along each axis of the world, per
     /// edge of a cell; and 1 / sigma_tr in edges, or less where it would make radiance negative.
     struct Channel {
-        float phi = 1, slope[3] = {}, path = 0;
+        float phi = 0, slope[3] = {}, path = 0;
     };
     struct alignas(64) Cell {
         Channel channels[3];
