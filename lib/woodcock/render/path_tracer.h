@@ -12,8 +12,8 @@
 #include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/camera_depths.h"
-#include "woodcock/render/diffusion_lattice.h"
 #include "woodcock/render/needs.h"
+#include "woodcock/render/radiance_lattice.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/sun_depths.h"
 
@@ -57,11 +57,11 @@ public:
         image::LayerNeeds layers = {};
         bool stoppedLight = false;  ///< of tracked rays only; it changes nothing else
         const ApproximateMedia* approximateMedia =
-            nullptr;                                  ///< made from `approximations`; null: no sets
-        const SunDepths* sunDepths = nullptr;         ///< null: shadow rays to suns are tracked
-        const CameraDepths* cameraDepths = nullptr;   ///< null: camera rays are walked
-        const DiffusionLattice* diffusion = nullptr;  ///< null: nothing is known of it
-        const EmptyPixels* emptyPixels = nullptr;     ///< null: paths are traced in all
+            nullptr;                                 ///< made from `approximations`; null: no sets
+        const SunDepths* sunDepths = nullptr;        ///< null: shadow rays to suns are tracked
+        const CameraDepths* cameraDepths = nullptr;  ///< null: camera rays are walked
+        const RadianceLattice* radiance = nullptr;   ///< null: nothing is known of it
+        const EmptyPixels* emptyPixels = nullptr;    ///< null: paths are traced in all
         bool lanes = true;  ///< false: paths are traced one by one, also where lanes/ could
     };
 

@@ -7,7 +7,7 @@
 #include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/camera_depths.h"
-#include "woodcock/render/diffusion_lattice.h"
+#include "woodcock/render/radiance_lattice.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/session.h"
 #include "woodcock/render/sun_depths.h"
@@ -15,9 +15,9 @@
 namespace woodcock::render {
 
 /// What a render makes for itself beside its samples: the media of approximations, a
-/// lattice of diffusion, and grids of optical depths, which are filled where paths first ask.
-/// Renders of one scene that differ in seed, samples or crop may share it. What it holds does not
-/// depend on who fills it. The scene must outlive it.
+/// lattice of the radiance inside, and grids of optical depths, which are filled where paths first
+/// ask. Renders of one scene that differ in seed, samples or crop may share it. What it holds does
+/// not depend on who fills it. The scene must outlive it.
 class Preparation {
 public:
     Preparation(const Scene& scene, int width, int height, const Approximations& approximations);
@@ -34,7 +34,7 @@ public:
     /// Null: camera rays are walked.
     const CameraDepths* cameraDepths() const { return cameraDepths_.get(); }
     /// Null: nothing is known of it.
-    const DiffusionLattice* diffusion() const { return diffusion_.get(); }
+    const RadianceLattice* radianceLattice() const { return radianceLattice_.get(); }
 
 private:
     void fillSunDepths(const std::function<bool()>& goOn) const;
@@ -46,7 +46,7 @@ private:
     const ApproximateMedia approximateMedia_;
     const SunDepths sunDepths_;
     const std::unique_ptr<const CameraDepths> cameraDepths_;
-    const std::unique_ptr<const DiffusionLattice> diffusion_;
+    const std::unique_ptr<const RadianceLattice> radianceLattice_;
 };
 
 /// As render(), but spared what `prepared` holds. That has no effect where it is null or does not

@@ -406,7 +406,7 @@ private:
                 .approximateMedia = &prepared_->approximateMedia(),
                 .sunDepths = &prepared_->sunDepths(),
                 .cameraDepths = prepared_->cameraDepths(),
-                .diffusion = prepared_->diffusion(),
+                .radiance = prepared_->radianceLattice(),
                 .emptyPixels = emptyPixels_ ? &*emptyPixels_ : nullptr};
     }
 

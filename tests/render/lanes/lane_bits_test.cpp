@@ -53,8 +53,8 @@ protected:
             options.width = options.height = 8, options.seed = 7, options.sunDepths = &depths;
             const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
             options.cameraDepths = cameraDepths.get();
-            const auto diffusion = DiffusionLattice::make(scene);
-            options.diffusion = diffusion.get();
+            const auto radiance = RadianceLattice::make(scene);
+            options.radiance = radiance.get();
             EXPECT_TRUE(LaneScene::make(TracedScene(scene, findNeeds(scene), options)));
             check(scene, options);
         }

@@ -47,8 +47,8 @@ TEST_F(Lanes, EveryPathInAFurnaceBringsTheSame) {
             options.width = options.height = 10, options.sunDepths = &depths;
             const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
             options.cameraDepths = cameraDepths.get();
-            const auto diffusion = DiffusionLattice::make(scene);
-            options.diffusion = diffusion.get();
+            const auto radiance = RadianceLattice::make(scene);
+            options.radiance = radiance.get();
             const TracedScene traced(scene, findNeeds(scene), options);
             const auto lanes = LaneScene::make(traced);
             ASSERT_TRUE(lanes);
@@ -131,8 +131,8 @@ TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
         options.layers.parts = {.kinds = true, .groups = {"sun", "air"}};
         const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
         options.cameraDepths = cameraDepths.get();
-        const auto diffusion = DiffusionLattice::make(scene);
-        options.diffusion = diffusion.get();
+        const auto radiance = RadianceLattice::make(scene);
+        options.radiance = radiance.get();
         const bool glows = std::string_view(medium).find("emission") != std::string_view::npos;
         if (glows) options.layers.parts.groups = {"fire", "sun", "air"};
         const auto lanes = meansOfParts(scene, options, 300, 1);
@@ -224,8 +224,8 @@ TEST_F(Lanes, StopsAreThoseOfPathsOneByOne) {
         options.stoppedLight = options.layers.stops = true;
         const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
         options.cameraDepths = cameraDepths.get();
-        const auto diffusion = DiffusionLattice::make(scene);
-        options.diffusion = diffusion.get();
+        const auto radiance = RadianceLattice::make(scene);
+        options.radiance = radiance.get();
         const std::vector<PathJob> jobs = jobsOf(6, 4);
         std::array<std::array<Moments, 4>, 2> means;  // alpha, stopped light, and its depths
         for (const bool lanes : {false, true}) {

@@ -92,8 +92,8 @@ struct Subject {
     /// Of what the depths to the sun and along camera rays are to be made, where they are to be
     /// wrong.
     std::string gridOf = {};
-    /// The same of what is known by diffusion.
-    std::string diffusionOf = {};
+    /// The same of what is known of the radiance inside.
+    std::string radianceOf = {};
 };
 
 std::string mediumOf(double sigmaS, double sigmaA, const std::string& phase) {
@@ -126,7 +126,7 @@ std::vector<Subject> plainSubjects() {
          true,
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
              lights},
-        {"thick, by the diffusion of another medium",
+        {"thick, by the radiance of another medium",
          ball + mediumOf(38, 2, "g = 0.5") + lights,
          1,
          {},
@@ -252,9 +252,9 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
         const auto cameraDepths = render::CameraDepths::make(other, picture.side, picture.side);
         picture.cameraDepths = cameraDepths.get();
         const render::Scene elsewhere =
-            seen(subject.diffusionOf.empty() ? subject.text : subject.diffusionOf);
-        const auto diffusion = render::DiffusionLattice::make(elsewhere);
-        picture.diffusion = diffusion.get();
+            seen(subject.radianceOf.empty() ? subject.text : subject.radianceOf);
+        const auto radiance = render::RadianceLattice::make(elsewhere);
+        picture.radiance = radiance.get();
         const std::string name = std::string("picture ") + subject.name;
         Case used{.name = name + ", traced in lanes", .expected = 1};
         used.measured = inLanes(scene, picture);

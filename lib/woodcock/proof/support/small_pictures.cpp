@@ -17,7 +17,7 @@ render::PathTracer::Options optionsOf(const SmallPicture& picture) {
     options.maxScatterings = picture.maxScatterings;
     options.lanes = picture.lanes, options.sunDepths = picture.sunDepths;
     options.cameraDepths = picture.cameraDepths;
-    options.diffusion = picture.diffusion;
+    options.radiance = picture.radiance;
     return options;
 }
 

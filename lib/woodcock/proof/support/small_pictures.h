@@ -7,7 +7,7 @@
 
 #include "woodcock/base/statistics.h"
 #include "woodcock/render/camera_depths.h"
-#include "woodcock/render/diffusion_lattice.h"
+#include "woodcock/render/radiance_lattice.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/sun_depths.h"
 
@@ -17,10 +17,10 @@ namespace woodcock::proof {
 struct SmallPicture {
     int side = 6, samples = 4;
     std::optional<int> maxScatterings{};
-    bool lanes = true;                                    ///< see PathTracer::Options
-    const render::SunDepths* sunDepths = nullptr;         ///< the same
-    const render::CameraDepths* cameraDepths = nullptr;   ///< the same
-    const render::DiffusionLattice* diffusion = nullptr;  ///< the same
+    bool lanes = true;                                   ///< see PathTracer::Options
+    const render::SunDepths* sunDepths = nullptr;        ///< the same
+    const render::CameraDepths* cameraDepths = nullptr;  ///< the same
+    const render::RadianceLattice* radiance = nullptr;   ///< the same
 };
 
 /// Means over a small picture, of which each seed's is a sample.

@@ -36,7 +36,7 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
     PathState<N, false>& p = pathOf(lane);
     l.fromCamera = scene_.cameraDepths && l.set == 0;
     if (!l.fromCamera) return false;
-    l.cameraDirection = p.direction, l.correction = Spectrum<N>(1.0f);
+    l.cameraDirection = p.direction, l.correction = Spectrum<N>(1.0f), l.worth = Spectrum<N>();
     const CameraDepths::Ray ray = scene_.cameraDepths->at(p.raster[0], p.raster[1]);
     const DepthsAhead<N> ahead(*scene_.cameraDepths, ray, scene_.parts.data());
     l.passes = transmittanceOf<N>(ahead.whole());
@@ -53,6 +53,7 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
         l.passes = Spectrum<N>(1.0f);
         return true;
     }
+    l.worth = worthOf(lane, ahead);
     // Of each channel, the share of the points that are drawn by its depth.
     float shares[N], sum = 0;
     for (int c = 0; c < N; ++c)
@@ -77,6 +78,22 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
     const Spectrum<N> estimate = transmittanceOf<N>(place.depth);
     if (p.random.uniform() < double{chance}) correctCameraRay(lane, t, estimate, chance);
     return density > 0 ? scatterAt(lane, t, estimate * static_cast<float>(1 / density)) : true;
+}
+
+/// What light that stops on a camera ray is expected to bring, by where a third of it has stopped.
+/// That it brings more or less by where it stops, or by being less than was estimated, is chance.
+template <int N>
+Spectrum<N> LaneTracer<N>::worthOf(std::size_t lane, const DepthsAhead<N>& ahead) const {
+    if (!scene_.radiance) return {};
+    const Spectrum<N>& whole = ahead.whole();
+    int channel = 0;
+    for (int c = 1; c < N; ++c)
+        if (whole[c] > whole[channel]) channel = c;
+    const PathState<N, false>& p = batch_.paths[lanes_[lane].path];
+    const double t = ahead.find(channel, -std::log1p(std::expm1(-whole[channel]) / 3));
+    const auto scattered =
+        scene_.radiance->template scattered<N>(p.origin + p.direction * t, p.direction);
+    return Spectrum<N>::map([&](int c) { return scattered[c] * scene_.cameraAlbedo[c]; });
 }
 
 /// Integrates a camera ray exactly, up to `t` and beyond.
@@ -112,7 +129,7 @@ bool LaneTracer<N>::scatterAt(std::size_t lane, double t, const Spectrum<N>& wei
         scattered[k] = weight * channels<N>(part.scattering()) * f;
         sum += shares[k] = scattered[k].mean();
         l.stopped[k] = weight * channels<N>(part.extinction()) * f;
-        for (int c = 0; c < N; ++c) chance_[c][lane] += l.stopped[k][c] * scene_.cameraAlbedo[c];
+        setLane(chance_, lane, laneOf(chance_, lane) + l.stopped[k] * l.worth);
     }
     if (!(sum > 0)) return true;
     double u = several_ ? p.random.uniform() * double{sum} : 0;
@@ -144,12 +161,9 @@ void LaneTracer<N>::endCameraPath(std::size_t lane) {
     p.radiance *= correction;
     if (batch_.layers.splitsLight())
         for (Rgb& part : batch_.layers.partsOf(*p.result)) part *= correction;
-    if (scene_.environmentLight >= 0) {
-        const auto scattered =
-            Spectrum<N>::map([&](int c) { return (1 - l.passes[c]) * scene_.cameraAlbedo[c]; });
-        bring(batch_, p, toRgb(scattered) * scene_.environment, image::LightKind::VolumeIndirect,
-              lights.group(scene_.environmentLight));
-    }
+    if (scene_.chanceLight >= 0)
+        bring(batch_, p, toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth) * scene_.radiance->unit(),
+              image::LightKind::VolumeIndirect, lights.group(scene_.chanceLight));
     p.result->film.alpha = 1 - l.passes.mean();
     for (const int light : lights.distant()) {
         const Rgb radiance = lights.distantRadiance(light, l.cameraDirection, true);
@@ -198,11 +212,9 @@ void LaneTracer<N>::noteCameraStops(std::size_t lane) {
     for (std::size_t k = 0; atPoint && k < scene_.partCount; ++k)
         addStop(traced_, stopped, planar.at(l.flightStart), k, amounts[k]);
     if (atPoint && half >= l.flightStart) addRest();
-    if (scene_.environmentLight >= 0) {
-        const auto control =
-            Spectrum<N>::map([&](int c) { return rest[c] * scene_.cameraAlbedo[c]; });
-        stopped.arrivals.push_back({planar.at(half), toRgb(control) * scene_.environment, false});
-    }
+    if (scene_.chanceLight >= 0)
+        stopped.arrivals.push_back(
+            {planar.at(half), toRgb(rest * l.worth) * scene_.radiance->unit(), false});
     stopped.firstEvent = {planar.at(atPoint ? l.flightStart : half), {}, false};
 }
 

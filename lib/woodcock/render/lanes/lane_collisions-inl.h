@@ -17,7 +17,6 @@ template <int N>
 HWY_INLINE void LaneTracer<N>::decideCollisions() {
     const Mask colliding = whoIs(Colliding);
     const std::uint32_t bits = bitsOf(colliding);
-    if (!bits) return;
     U words[4];
     draw(colliding, words);
     F f[N];
@@ -49,15 +48,16 @@ HWY_INLINE Mask LaneTracer<N>::decide(Mask colliding, const F f[N], F random) {
     const F mu = mu_.get(), zero = hn::Zero(lanesF), one = all(1);
     const Mask counts =
         scene_.environmentSeen ? colliding : hn::And(colliding, scattered_.get() > zero);
-    if (scene_.diffusion) findExpected(bitsOf(colliding));
+    F phase = zero;
+    if (scene_.radiance) findExpected(bitsOf(colliding)), phase = phaseOfNextEvent();
     if constexpr (N == 1) {
         const F absorption = absorption_[0].get() * f[0], left = mu - absorption;
         const F scattering = scattering_[0].get() * f[0], passes = one - absorption / mu;
         const F after = hn::IfThenElseZero(left > zero, w_[0].get() * passes);
         const Mask scatters = random * left < scattering;
-        if (scene_.diffusion) {
+        if (scene_.radiance) {
             const F share = hn::Min(passes, scattering / mu);
-            noteDecision(0, counts, scatters, share, passes - share, after);
+            noteDecision(0, counts, scatters, share, passes - share, after, phase);
         }
         w_[0].set(colliding, after);
         return scatters;
@@ -77,8 +77,8 @@ HWY_INLINE Mask LaneTracer<N>::decide(Mask colliding, const F f[N], F random) {
         for (int c = 0; c < N; ++c) {
             const F after =
                 w_[c].get() * hn::IfThenElse(scatters, scattering[c], null[c]) * inverse;
-            if (scene_.thick)
-                noteDecision(c, counts, scatters, scattering[c] / mu, null[c] / mu, after);
+            if (scene_.radiance)
+                noteDecision(c, counts, scatters, scattering[c] / mu, null[c] / mu, after, phase);
             w_[c].set(colliding, after);
         }
         return scatters;

@@ -34,8 +34,7 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
         count_[lane] = 0;
         density_[lane] = 0, scattered_[lane] = 0, share_[lane] = 1;
         setLane(w_, lane, p.throughput);
-        for (Floats* rows : {chance_, window_, prediction_, predicted_})
-            setLane(rows, lane, Spectrum<N>());
+        for (Floats* rows : {chance_, prediction_, predicted_}) setLane(rows, lane, Spectrum<N>());
         collisionsToNote(traced_, batch_, l.path);  // makes room
         if (!scene_.emission.empty()) lookForEmission(lane, nullptr);
         if (scatterCameraRay(lane)) {
@@ -170,7 +169,7 @@ void LaneTracer<N>::endBranch(std::size_t lane) {
     scatterIn(lane);
     l.phase = b.phase, g_[lane] = phaseOf(lane).g;
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
-    if (scene_.diffusion) findExpected(1u << lane);
+    if (scene_.radiance) findExpected(1u << lane);
     setLane(w_, lane, b.throughput), setLane(predicted_, lane, b.predicted);
     share_[lane] = 1;
     l.scatterings -= b.scatterings;  // they are the first branch's too
@@ -188,15 +187,12 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
     PathState<N, false>& p = pathOf(lane);
     const light::LightSet& lights = traced_.scene.lights;
     constexpr auto kind = image::LightKind::VolumeIndirect;
-    const Rgb window = toRgb(laneOf(window_, lane));
     if (scene_.chanceLight >= 0)
-        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.chanceUnit * -1.0f, kind,
+        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.radiance->unit() * -1.0f, kind,
               lights.group(scene_.chanceLight));
     if (scene_.sun >= 0)
-        bring(batch_, p,
-              (toRgb(laneOf(prediction_, lane)) - window * static_cast<float>(1 / (4 * pi))) *
-                  scene_.centre.weight,
-              kind, lights.group(scene_.sun));
+        bring(batch_, p, toRgb(laneOf(prediction_, lane)) * scene_.centre.weight, kind,
+              lights.group(scene_.sun));
     if (lanes_[lane].fromCamera) endCameraPath(lane);
 }
 

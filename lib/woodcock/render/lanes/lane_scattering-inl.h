@@ -23,6 +23,13 @@ template <int N>
 void LaneTracer<N>::arrive(std::uint32_t arrived) {
     std::uint32_t lit = 0;
     forEachLane(arrived, [&](std::size_t i) { lit |= std::uint32_t{mayGoOn(i)} << i; });
+    if (scene_.radiance && scene_.cameraDepths) {
+        std::uint32_t first = 0;  // they scatter where no collision was decided
+        forEachLane(lit, [&](std::size_t i) {
+            first |= std::uint32_t{pathOf(i).scatterings == 0 && !lanes_[i].extra} << i;
+        });
+        if (first) findExpected(first);
+    }
     Floats growth;  // of the window's target, with the optical depth to the sun; see keepWindow()
     growth.set(all(1));
     if (scene_.sun >= 0) {
@@ -171,17 +178,8 @@ bool LaneTracer<N>::keepWindow(std::size_t lane, float target) {
     } else {
         const bool survives = static_cast<float>(p.random.uniform()) * target < weight;
         if (survives) factor = target / weight;
-        const LanePart& part = partOf(lane);
-        for (int c = 0; c < N; ++c) {
-            const float more = w[c] * (factor - 1);
-            if (scene_.diffusion) {
-                chance_[c][lane] += more * expectedToScatter(lane, c);
-            } else {
-                const float expected =
-                    part.equilibrium[c] / (1 + part.diffusion[c] * sunDepth_[c][lane]);
-                window_[c][lane] += more * expected, chance_[c][lane] += more * expected;
-            }
-        }
+        for (int c = 0; c < N; ++c)
+            chance_[c][lane] += w[c] * (factor - 1) * expectedToScatter(lane, c);
         if (!survives) return false;
     }
     setLane(w_, lane, w * factor);
@@ -216,7 +214,7 @@ void LaneTracer<N>::depart(Mask departing) {
     F before[N];
     for (int c = 0; c < N; ++c) before[c] = g_.get() * aheadIn(c);
     turn(departing, bits, u0.get(), u1.get());
-    if (scene_.diffusion) noteTurn(bits, before);
+    if (scene_.radiance) noteTurn(bits, before);
     Floats more;
     more.set(scene_.sun >= 0 ? takePrediction(departing) : hn::Zero(lanesF));
     play(departing, uniform(words[3]));
@@ -267,7 +265,7 @@ void LaneTracer<N>::play(Mask departing, F random) {
     const Mask dies = random >= survival;
     for (int c = 0; c < N; ++c) {
         const F before = w_[c].get(), after = hn::IfThenZeroElse(dies, before / survival);
-        if (scene_.thick || scene_.cameraDepths)
+        if (scene_.radiance)
             chance_[c].set(plays,
                            chance_[c].get() + expectedWith(c, aheadIn(c)) * (after - before));
         w_[c].set(plays, after);

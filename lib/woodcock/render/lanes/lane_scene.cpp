@@ -52,16 +52,11 @@ LanePart::LanePart(const medium::MediumPart& p) : part(&p) {
     const auto* kind = std::get_if<medium::HenyeyGreenstein>(&p.phase().kind());
     henyeyGreenstein = kind;
     g = kind ? static_cast<float>(kind->g()) : 0;
-    const auto forward = static_cast<float>(p.phase().meanCosine());
     albedo = Rgb::map([&](int c) {
         const float whole = p.absorption()[c] + p.scattering()[c];
         return whole > 0 ? p.scattering()[c] / whole : 0.0f;
     });
-    equilibrium =
-        Rgb::map([&](int c) { return 1 - std::sqrt((1 - albedo[c]) / (1 - forward * albedo[c])); });
-    diffusion =
-        Rgb::map([&](int c) { return std::sqrt(3 * (1 - albedo[c]) * (1 - forward * albedo[c])); });
-    windowScale = std::clamp(1 - forward, 0.25f, 0.5f);
+    windowScale = std::clamp(1 - static_cast<float>(p.phase().meanCosine()), 0.25f, 0.5f);
 }
 
 void LanePart::setLattice(float (&rows)[3][4], const Affine3d& latticeFromWorld) const {
@@ -101,7 +96,7 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
         }
     scene.thick = isThick(traced.media[0]);
     scene.addLights();
-    scene.addDiffusion();
+    scene.addRadiance();
     scene.addCameraDepths();
     return scene;
 }
@@ -142,20 +137,15 @@ void LaneScene::addLights() {
     for (const int light : lights.distant()) {
         if (light == sun || std::ranges::find(others, light) != others.end()) continue;
         if (environmentLight < 0) environmentLight = light;
-        environment += light::meanRadiance(lights, light);
         environmentSeen &= lights.traits(light).visible;
     }
 }
 
-void LaneScene::addDiffusion() {
-    chanceLight = environmentLight >= 0 ? environmentLight : sun;
-    chanceUnit = environment;
-    if (!thick || chanceLight < 0) return;
-    diffusion = traced.options.diffusion;
-    if (!diffusion) return;
-    chanceUnit = {1, 1, 1};
-    for (LanePart& part : parts)
-        part.setLattice(part.cellsFromIndex, diffusion->latticeFromWorld());
+void LaneScene::addRadiance() {
+    const int light = environmentLight >= 0 ? environmentLight : sun;
+    if (light < 0 || !traced.options.radiance) return;
+    radiance = traced.options.radiance, chanceLight = light;
+    for (LanePart& part : parts) part.setLattice(part.cellsFromIndex, radiance->latticeFromWorld());
 }
 
 }  // namespace woodcock::render

@@ -19,13 +19,9 @@ struct LanePart {
     float g;                         ///< of Henyey-Greenstein
     float latticeFromIndex[3][4]{};  ///< from voxels, of which `low` is the first, to those of
                                      ///< LaneScene::sunDepths; by rows
-    float cellsFromIndex[3][4]{};    ///< the same to the cells of LaneScene::diffusion
+    float cellsFromIndex[3][4]{};    ///< the same to the cells of LaneScene::radiance
     Rgb albedo;                      ///< sigma_s / sigma_t
-    /// What deep inside of the part an even environment loses: 1 - sqrt((1 - albedo) / (1 - g
-    /// albedo)), the similarity parameter of van de Hulst 1980.
-    Rgb equilibrium;
-    Rgb diffusion;      ///< per optical depth: sqrt(3 (1 - albedo)(1 - g albedo))
-    float windowScale;  ///< see LaneTracer::keepWindow()
+    float windowScale;               ///< see LaneTracer::keepWindow()
 
     explicit LanePart(const medium::MediumPart& part);
     /// Fills one of these maps.
@@ -48,26 +44,20 @@ struct LaneScene {
     /// Other lights that are sampled, one for each scattering: not the environments that are so
     /// even that paths find their light well enough where they leave.
     std::vector<int> others;
-    /// Mean radiance from all around, of environments that are not among these, and the first of
-    /// them; -1: there is none.
-    Rgb environment{};
+    /// The first environment that is not among these; -1: there is none.
     int environmentLight = -1;
-    bool environmentSeen = false;  ///< by camera rays, of all of these
+    bool environmentSeen = false;  ///< camera rays see all of these
     bool greyExtinction = true;
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
     /// What paths are expected to bring of the light from far away; null: it is not known.
-    const DiffusionLattice* diffusion = nullptr;
-    /// Radiance of which LaneTracer::chance_ has multiples, and the light that its control variate
-    /// counts to; -1: there is none.
-    Rgb chanceUnit{};
+    const RadianceLattice* radiance = nullptr;
+    /// The light that the control variate of LaneTracer::chance_ counts to; -1: there is none.
     int chanceLight = -1;
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
-    /// Of all parts: how much each channel counts where points are drawn along a camera ray, and
-    /// what an even environment is expected to bring to there.
-    Rgb cameraAlbedo;
+    Rgb cameraAlbedo;  ///< of all parts: sigma_s / sigma_t
 
     /// Nothing where the scene needs more than lanes can do; its paths are then traced one by one.
     static std::optional<LaneScene> make(const TracedScene& traced);
@@ -75,7 +65,7 @@ struct LaneScene {
 private:
     explicit LaneScene(const TracedScene& t) : traced(t) {}
     void addLights();
-    void addDiffusion();
+    void addRadiance();
     void addCameraDepths();
 };
 

@@ -49,9 +49,10 @@ struct Process {
 ///
 ///     lane_paths-inl.h       gives lanes their paths, and ends them
 ///     lane_camera-inl.h      draws where camera rays scatter, where that needs no walk
+///     lane_depths-inl.h      the optical depth along such a ray
 ///     lane_walk-inl.h        from cell to cell, until a tentative collision
 ///     lane_collisions-inl.h  decides tentative collisions
-///     lane_diffusion-inl.h   takes off what chance does to the light from far away
+///     lane_expected-inl.h    takes off what chance does to the light from far away
 ///     lane_sun-inl.h         brings sunlight to where paths scatter
 ///     lane_scattering-inl.h  what else happens there: turns, further flights, splitting, roulette
 ///     lane_emission-inl.h    brings the light of what glows, by rays of its own
@@ -74,13 +75,15 @@ public:
             const Mask walking = whoIs(Walking), arrived = whoIs(Arrived),
                        departing = whoIs(Departing);
             const std::size_t walkers = hn::CountTrue(lanesF, walking);
+            const std::size_t colliders = hn::CountTrue(lanesF, whoIs(Colliding));
             const std::size_t waiting = hn::CountTrue(lanesF, hn::Or(arrived, departing));
-            if (waiting >= enough || (walkers == 0 && waiting > 0)) {
+            if (waiting >= enough || (walkers + colliders == 0 && waiting > 0)) {
                 if (const std::uint32_t bits = bitsOf(arrived)) arrive(bits);
                 if (const Mask now = whoIs(Departing); !hn::AllFalse(lanesF, now)) depart(now);
+            } else if (colliders >= enoughCollide || (walkers == 0 && colliders > 0)) {
+                decideCollisions();
             } else if (walkers > 0) {
                 step(walking);
-                decideCollisions();
             } else {
                 break;
             }
@@ -94,6 +97,8 @@ private:
     /// So many lanes wait until what happens at a scattering is worth doing. Of 3 to 6 of 8, 4 to 6
     /// measured alike.
     static constexpr std::size_t enough = (laneCount * 5 + 7) / 8;
+    /// The same of tentative collisions. Of 1 to 4 of 8, 2 and 3 measured alike, and best.
+    static constexpr std::size_t enoughCollide = (laneCount + 3) / 4;
 
     /// Copies of a path that wait at a scattering until the one before them has ended.
     struct Branch {
@@ -126,6 +131,7 @@ private:
         bool fromCamera = false;
         Vec3d cameraDirection;
         Spectrum<N> passes, correction;  ///< of the camera ray; of all that scatters on it
+        Spectrum<N> worth;               ///< what light that stops there is expected to bring
         /// What each part stops where it scatters, before the correction.
         Spectrum<N> stopped[CameraDepths::mostParts];
 
@@ -186,6 +192,7 @@ private:
     bool scatterCameraRay(std::size_t lane);
     void correctCameraRay(std::size_t lane, double t, const Spectrum<N>& estimate, float chance);
     bool scatterAt(std::size_t lane, double t, const Spectrum<N>& weight);
+    Spectrum<N> worthOf(std::size_t lane, const DepthsAhead<N>& ahead) const;
     void endCameraPath(std::size_t lane);
     void noteCameraStops(std::size_t lane);
 
@@ -208,13 +215,14 @@ private:
     void lookUp(std::uint32_t bits, const U words[4], F f[N]);
     void noteCollision(std::size_t lane, bool ends);
 
-    // ---- lane_diffusion-inl.h
+    // ---- lane_expected-inl.h
     void findExpected(std::uint32_t bits);
     F aheadIn(int c) const;
     F expectedWith(int c, F more) const;
     float expectedToScatter(std::size_t lane, int c);
     void noteTurn(std::uint32_t turned, const F before[N]);
-    void noteDecision(int c, Mask colliding, Mask scatters, F scattering, F null, F after);
+    F phaseOfNextEvent() const;
+    void noteDecision(int c, Mask colliding, Mask scatters, F scattering, F null, F after, F phase);
 
     // ---- lane_sun-inl.h
     struct SunDepths;
@@ -268,11 +276,12 @@ private:
     Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
     Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, cells_[3][4]{}, sunColour_[N]{},
         albedo_[N]{};
-    // What a path is expected to bring from far away, for its throughput: going anywhere, and by
-    // how much more along each axis.
-    Floats expected_[N]{}, expectedAhead_[N][3]{};
-    // Control variates, as throughput: what chance, windows and predictions have brought too much.
-    Floats chance_[N]{}, window_[N]{}, prediction_[N]{}, predicted_[N]{};
+    // The radiance that a path is expected to bring from far away: going anywhere, and by how much
+    // more along each axis. And the irradiance of the sun there.
+    Floats expected_[N]{}, expectedAhead_[N][3]{}, expectedSun_[N]{};
+    // Control variates: what chance has brought too much, as radiance; and what was predicted of
+    // the next event, as throughput.
+    Floats chance_[N]{}, prediction_[N]{}, predicted_[N]{};
     Floats scattered_{};  // 1 behind the first scattering
     Floats sunDepth_[N]{}, share_{};
     std::array<EventNumbers, laneCount> numbers_{};

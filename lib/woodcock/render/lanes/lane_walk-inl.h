@@ -105,10 +105,9 @@ void LaneTracer<N>::loadMatter(std::size_t lane, std::size_t number) {
     setLane(scattering_, lane, channels<N>(medium.scattering()));
     setLane(channelWeight_, lane, channels<N>(medium.channelWeight()));
     setLane(albedo_, lane, channels<N>(part.albedo));
-    setLane(expected_, lane, channels<N>(part.equilibrium));
     const bool nearest = medium.field()->lookup() == grid::Lookup::Nearest;
     jitterUnit_[lane] = nearest ? 0 : 0x1p-21f, firstJitter_[lane] = nearest ? 0.5f : 0x1p-22f;
-    if (scene_.diffusion)
+    if (scene_.radiance)
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < 4; ++k) cells_[i][k][lane] = part.cellsFromIndex[i][k];
     const medium::DepthGrid* grid = scene_.sunDepths[lanes_[lane].set];

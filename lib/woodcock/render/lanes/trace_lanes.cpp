@@ -9,8 +9,8 @@
 
 #include "woodcock/render/lanes/lane_camera-inl.h"
 #include "woodcock/render/lanes/lane_collisions-inl.h"
-#include "woodcock/render/lanes/lane_diffusion-inl.h"
 #include "woodcock/render/lanes/lane_emission-inl.h"
+#include "woodcock/render/lanes/lane_expected-inl.h"
 #include "woodcock/render/lanes/lane_paths-inl.h"
 #include "woodcock/render/lanes/lane_scattering-inl.h"
 #include "woodcock/render/lanes/lane_sun-inl.h"
