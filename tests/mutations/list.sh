@@ -133,11 +133,20 @@ defect "lanes' flights in one direction count for one too few" 'Lanes.*' "lanes 
 
 defect "lanes' roulette is made up for twice" 'Lanes.*' "" \
     $lanes/lane_scattering-inl.h \
-    'const float more = w[c] * (factor - 1);' 'const float more = w[c] * (1 - factor);'
+    'w[c] * (factor - 1) * expectedToScatter' 'w[c] * (1 - factor) * expectedToScatter'
 
 defect "lanes' chance is what is left of it" 'Lanes.*' "lanes and paths one by one" \
     $lanes/lane_scattering-inl.h \
     'expectedWith(c, aheadIn(c)) * (after - before));' 'expectedWith(c, aheadIn(c)) * after);'
+
+defect "lanes' decisions are expected to lose what goes on" 'Lanes.*' "lanes and paths one by one" \
+    $lanes/lane_expected-inl.h \
+    '(scattering * scattered + null * others)' '(scattering * scattered)'
+
+defect "lanes without depth left collide in empty cells" 'Lanes.*' "" \
+    $lanes/lane_walk-inl.h \
+    'hn::IfThenElse(mu_.get() > zero, depth_.get() * perMu_.get(), all(huge))' \
+    'depth_.get() * perMu_.get()'
 
 defect "lanes that split predict as before" 'Lanes.*' "lanes and paths one by one" \
     $lanes/lane_scattering-inl.h \

@@ -28,7 +28,7 @@ Preparation::Preparation(const Scene& scene, int width, int height,
       approximateMedia_(scene, approximations),
       sunDepths_(scene, approximations, approximateMedia_),
       cameraDepths_(CameraDepths::make(scene, width, height)),
-      radianceLattice_(scene.surfaces ? nullptr : RadianceLattice::make(scene)) {}
+      radianceLattice_(RadianceLattice::make(scene)) {}
 
 bool Preparation::fits(const Scene& scene, int width, int height,
                        const Approximations& approximations) const {

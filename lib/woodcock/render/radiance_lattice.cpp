@@ -8,6 +8,7 @@
 
 #include "woodcock/light/even_light.h"
 #include "woodcock/medium/line_depths.h"
+#include "woodcock/render/needs.h"
 
 namespace woodcock::render {
 
@@ -63,7 +64,9 @@ std::unique_ptr<const RadianceLattice> RadianceLattice::make(const Scene& scene)
         return part.field() && !part.unbounded() && !part.extinctionVaries() && !part.moved() &&
                !part.readElsewhere() && !part.support().empty();
     };
-    if (medium::moves(scene.medium) || !std::ranges::all_of(scene.medium.parts, isOrdinary))
+    const Needs needs = findNeeds(scene);
+    if (needs.surfaces || needs.localLights || needs.motion || !needs.scattering ||
+        medium::moves(scene.medium) || !std::ranges::all_of(scene.medium.parts, isOrdinary))
         return nullptr;
     return make(scene.medium, lightOf(scene.lights));
 }

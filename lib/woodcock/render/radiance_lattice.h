@@ -46,8 +46,8 @@ public:
     /// stand still.
     static std::unique_ptr<const RadianceLattice> make(const medium::Medium& medium,
                                                        const Light& light);
-    /// The same for a render: null also where parts move or have no field of their own. Of several
-    /// suns the first counts, and none that is of another light group than the environment.
+    /// The same for a render: null also where its paths are not traced in lanes. Of several suns
+    /// the first counts, and none that is of another light group than the environment.
     static std::unique_ptr<const RadianceLattice> make(const Scene& scene);
 
     /// From world space to cells, the first of which begins at the origin.

@@ -53,7 +53,7 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
         l.passes = Spectrum<N>(1.0f);
         return true;
     }
-    l.worth = worthOf(lane, ahead);
+    l.worth = worthOf(p);
     // Of each channel, the share of the points that are drawn by its depth.
     float shares[N], sum = 0;
     for (int c = 0; c < N; ++c)
@@ -80,20 +80,27 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
     return density > 0 ? scatterAt(lane, t, estimate * static_cast<float>(1 / density)) : true;
 }
 
-/// What light that stops on a camera ray is expected to bring, by where a third of it has stopped.
-/// That it brings more or less by where it stops, or by being less than was estimated, is chance.
+/// What light that stops on a path's camera ray is expected to bring: that it brings more or less
+/// by where it stops, or by being less than was estimated, is chance. It is found for the ray
+/// through the pixel's middle, where a third of that ray's light has stopped.
 template <int N>
-Spectrum<N> LaneTracer<N>::worthOf(std::size_t lane, const DepthsAhead<N>& ahead) const {
+Spectrum<N> LaneTracer<N>::worthOf(const PathState<N, false>& p) {
     if (!scene_.radiance) return {};
+    const int x = static_cast<int>(p.raster[0]), y = static_cast<int>(p.raster[1]);
+    if (worth_.x == x && worth_.y == y) return worth_.value;
+    const CameraDepths& depths = *scene_.cameraDepths;
+    const DepthsAhead<N> ahead(depths, depths.at(x + 0.5, y + 0.5), scene_.parts.data());
     const Spectrum<N>& whole = ahead.whole();
     int channel = 0;
     for (int c = 1; c < N; ++c)
         if (whole[c] > whole[channel]) channel = c;
-    const PathState<N, false>& p = batch_.paths[lanes_[lane].path];
     const double t = ahead.find(channel, -std::log1p(std::expm1(-whole[channel]) / 3));
-    const auto scattered =
-        scene_.radiance->template scattered<N>(p.origin + p.direction * t, p.direction);
-    return Spectrum<N>::map([&](int c) { return scattered[c] * scene_.cameraAlbedo[c]; });
+    const camera::CameraRay ray = traced_.cameraRays.at(x + 0.5, y + 0.5, 0);
+    worth_ = {
+        x, y,
+        scene_.radiance->template scattered<N>(ray.origin + ray.direction * t, ray.direction) *
+            channels<N>(scene_.cameraAlbedo)};
+    return worth_.value;
 }
 
 /// Integrates a camera ray exactly, up to `t` and beyond.

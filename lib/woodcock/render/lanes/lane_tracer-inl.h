@@ -192,7 +192,7 @@ private:
     bool scatterCameraRay(std::size_t lane);
     void correctCameraRay(std::size_t lane, double t, const Spectrum<N>& estimate, float chance);
     bool scatterAt(std::size_t lane, double t, const Spectrum<N>& weight);
-    Spectrum<N> worthOf(std::size_t lane, const DepthsAhead<N>& ahead) const;
+    Spectrum<N> worthOf(const PathState<N, false>& p);
     void endCameraPath(std::size_t lane);
     void noteCameraStops(std::size_t lane);
 
@@ -257,6 +257,10 @@ private:
     EmissionTracer<N> emission_;
     const bool several_;        // parts
     const bool samplesLights_;  // with numbers, from PathState::from
+    struct {
+        int x = -1, y = -1;
+        Spectrum<N> value;
+    } worth_;  // of the last pixel that worthOf() has found
     std::vector<float> picks_, probabilities_;
     std::size_t nextPath_ = 0;
     medium::TrackingCounters counters_;
