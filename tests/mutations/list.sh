@@ -143,6 +143,10 @@ defect "lanes' decisions are expected to lose what goes on" 'Lanes.*' "lanes and
     $lanes/lane_expected-inl.h \
     '(scattering * scattered + null * others)' '(scattering * scattered)'
 
+defect "lanes' camera rays are worth as much as if nothing passed" 'Lanes.*' "lanes and paths one by one" \
+    $lanes/lane_camera-inl.h \
+    'toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth)' 'toRgb(l.worth)'
+
 defect "lanes without depth left collide in empty cells" 'Lanes.*' "" \
     $lanes/lane_walk-inl.h \
     'hn::IfThenElse(mu_.get() > zero, depth_.get() * perMu_.get(), all(huge))' \

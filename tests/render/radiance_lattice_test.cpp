@@ -32,12 +32,11 @@ const RadianceLattice::Channel& at(const RadianceLattice& lattice, Vec3d world, 
     return lattice.content()[(cell.z * n.y + cell.y) * n.x + cell.x].channels[channel];
 }
 
-/// Calls see(index of the cell, channel) for all.
+/// Calls see(index, cell) for all.
 template <class F>
 void forAll(const RadianceLattice& lattice, F&& see) {
     const Vec3i n = lattice.cells();
-    for (int i = 0; i < n.x * n.y * n.z; ++i)
-        for (const RadianceLattice::Channel& c : lattice.content()[i].channels) see(i, c);
+    for (int i = 0; i < n.x * n.y * n.z; ++i) see(i, lattice.content()[i]);
 }
 
 /// Far from the other faces phi falls as exp(-x sqrt(3 sigma_a sigma_tr)): roughly so, in cells as
@@ -62,14 +61,16 @@ TEST(RadianceLattice, FallsByTheDiffusionLength) {
 
 /// Nothing is lost, so the radiance is the same everywhere.
 TEST(RadianceLattice, IsEvenInAFurnace) {
+    const Rgb around{0.5f, 1, 3};
     for (const float scattering : {0.01f, 0.5f, 20.0f}) {
-        const auto lattice = RadianceLattice::make(cube(Rgb(scattering), {}),
-                                                   {.environment = {0.5f, 1, 3}, .sun = {}});
+        const auto lattice = RadianceLattice::make(
+            cube({scattering, 2 * scattering, scattering}, {}), {.environment = around, .sun = {}});
         ASSERT_TRUE(lattice);
-        EXPECT_EQ(lattice->unit(), (Rgb{0.5f, 1, 3} * (1 / 1.5f)));
-        forAll(*lattice, [&](int i, const RadianceLattice::Channel& c) {
-            ASSERT_NEAR(c.phi, 1.5, 1e-4) << i;
-            for (const float ahead : c.ahead) ASSERT_NEAR(ahead, 0, 1e-4) << i;
+        forAll(*lattice, [&](int i, const RadianceLattice::Cell& cell) {
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(cell.channels[c].phi, around[c], 1e-4) << i;
+                for (const float ahead : cell.channels[c].ahead) ASSERT_NEAR(ahead, 0, 1e-4) << i;
+            }
         });
     }
 }
@@ -147,13 +148,27 @@ TEST(RadianceLattice, HasWhatIsScatteredOnce) {
 TEST(RadianceLattice, StaysWithinBounds) {
     const auto lattice = RadianceLattice::make(cube({0.2f, 5, 40}, {0.01f, 0.3f, 30}), sky);
     ASSERT_TRUE(lattice);
-    forAll(*lattice, [](int, const RadianceLattice::Channel& c) {
-        EXPECT_GE(c.phi, 0);
-        EXPECT_LE(c.phi, 1 + 1e-5);
+    forAll(*lattice, [](int, const RadianceLattice::Cell& cell) {
+        for (const RadianceLattice::Channel& c : cell.channels) {
+            EXPECT_GE(c.phi, 0);
+            EXPECT_LE(c.phi, 1 + 1e-5);
+        }
     });
     // Little of it comes through where much is absorbed.
     EXPECT_LT(at(*lattice, {side / 2, side / 2, side / 2}, 2).phi, 1e-5);
     EXPECT_GT(at(*lattice, {side / 2, side / 2, side / 2}, 0).phi, 0.5);
+}
+
+/// Of a grey medium it is one channel, of the lights' mean colour.
+TEST(RadianceLattice, IsOfOneChannelWhereTheMediumIsGrey) {
+    const Rgb around{0.5f, 1, 3};
+    const auto lattice =
+        RadianceLattice::make(cube(Rgb(2.0f), Rgb(0.5f)), {.environment = around, .sun = {}});
+    ASSERT_TRUE(lattice);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_FLOAT_EQ(lattice->unit()[c], around[c] / 1.5f);
+        EXPECT_NEAR(at(*lattice, {-0.01, 1, 1}, c).phi, 1.5, 1e-5);
+    }
 }
 
 TEST(RadianceLattice, HasTheLightAroundOutsideOfTheMedium) {
@@ -169,8 +184,32 @@ TEST(RadianceLattice, HasTheLightAroundOutsideOfTheMedium) {
         }
 }
 
+/// Also of a phase function so peaked that its mean cosine is 1 to floats.
+TEST(RadianceLattice, IsFinite) {
+    for (const double g : {1 - 1e-9, 0.9999, -0.9999, -1 + 1e-9}) {
+        const medium::Medium medium = PlainMedium({{.grid = {},
+                                                    .box = {{0, 0, 0}, {side, side, side}},
+                                                    .absorption = Rgb(0.1f),
+                                                    .scattering = Rgb(2.0f),
+                                                    .g = g}})
+                                          .medium();
+        RadianceLattice::Light light = sky;
+        light.sun = {1, 2, 3};
+        const auto lattice = RadianceLattice::make(medium, light);
+        ASSERT_TRUE(lattice);
+        forAll(*lattice, [](int i, const RadianceLattice::Cell& cell) {
+            for (const RadianceLattice::Channel& c : cell.channels) {
+                ASSERT_TRUE(std::isfinite(c.phi) && std::isfinite(c.sun)) << i;
+                for (int axis = 0; axis < 3; ++axis)
+                    ASSERT_TRUE(std::isfinite(c.slope[axis]) && std::isfinite(c.ahead[axis])) << i;
+            }
+        });
+    }
+}
+
 TEST(RadianceLattice, NeedsLightAndScattering) {
-    EXPECT_TRUE(RadianceLattice::make(cube({1, 1, 1}, {}), sky));
+    EXPECT_TRUE(RadianceLattice::make(cube({1, 2, 1}, {}), sky));
+    EXPECT_FALSE(RadianceLattice::make(cube({1, 1, 1}, {}), sky));  // a furnace
     EXPECT_FALSE(RadianceLattice::make(cube({1, 1, 1}, {}), {}));
     EXPECT_FALSE(RadianceLattice::make(cube({}, {1, 1, 1}), sky));
 }

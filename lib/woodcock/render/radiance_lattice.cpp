@@ -73,11 +73,11 @@ std::unique_ptr<const RadianceLattice> RadianceLattice::make(const Scene& scene)
 
 std::unique_ptr<const RadianceLattice> RadianceLattice::make(const medium::Medium& medium,
                                                              const Light& light) {
-    Rgb scattering;
+    Rgb scattering, absorption;
     float forward = 0;
     bool grey = true;
     for (const medium::MediumPart& part : medium.parts) {
-        scattering += part.scattering();
+        scattering += part.scattering(), absorption += part.absorption();
         forward += part.scattering().sum() * static_cast<float>(part.phase().meanCosine());
         grey &= isGrey(part.absorption()) && isGrey(part.scattering()) &&
                 !(part.field() && part.field()->channels() > 1);
@@ -86,8 +86,10 @@ std::unique_ptr<const RadianceLattice> RadianceLattice::make(const medium::Mediu
     const Box3d box = medium.worldBounds();
     const Vec3d size = box.size();
     const double edge = std::max({size.x, size.y, size.z}) / mostCells;
-    if (!(scattering.maximum() > 0 && mixed.maximum() > 0 && edge > 0) || !std::isfinite(edge))
+    if (!(scattering.maximum() > 0 && std::isnormal(mixed.mean()) && edge > 0) ||
+        !std::isfinite(edge))
         return nullptr;
+    if (grey && !(absorption.maximum() > 0 || light.sun.maximum() > 0)) return nullptr;
     std::unique_ptr<RadianceLattice> made(new RadianceLattice);
     RadianceLattice& lattice = *made;
     lattice.edge_ = edge;
@@ -100,7 +102,8 @@ std::unique_ptr<const RadianceLattice> RadianceLattice::make(const medium::Mediu
     lattice.content_.resize(static_cast<std::size_t>(lattice.cells_.x) *
                             static_cast<std::size_t>(lattice.cells_.y) *
                             static_cast<std::size_t>(lattice.cells_.z));
-    lattice.towardsSun_ = light.towardsSun, lattice.meanCosine_ = forward / scattering.sum();
+    lattice.towardsSun_ = light.towardsSun;
+    lattice.meanCosine_ = std::clamp(forward / scattering.sum(), -0.99f, 0.99f);
     Light used = light;
     if (grey) {
         lattice.unit_ = mixed * (1 / mixed.mean());
@@ -110,6 +113,7 @@ std::unique_ptr<const RadianceLattice> RadianceLattice::make(const medium::Mediu
     lattice.survey(medium, rates);
     for (int c = 0; c < 3; ++c) {
         const bool asBefore = c > 0 && rates[c].absorption == rates[c - 1].absorption &&
+                              rates[c].scattering == rates[c - 1].scattering &&
                               rates[c].transport == rates[c - 1].transport &&
                               used.environment[c] == used.environment[c - 1] &&
                               used.sun[c] == used.sun[c - 1];

@@ -20,9 +20,10 @@ namespace woodcock::render {
 /// of what lights it from all sides. q is what sunlight scatters: (1 - g) sigma_s E T / (4 pi),
 /// with the irradiance E and the transmittance T of sigma_tr towards the sun.
 ///
-/// One sweep of discrete ordinates over that, with the same q by direction, mends what diffusion
-/// has wrong in thin media and near surfaces. Its first two moments are kept: a path that goes from
-/// x to direction v is expected to bring phi(x) + v . ahead(x).
+/// One sweep of discrete ordinates over that mends what diffusion has wrong in thin media and near
+/// surfaces. In it, sunlight is what sigma_t lets through, and is scattered by the whole phase
+/// function. The sweep's first two moments are kept: a path that goes from x to direction v is
+/// expected to bring phi(x) + v . ahead(x).
 class RadianceLattice {
 public:
     struct Light {
@@ -38,16 +39,17 @@ public:
     struct alignas(32) Cell {
         Channel channels[3];
     };
-    /// Sunlight is taken to be scattered by a phase function of Henyey and Greenstein with at most
-    /// this g: cells are too coarse for more.
+    /// What a collision's next event brings is expected by a phase function of Henyey and
+    /// Greenstein with at most this g forwards: cells are too coarse for more.
     static constexpr float mostPeaked = 0.5f;
 
-    /// Null where nothing scatters, nothing shines, or the medium has no end. The medium's parts
+    /// Null where nothing scatters, nothing shines, or the medium has no end; and where every path
+    /// brings the same, as a grey medium in an even environment takes nothing. The medium's parts
     /// stand still.
     static std::unique_ptr<const RadianceLattice> make(const medium::Medium& medium,
                                                        const Light& light);
-    /// The same for a render: null also where its paths are not traced in lanes. Of several suns
-    /// the first counts, and none that is of another light group than the environment.
+    /// The same for a render: null also in most scenes that are not traced in lanes. Of several
+    /// suns the first counts, and none that is of another light group than the environment.
     static std::unique_ptr<const RadianceLattice> make(const Scene& scene);
 
     /// From world space to cells, the first of which begins at the origin.
@@ -109,7 +111,7 @@ Spectrum<N> RadianceLattice::scattered(Vec3d at, Vec3d direction) const {
     int cell[3];
     float within[3];
     for (int i = 0; i < 3; ++i) {
-        cell[i] = std::clamp(static_cast<int>(inside[i]), 0, cells_[i] - 1);
+        cell[i] = static_cast<int>(std::clamp(inside[i], 0.0, cells_[i] - 1.0));
         within[i] = static_cast<float>(inside[i] - cell[i]) - 0.5f;
     }
     const Cell& content = content_[numberOf(cell[0], cell[1], cell[2])];

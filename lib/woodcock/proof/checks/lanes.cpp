@@ -134,6 +134,22 @@ std::vector<Subject> plainSubjects() {
          {},
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" +
              "sigma_s = [30, 45, 60]\nsigma_a = [0.2, 8, 30]\n" + lights},
+        {"by the radiance of another medium",
+         fog + lights,
+         1,
+         {},
+         true,
+         {},
+         ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.1, "g = -0.3") +
+             lights},
+        {"in colours, by the radiance of another medium",
+         ball + "sigma_s = [1, 0.7, 0.4]\nsigma_a = [0.1, 0.3, 0.6]\ng = 0.4\n" + lights,
+         1,
+         {},
+         true,
+         {},
+         ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" +
+             "sigma_s = [0.2, 1.5, 6]\nsigma_a = [1, 0.1, 0.3]\n" + lights},
         {"thick, in a disc's light", cloud + discSun + air, 0.2},
         {"in a disc's light", fog + discSun + air},
         {"in the light of two suns", fog + deltaSun + secondSun + air},

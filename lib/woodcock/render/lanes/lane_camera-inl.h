@@ -80,9 +80,9 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
     return density > 0 ? scatterAt(lane, t, estimate * static_cast<float>(1 / density)) : true;
 }
 
-/// What light that stops on a path's camera ray is expected to bring: that it brings more or less
-/// by where it stops, or by being less than was estimated, is chance. It is found for the ray
-/// through the pixel's middle, where a third of that ray's light has stopped.
+/// What light that stops on a path's camera ray is expected to bring. Where it stops is chance, and
+/// so is what a correction changes; this takes both off. It is found for the ray through the
+/// pixel's middle, where a third of what stops on that ray has stopped.
 template <int N>
 Spectrum<N> LaneTracer<N>::worthOf(const PathState<N, false>& p) {
     if (!scene_.radiance) return {};

@@ -47,7 +47,7 @@ template <int N>
 HWY_INLINE Mask LaneTracer<N>::decide(Mask colliding, const F f[N], F random) {
     const F mu = mu_.get(), zero = hn::Zero(lanesF), one = all(1);
     const Mask counts =
-        scene_.environmentSeen ? colliding : hn::And(colliding, scattered_.get() > zero);
+        scene_.controlsCameraFlights ? colliding : hn::And(colliding, scattered_.get() > zero);
     F phase = zero;
     if (scene_.radiance) findExpected(bitsOf(colliding)), phase = phaseOfNextEvent();
     if constexpr (N == 1) {

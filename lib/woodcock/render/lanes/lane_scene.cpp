@@ -2,7 +2,6 @@
 #include "woodcock/render/lanes/lane_scene.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "woodcock/light/even_light.h"
 
@@ -133,12 +132,14 @@ void LaneScene::addLights() {
         centre = lights.sample(sun, {}, 0, 0);
         centre.direction = *lights.traits(sun).parallel;
     }
-    environmentSeen = true;
+    bool seen = true;
     for (const int light : lights.distant()) {
         if (light == sun || std::ranges::find(others, light) != others.end()) continue;
         if (environmentLight < 0) environmentLight = light;
-        environmentSeen &= lights.traits(light).visible;
+        seen &= lights.traits(light).visible;
     }
+    const auto absorbs = [](const LanePart& part) { return part.part->absorption().maximum() > 0; };
+    controlsCameraFlights = seen && (traced.needs.chromatic || std::ranges::any_of(parts, absorbs));
 }
 
 void LaneScene::addRadiance() {

@@ -46,13 +46,15 @@ struct LaneScene {
     std::vector<int> others;
     /// The first environment that is not among these; -1: there is none.
     int environmentLight = -1;
-    bool environmentSeen = false;  ///< camera rays see all of these
     bool greyExtinction = true;
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
     /// Paths are long: it pays to split and to end them by where they are.
     bool thick = false;
     /// What paths are expected to bring of the light from far away; null: it is not known.
     const RadianceLattice* radiance = nullptr;
+    /// Decisions on camera rays are controlled as well: where rays see the environments, and carry
+    /// more or less of their light by what is decided.
+    bool controlsCameraFlights = false;
     /// The light that the control variate of LaneTracer::chance_ counts to; -1: there is none.
     int chanceLight = -1;
     /// Depths along camera rays; null: they are walked.

@@ -131,7 +131,6 @@ F LaneTracer<N>::addSunlight(std::uint32_t lit) {
     F least = depths.least[0], depth = depths.depth[0];
     for (int c = 1; c < N; ++c)
         least = hn::Min(least, depths.least[c]), depth = hn::Min(depth, depths.depth[c]);
-    for (int c = 0; c < N; ++c) sunDepth_[c].set(depths.depth[c]);
     const Mask deep = least > all(deepest);
     const std::uint32_t shallow = lit & ~bitsOf(deep);
     const auto inVectors = [&](std::size_t i) {

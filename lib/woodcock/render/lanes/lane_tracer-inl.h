@@ -257,10 +257,11 @@ private:
     EmissionTracer<N> emission_;
     const bool several_;        // parts
     const bool samplesLights_;  // with numbers, from PathState::from
+    // Of the last pixel that worthOf() has found:
     struct {
         int x = -1, y = -1;
         Spectrum<N> value;
-    } worth_;  // of the last pixel that worthOf() has found
+    } worth_;
     std::vector<float> picks_, probabilities_;
     std::size_t nextPath_ = 0;
     medium::TrackingCounters counters_;
@@ -287,7 +288,7 @@ private:
     // the next event, as throughput.
     Floats chance_[N]{}, prediction_[N]{}, predicted_[N]{};
     Floats scattered_{};  // 1 behind the first scattering
-    Floats sunDepth_[N]{}, share_{};
+    Floats share_{};
     std::array<EventNumbers, laneCount> numbers_{};
     std::array<Rgb, laneCount> sunLight_{};
     std::array<Vec3d, laneCount> sunDirection_{};
