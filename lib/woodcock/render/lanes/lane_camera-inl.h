@@ -85,7 +85,7 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
 /// pixel's middle, where a third of what stops on that ray has stopped.
 template <int N>
 Spectrum<N> LaneTracer<N>::worthOf(const PathState<N, false>& p) {
-    if (!scene_.radiance) return {};
+    if (!scene_.radiance) return channels<N>(scene_.cameraAlbedo);
     const int x = static_cast<int>(p.raster[0]), y = static_cast<int>(p.raster[1]);
     if (worth_.x == x && worth_.y == y) return worth_.value;
     const CameraDepths& depths = *scene_.cameraDepths;
@@ -169,7 +169,7 @@ void LaneTracer<N>::endCameraPath(std::size_t lane) {
     if (batch_.layers.splitsLight())
         for (Rgb& part : batch_.layers.partsOf(*p.result)) part *= correction;
     if (scene_.chanceLight >= 0)
-        bring(batch_, p, toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth) * scene_.radiance->unit(),
+        bring(batch_, p, toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth) * scene_.chanceUnit,
               image::LightKind::VolumeIndirect, lights.group(scene_.chanceLight));
     p.result->film.alpha = 1 - l.passes.mean();
     for (const int light : lights.distant()) {
@@ -221,7 +221,7 @@ void LaneTracer<N>::noteCameraStops(std::size_t lane) {
     if (atPoint && half >= l.flightStart) addRest();
     if (scene_.chanceLight >= 0)
         stopped.arrivals.push_back(
-            {planar.at(half), toRgb(rest * l.worth) * scene_.radiance->unit(), false});
+            {planar.at(half), toRgb(rest * l.worth) * scene_.chanceUnit, false});
     stopped.firstEvent = {planar.at(atPoint ? l.flightStart : half), {}, false};
 }
 

@@ -188,7 +188,7 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
     const light::LightSet& lights = traced_.scene.lights;
     constexpr auto kind = image::LightKind::VolumeIndirect;
     if (scene_.chanceLight >= 0)
-        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.radiance->unit() * -1.0f, kind,
+        bring(batch_, p, toRgb(laneOf(chance_, lane)) * scene_.chanceUnit * -1.0f, kind,
               lights.group(scene_.chanceLight));
     if (scene_.sun >= 0)
         bring(batch_, p, toRgb(laneOf(prediction_, lane)) * scene_.centre.weight, kind,

@@ -265,7 +265,7 @@ void LaneTracer<N>::play(Mask departing, F random) {
     const Mask dies = random >= survival;
     for (int c = 0; c < N; ++c) {
         const F before = w_[c].get(), after = hn::IfThenZeroElse(dies, before / survival);
-        if (scene_.radiance)
+        if (scene_.chanceLight >= 0)
             chance_[c].set(plays,
                            chance_[c].get() + expectedWith(c, aheadIn(c)) * (after - before));
         w_[c].set(plays, after);

@@ -136,6 +136,7 @@ void LaneScene::addLights() {
     for (const int light : lights.distant()) {
         if (light == sun || std::ranges::find(others, light) != others.end()) continue;
         if (environmentLight < 0) environmentLight = light;
+        environment += light::meanRadiance(lights, light);
         seen &= lights.traits(light).visible;
     }
     const auto absorbs = [](const LanePart& part) { return part.part->absorption().maximum() > 0; };
@@ -143,9 +144,11 @@ void LaneScene::addLights() {
 }
 
 void LaneScene::addRadiance() {
-    const int light = environmentLight >= 0 ? environmentLight : sun;
-    if (light < 0 || !traced.options.radiance) return;
-    radiance = traced.options.radiance, chanceLight = light;
+    chanceLight = environmentLight >= 0 ? environmentLight : sun;
+    chanceUnit = environment;
+    radiance = chanceLight >= 0 ? traced.options.radiance : nullptr;
+    if (!radiance) return;
+    chanceUnit = radiance->unit();
     for (LanePart& part : parts) part.setLattice(part.cellsFromIndex, radiance->latticeFromWorld());
 }
 

@@ -44,7 +44,9 @@ struct LaneScene {
     /// Other lights that are sampled, one for each scattering: not the environments that are so
     /// even that paths find their light well enough where they leave.
     std::vector<int> others;
-    /// The first environment that is not among these; -1: there is none.
+    /// Mean radiance from all around, of environments that are not among these, and the first of
+    /// them; -1: there is none.
+    Rgb environment{};
     int environmentLight = -1;
     bool greyExtinction = true;
     std::vector<EmissionLattice> emission;  ///< of each set of media; empty: nothing glows
@@ -55,7 +57,9 @@ struct LaneScene {
     /// Decisions on camera rays are controlled as well: where rays see the environments, and carry
     /// more or less of their light by what is decided.
     bool controlsCameraFlights = false;
-    /// The light that the control variate of LaneTracer::chance_ counts to; -1: there is none.
+    /// Radiance of which LaneTracer::chance_ has multiples: without a lattice, the environment's.
+    /// And the light that its control variate counts to; -1: there is none.
+    Rgb chanceUnit{};
     int chanceLight = -1;
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
