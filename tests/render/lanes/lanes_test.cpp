@@ -155,7 +155,8 @@ TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
     }
 }
 
-/// To the rounding of floats that are far larger than their sum at times.
+/// To the rounding of floats that are far larger than their sum at times: of the parts, and of
+/// light of about 1 within one, which its control variates take off again.
 TEST_F(Lanes, PartsOfLightSumToEveryPaths) {
     const std::string lights = S::sun() + "group = \"sun\"\n" + S::air + "group = \"air\"\n";
     const Scene scene = subjects.scene(
@@ -176,8 +177,9 @@ TEST_F(Lanes, PartsOfLightSumToEveryPaths) {
                 (part < options.layers.parts.kindCount() ? kinds : groups) += light;
                 largest = std::max(largest, std::abs(light));
             }
-            ASSERT_NEAR(kinds, results[k].film.radiance[c], 1e-5 * largest) << k;
-            ASSERT_NEAR(groups, results[k].film.radiance[c], 1e-5 * largest) << k;
+            const double rounding = 1e-5 * largest + 1e-7;
+            ASSERT_NEAR(kinds, results[k].film.radiance[c], rounding) << k;
+            ASSERT_NEAR(groups, results[k].film.radiance[c], rounding) << k;
         }
 }
 
