@@ -107,10 +107,12 @@ void LaneTracer<N>::loadMatter(std::size_t lane, std::size_t number) {
     setLane(albedo_, lane, channels<N>(part.albedo));
     const bool nearest = medium.field()->lookup() == grid::Lookup::Nearest;
     jitterUnit_[lane] = nearest ? 0 : 0x1p-21f, firstJitter_[lane] = nearest ? 0.5f : 0x1p-22f;
-    if (!scene_.radiance) setLane(expected_, lane, Spectrum<N>(1.0f));
-    if (scene_.radiance)
+    if (scene_.radiance) {
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < 4; ++k) cells_[i][k][lane] = part.cellsFromIndex[i][k];
+    } else {
+        setLane(expected_, lane, Spectrum<N>(1.0f));
+    }
     const medium::DepthGrid* grid = scene_.sunDepths[lanes_[lane].set];
     if (!grid) return;
     setLane(sunColour_, lane,
