@@ -145,6 +145,114 @@ TEST(DepthGrid, IsNotForMediaWithoutEnd) {
         makes(PlainMedium({{.grid = {}, .box = {{-1e6, -1, -1e6}, {1e6, 1, 1e6}}}}).medium()));
 }
 
+/// Where light has parallel rays, the depth falls by sigma for each unit towards it. To a lamp it
+/// is sigma times the way that lies in the box: from a cube's middle axis, (z + 1) / cosine.
+TEST(DepthGrid, OfALampAboveABoxIsNearlyExact) {
+    const Medium fog =
+        PlainMedium({{.grid = {}, .box = {{-1, -1, -1}, {1, 1, 1}}, .scattering = Rgb(0.7f)}})
+            .medium();
+    const Vec3d lamp{0.2, 3, -0.1};
+    const auto grid = DepthGrid::makeForLamp(fog, lamp, 0, plenty);
+    ASSERT_TRUE(grid);
+    for (const Vec3d p : {Vec3d{0.1, 0.2, 0.3}, {-0.7, -0.8, 0.5}, {0.4, 0.9, 0.61}}) {
+        const auto d = grid->at<1>(p)[0];
+        const double exact = 0.7 * (1 - p.y) * length(lamp - p) / (lamp.y - p.y);
+        EXPECT_NEAR(d.depth, exact, 1e-3 * exact);
+        EXPECT_LE(d.least, d.depth);
+        EXPECT_GE(d.most, d.depth);
+    }
+}
+
+/// A lamp's grid misses the depths to the lamp by no more than a sun's those to the sun, and by
+/// less than a sun's in the same direction does.
+TEST(DepthGrid, OfALampIsAsNearToTheTruthAsOfASun) {
+    const Medium medium = greyMedium().medium();
+    const Box3d box = medium.worldBounds();
+    const std::vector<Vec3d> points = pointsIn(medium, 500);
+    const auto missedBy = [&](const DepthGrid& grid, auto&& towardsLight) {
+        double missed = 0;
+        for (const Vec3d p : points)
+            missed +=
+                std::abs(double{grid.at<1>(p)[0].depth} -
+                         double{exactOpticalDepth(medium, p, towardsLight(p), 0, infinity)[0]});
+        return missed;
+    };
+    for (const Vec3d side : {Vec3d{1, 0.3, 0.2}, {-0.2, 1.4, -0.9}, {0.1, -0.2, -3}}) {
+        const Vec3d lamp = box.centre() + box.size() * side, sun = normalize(lamp - box.centre());
+        const auto ofLamp = DepthGrid::makeForLamp(medium, lamp, 0, plenty);
+        const auto ofSun = DepthGrid::make(medium, sun, plenty);
+        ASSERT_TRUE(ofLamp);
+        const auto toLamp = [&](Vec3d p) { return normalize(lamp - p); };
+        const double missed = missedBy(*ofLamp, toLamp);
+        EXPECT_LT(missed, 1.3 * missedBy(*ofSun, [&](Vec3d) { return sun; }));
+        EXPECT_LT(missed, 0.8 * missedBy(*ofSun, toLamp));
+    }
+}
+
+/// Readers that interpolate by themselves find what at() does.
+TEST(DepthGrid, TellsWhereItsNodesAre) {
+    const Medium medium = greyMedium().medium();
+    const Box3d box = medium.worldBounds();
+    for (const bool ofLamp : {false, true}) {
+        const auto grid =
+            ofLamp ? DepthGrid::makeForLamp(medium, box.centre() + box.size() * Vec3d{0.4, 1, -0.7},
+                                            0, plenty)
+                   : DepthGrid::make(medium, towards, plenty);
+        const Affine3d map = grid->latticeFromWorld();
+        const auto perspective = grid->perspective();
+        const Vec3i cells = grid->cells();
+        const auto strides = grid->strides();
+        for (const Vec3d p : pointsIn(medium, 200)) {
+            Vec3d x = map.point(p);
+            const double distance = perspective[0] + perspective[1] * x.z;
+            EXPECT_TRUE(ofLamp || distance == 1);
+            x.x /= distance, x.y /= distance;
+            Vec3i cell;
+            for (int i = 0; i < 3; ++i) {
+                ASSERT_GT(x[i], -1e-6);
+                ASSERT_LT(x[i], cells[i] + 1e-6);
+                cell[i] = std::clamp(static_cast<int>(x[i]), 0, cells[i] - 1);
+            }
+            const float* node = grid->nodes(cell.x, cell.y, cell.z);
+            double depth = 0;
+            for (std::size_t corner = 0; corner < 8; ++corner) {
+                double weight = 1;
+                std::size_t at = 0;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const int axis = static_cast<int>(i);
+                    const double within = x[axis] - cell[axis];
+                    weight *= corner >> i & 1 ? within : 1 - within;
+                    at += (corner >> i & 1) * strides[i];
+                }
+                depth += weight * double{node[at]};
+            }
+            EXPECT_NEAR(double{grid->at<1>(p)[0].depth}, depth, 1e-4 * (1 + depth));
+        }
+    }
+}
+
+/// Lamps that are in the medium or near it have none. What rays to a wide lamp run through differs
+/// from the grid's lines by more than a node.
+TEST(DepthGrid, IsForLampsFromAfar) {
+    const Medium medium = greyMedium().medium();
+    const Box3d box = medium.worldBounds();
+    const double size = length(box.size());
+    const auto makes = [&](Vec3d lamp, double radius) {
+        return DepthGrid::makeForLamp(medium, lamp, radius, plenty) != nullptr;
+    };
+    const auto above = [&](double distance) {
+        return Vec3d{box.centre().x, box.upper.y + distance, box.centre().z};
+    };
+    EXPECT_FALSE(makes(box.centre(), 0));
+    EXPECT_FALSE(makes(above(0.09 * size), 0));
+    EXPECT_TRUE(makes(above(0.11 * size), 0));
+    EXPECT_FALSE(makes(above(size), 0.95 * size));
+    EXPECT_TRUE(makes(above(size), 0.85 * size));
+    EXPECT_EQ(DepthGrid::makeForLamp(medium, above(size), 0, plenty)->blur(), 1);
+    EXPECT_GT(DepthGrid::makeForLamp(medium, above(size), 0.5 * size, plenty)->blur(), 2);
+    EXPECT_FALSE(DepthGrid::makeForLamp(hazyMedium().medium(), above(size), 0, plenty));
+}
+
 TEST(ExactTransmittance, AgreesWithBruteForce) {
     const PlainMedium plain = greyMedium();
     const Medium medium = plain.medium();

@@ -41,10 +41,10 @@
 #include "woodcock/image/image_format.h"
 #include "woodcock/image/outputs.h"
 #include "woodcock/render/camera_depths.h"
+#include "woodcock/render/light_depths.h"
 #include "woodcock/render/precision.h"
 #include "woodcock/render/saved_state.h"
 #include "woodcock/render/session.h"
-#include "woodcock/render/sun_depths.h"
 #include "woodcock/scene/build.h"
 #include "woodcock/scene/light_groups.h"
 #include "woodcock/scene/scene_file.h"
@@ -454,7 +454,7 @@ private:
 
     /// Memory that grids of optical depths take at most.
     double bytesOfDepths(const render::Scene& scene) const {
-        return render::bytesOfSunDepths(scene, settings_.approximations) +
+        return render::bytesOfLightDepths(scene, settings_.approximations) +
                render::bytesOfCameraDepths(scene, settings_.width, settings_.height);
     }
 

@@ -23,6 +23,8 @@ constexpr double voxelsToNode = 2;
 constexpr double coarsest = 16;
 /// What is deeper is stored as this, so that interpolation stays finite.
 constexpr double deepestStored = 1e30;
+/// Lamps are farther from the box around a medium than this part of its diagonal.
+constexpr double nearestLamp = 0.1;
 
 /// The shortest edge of a voxel, in world units; of a medium without fields a part of its shortest
 /// edge.
@@ -66,28 +68,57 @@ std::optional<Rgb> commonColour(const Medium& medium) {
 std::unique_ptr<const DepthGrid> DepthGrid::make(const Medium& medium, Vec3d towards,
                                                  std::size_t mostBytes) {
     if (!bounded(medium)) return nullptr;
-    const double finest = finestDetail(medium);
-    if (!(finest > 0)) return nullptr;  // a box without thickness
-    std::unique_ptr<DepthGrid> grid(new DepthGrid(medium, towards));
-    grid->layOut(finest, mostBytes);
-    if (!(grid->spacing() <= coarsest * finest)) return nullptr;
+    std::unique_ptr<DepthGrid> grid(new DepthGrid(medium, medium.worldBounds().lower, towards, 0));
+    if (!grid->layOut(mostBytes)) return nullptr;
     return grid;
 }
 
-DepthGrid::DepthGrid(const Medium& medium, Vec3d towards) : medium_(&medium), towards_(towards) {
+std::unique_ptr<const DepthGrid> DepthGrid::makeForLamp(const Medium& medium, Vec3d lamp,
+                                                        double radius, std::size_t mostBytes) {
+    if (!bounded(medium)) return nullptr;
+    const Box3d box = medium.worldBounds();
+    const Vec3d nearest = max(box.lower, min(box.upper, lamp));
+    const double away = length(lamp - nearest), size = length(box.size());
+    if (!(away - radius > nearestLamp * size)) return nullptr;
+    // All of the box is at least as far along this direction.
+    const Vec3d towards = (lamp - nearest) * (1 / away);
+    const double middle = dot(lamp - box.centre(), towards);
+    std::unique_ptr<DepthGrid> grid(new DepthGrid(medium, lamp, towards, middle));
+    if (!grid->layOut(mostBytes)) return nullptr;
+    const double beside = radius * (size / 2) / middle;  // on the way through half of the medium
+    grid->blur_ = static_cast<float>(std::max(1.0, beside / grid->spacing_));
+    return grid;
+}
+
+DepthGrid::DepthGrid(const Medium& medium, Vec3d origin, Vec3d towards, double middle)
+    : medium_(&medium), origin_(origin), towards_(towards), middle_(middle) {
     orthonormalBasis(towards, across_[0], across_[1]);
     const std::optional<Rgb> colour = commonColour(medium);
     channels_ = colour ? 1 : 3;
     if (colour) colour_ = *colour;
 }
 
-void DepthGrid::layOut(double finest, std::size_t mostBytes) {
+Vec3d DepthGrid::lightFromWorld(Vec3d world) const {
+    const Vec3d p = world - origin_;
+    const Vec3d light{dot(p, across_[0]), dot(p, across_[1]), dot(p, towards_)};
+    if (!(middle_ > 0)) return light;
+    const double scale = middle_ / -light.z;
+    return {light.x * scale, light.y * scale, light.z};
+}
+
+Vec3d DepthGrid::worldFromLight(Vec3d light) const {
+    const double scale = middle_ > 0 ? -light.z / middle_ : 1;
+    return origin_ + across_[0] * (light.x * scale) + across_[1] * (light.y * scale) +
+           towards_ * light.z;
+}
+
+/// False: so much memory is too little.
+bool DepthGrid::layOut(std::size_t mostBytes) {
+    const double finest = finestDetail(*medium_);
+    if (!(finest > 0)) return false;  // a box without thickness
     const Box3d world = medium_->worldBounds();
     Box3d box;  // in light space
-    for (int i = 0; i < 8; ++i) {
-        const Vec3d p = world.corner(i) - world.lower;
-        box.add(Vec3d{dot(p, across_[0]), dot(p, across_[1]), dot(p, towards_)});
-    }
+    for (int i = 0; i < 8; ++i) box.add(lightFromWorld(world.corner(i)));
     const Vec3d size = box.size();
     // A flat medium has more lines than its volume says.
     const auto cells = [&](int axis) { return std::ceil(size[axis] * (1 + 1e-9) / spacing_); };
@@ -102,14 +133,14 @@ void DepthGrid::layOut(double finest, std::size_t mostBytes) {
     spacing_ = voxelsToNode * finest;
     while (bytes() > static_cast<double>(mostBytes) && spacing_ <= coarsest * finest)
         spacing_ *= coarser;
-    if (!(spacing_ <= coarsest * finest)) return;
+    if (!(spacing_ <= coarsest * finest)) return false;
     for (int i = 0; i < 2; ++i) columnCount_[i] = static_cast<int>(columns(i));
     length_ = static_cast<int>(std::max(1.0, cells(2))) + 1;
     perSpacing_ = 1 / spacing_;
-    base_ =
-        world.lower + across_[0] * box.lower.x + across_[1] * box.lower.y + towards_ * box.lower.z;
+    base_ = box.lower;
     columns_ = std::make_unique<std::atomic<float*>[]>(static_cast<std::size_t>(columnCount_[0]) *
                                                        static_cast<std::size_t>(columnCount_[1]));
+    return true;
 }
 
 std::size_t DepthGrid::bytesOfAll() const {
@@ -124,29 +155,36 @@ DepthGrid::~DepthGrid() {
 }
 
 DepthGrid::Place DepthGrid::find(Vec3d world) const {
-    const Vec3d p = (world - base_) * perSpacing_;
+    const Vec3d p = (lightFromWorld(world) - base_) * perSpacing_;
     const auto place = [](double x, int cells, int& cell) {
         const double inside = std::clamp(x, 0.0, static_cast<double>(cells));
         cell = std::min(static_cast<int>(inside), cells - 1);
         return static_cast<float>(inside - cell);
     };
     int i, j, k;
-    const float u = place(dot(p, across_[0]), columnCount_[0] * columnCells, i);
-    const float v = place(dot(p, across_[1]), columnCount_[1] * columnCells, j);
-    const float w = place(dot(p, towards_), length_ - 1, k);
+    const float u = place(p.x, columnCount_[0] * columnCells, i);
+    const float v = place(p.y, columnCount_[1] * columnCells, j);
+    const float w = place(p.z, length_ - 1, k);
     return {nodes(i, j, k), u, v, w};
 }
 
 Affine3d DepthGrid::latticeFromWorld() const {
-    const Vec3d axes[3] = {across_[0] * perSpacing_, across_[1] * perSpacing_,
-                           towards_ * perSpacing_};
+    Vec3d axes[3] = {across_[0], across_[1], towards_};
+    double base[3] = {base_.x, base_.y, base_.z};
+    if (middle_ > 0)  // the distance of the lamp's plane is -dot(p, towards_)
+        for (int i = 0; i < 2; ++i) axes[i] = axes[i] * middle_ + towards_ * base[i], base[i] = 0;
     Affine3d map;
     for (int row = 0; row < 3; ++row) {
         for (std::size_t column = 0; column < 3; ++column)
-            map.column[column][row] = axes[row][static_cast<int>(column)];
-        map.translation[row] = -dot(axes[row], base_);
+            map.column[column][row] = axes[row][static_cast<int>(column)] * perSpacing_;
+        map.translation[row] = -(dot(axes[row], origin_) + base[row]) * perSpacing_;
     }
     return map;
+}
+
+std::array<double, 2> DepthGrid::perspective() const {
+    if (!(middle_ > 0)) return {1, 0};
+    return {-base_.z, -spacing_};
 }
 
 DepthGrid::Depth DepthGrid::read(const Place& place, int channel) const {
@@ -173,8 +211,7 @@ const float* DepthGrid::makeColumn(std::size_t index) const {
     const auto second = static_cast<double>(index / across * columnCells);
     for (int j = 0; j < columnNodes; ++j)
         for (int i = 0; i < columnNodes; ++i)
-            fillLine(base_ + across_[0] * ((first + i) * spacing_) +
-                         across_[1] * ((second + j) * spacing_),
+            fillLine(first + i, second + j,
                      &nodes[static_cast<std::size_t>(j * columnNodes + i) * lineFloats()]);
     bytesMade_ += floats * sizeof(float);
     columns_[index].store(nodes.get(), std::memory_order_release);
@@ -183,12 +220,17 @@ const float* DepthGrid::makeColumn(std::size_t index) const {
 
 /// The nodes of one line: first the depth of each step, then their sums from the far end. A step
 /// is integrated by two points, which is quick and good enough for what is corrected.
-void DepthGrid::fillLine(Vec3d start, float* nodes) const {
+void DepthGrid::fillLine(double i, double j, float* nodes) const {
     const int steps = length_ - 1;
+    const auto node = [&](int k) {
+        return worldFromLight(base_ + Vec3d{i, j, static_cast<double>(k)} * spacing_);
+    };
+    const Vec3d start = node(0), step = node(1) - start;
+    const double spacing = length(step);
     std::vector<double> depth(static_cast<std::size_t>(length_ * channels_));
     for (const MediumPart& part : medium_->parts) {
         const Rgb sigma = channels_ == 1 ? Rgb(part.extinction().maximum()) : part.extinction();
-        integrateSteps(part, part.indexRay(start, towards_), steps, spacing_, channels_,
+        integrateSteps(part, part.indexRay(start, step * (1 / spacing)), steps, spacing, channels_,
                        [&](int k, int c, double integral) {
                            depth[static_cast<std::size_t>(k * channels_ + c)] +=
                                integral * double{sigma[c]};
@@ -197,9 +239,9 @@ void DepthGrid::fillLine(Vec3d start, float* nodes) const {
     for (int c = 0; c < channels_; ++c) {
         double sum = 0;
         for (int k = steps; k >= 0; --k) {
-            const auto i = static_cast<std::size_t>(k * channels_ + c);
-            sum += depth[i];
-            nodes[i] = static_cast<float>(std::min(sum, deepestStored));
+            const auto at = static_cast<std::size_t>(k * channels_ + c);
+            sum += depth[at];
+            nodes[at] = static_cast<float>(std::min(sum, deepestStored));
         }
     }
 }

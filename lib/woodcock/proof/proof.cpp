@@ -79,7 +79,7 @@ const std::vector<Check>& checks() {
              {closedForms(),      singleScattering(), slabs(),       surfaces(),
               surfacesTogether(), roughSurfaces(),    properties(),  sampling(),
               phaseFunctions(),   lightSampling(),    aimedPoints(), flatLights(),
-              lampsInFog(),       sunDepths(),        lanes(),       skies(),
+              lampsInFog(),       lightDepths(),      lanes(),       skies(),
               extremes(),         emission(),         motion(),      motionOfTransforms(),
               motionOfLights()})
             list.insert(list.end(), subject.begin(), subject.end());

@@ -15,9 +15,12 @@ namespace {
 /// directions; and nobody asks for more than the picture.
 bool hasEvenBackground(const Scene& scene, const Needs& needs, const PathTracer::Options& options) {
     const light::LightSet& lights = scene.lights;
-    if (needs.surfaces || needs.motion || scene.camera.motion || !lights.meetable().empty() ||
-        options.stoppedLight || options.layers.depthSamples() || options.layers.stops ||
-        options.layers.parts.count() > 0 || options.approximations.clamp > 0)
+    if (needs.surfaces || needs.motion || scene.camera.motion || options.stoppedLight ||
+        options.layers.depthSamples() || options.layers.stops || options.layers.parts.count() > 0 ||
+        options.approximations.clamp > 0)
+        return false;
+    if (std::ranges::any_of(lights.meetable(),
+                            [&](int light) { return lights.traits(light).visible; }))
         return false;
     return std::ranges::all_of(lights.distant(), [&](int light) {
         const light::LightTraits& traits = lights.traits(light);

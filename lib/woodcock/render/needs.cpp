@@ -26,11 +26,13 @@ Needs findNeeds(const Scene& scene) {
     n.motion |= scene.camera.motion || scene.lights.moves() ||
                 (scene.surfaces && scene.surfaces->geometry.moves());
     n.lightSampling |= (n.scattering || n.surfaces) && !scene.lights.sampled().empty();
-    const double reach = bounds.empty() ? 0 : length(bounds.size());
+    // Farther lights shine so evenly along a flight that where it ends will do.
+    constexpr double near = 0.1;
+    const double reach = bounds.empty() ? 0 : near * length(bounds.size());
     for (int i : scene.lights.local()) {
         const Vec3d p = *scene.lights.traits(i).position;
         n.localLights |=
-            n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) < reach;
+            n.scattering && length(p - max(bounds.lower, min(bounds.upper, p))) <= reach;
     }
     return n;
 }

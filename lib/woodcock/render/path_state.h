@@ -123,7 +123,7 @@ struct ShadowRay {
     float cameraDepth = -1;
     bool fromLamp = false;  ///< there
     /// Of the light that it goes to, where the scene has surfaces; null: it is tracked.
-    const medium::DepthGrid* sunDepth = nullptr;
+    const medium::DepthGrid* lightDepth = nullptr;
     Vec3d origin = {}, direction = {};  ///< of the second leg
     double tMax = 0;
     [[no_unique_address]] std::conditional_t<Surfaces, NestedMedia::RayStart, Nothing> start = {};

@@ -12,10 +12,10 @@
 #include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/camera_depths.h"
+#include "woodcock/render/light_depths.h"
 #include "woodcock/render/needs.h"
 #include "woodcock/render/radiance_lattice.h"
 #include "woodcock/render/scene.h"
-#include "woodcock/render/sun_depths.h"
 
 namespace woodcock::render {
 
@@ -58,7 +58,7 @@ public:
         bool stoppedLight = false;  ///< of tracked rays only; it changes nothing else
         const ApproximateMedia* approximateMedia =
             nullptr;                                 ///< made from `approximations`; null: no sets
-        const SunDepths* sunDepths = nullptr;        ///< null: shadow rays to suns are tracked
+        const LightDepths* lightDepths = nullptr;    ///< null: shadow rays to suns are tracked
         const CameraDepths* cameraDepths = nullptr;  ///< null: camera rays are walked
         const RadianceLattice* radiance = nullptr;   ///< null: nothing is known of it
         const EmptyPixels* emptyPixels = nullptr;    ///< null: paths are traced in all

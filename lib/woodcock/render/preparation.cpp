@@ -26,7 +26,7 @@ Preparation::Preparation(const Scene& scene, int width, int height,
       height_(height),
       approximations_(ofPreparation(approximations)),
       approximateMedia_(scene, approximations),
-      sunDepths_(scene, approximations, approximateMedia_),
+      lightDepths_(scene, approximations, approximateMedia_),
       cameraDepths_(CameraDepths::make(scene, width, height)),
       radianceLattice_(RadianceLattice::make(scene)) {}
 
@@ -38,16 +38,16 @@ bool Preparation::fits(const Scene& scene, int width, int height,
 
 void Preparation::fill(int threads, const std::function<bool()>& goOn) const {
     tbb::task_arena(threads > 0 ? threads : tbb::task_arena::automatic).execute([&] {
-        fillSunDepths(goOn), fillCameraDepths(goOn);
+        fillLightDepths(goOn), fillCameraDepths(goOn);
     });
 }
 
-void Preparation::fillSunDepths(const std::function<bool()>& goOn) const {
+void Preparation::fillLightDepths(const std::function<bool()>& goOn) const {
     const std::size_t sets = 1 + approximateMedia_.sets.size();
     for (std::size_t set = 0; set < sets; ++set)
         for (std::size_t light = 0; light < scene_.lights.lights().size(); ++light) {
             const medium::DepthGrid* grid =
-                sunDepths_.find(static_cast<std::uint8_t>(set), static_cast<int>(light));
+                lightDepths_.find(static_cast<std::uint8_t>(set), static_cast<int>(light));
             if (!grid) continue;
             const Vec3i cells = grid->cells();
             tbb::parallel_for(0, cells.y, [&](int j) {

@@ -7,10 +7,10 @@
 #include "woodcock/render/approximate_media.h"
 #include "woodcock/render/approximations.h"
 #include "woodcock/render/camera_depths.h"
+#include "woodcock/render/light_depths.h"
 #include "woodcock/render/radiance_lattice.h"
 #include "woodcock/render/scene.h"
 #include "woodcock/render/session.h"
-#include "woodcock/render/sun_depths.h"
 
 namespace woodcock::render {
 
@@ -30,21 +30,21 @@ public:
     void fill(int threads, const std::function<bool()>& goOn) const;
 
     const ApproximateMedia& approximateMedia() const { return approximateMedia_; }
-    const SunDepths& sunDepths() const { return sunDepths_; }
+    const LightDepths& lightDepths() const { return lightDepths_; }
     /// Null: camera rays are walked.
     const CameraDepths* cameraDepths() const { return cameraDepths_.get(); }
     /// Null: nothing is known of it.
     const RadianceLattice* radianceLattice() const { return radianceLattice_.get(); }
 
 private:
-    void fillSunDepths(const std::function<bool()>& goOn) const;
+    void fillLightDepths(const std::function<bool()>& goOn) const;
     void fillCameraDepths(const std::function<bool()>& goOn) const;
 
     const Scene& scene_;
     const int width_, height_;
     const Approximations approximations_;
     const ApproximateMedia approximateMedia_;
-    const SunDepths sunDepths_;
+    const LightDepths lightDepths_;
     const std::unique_ptr<const CameraDepths> cameraDepths_;
     const std::unique_ptr<const RadianceLattice> radianceLattice_;
 };

@@ -404,7 +404,7 @@ private:
                 .layers = settings_.layers,
                 .stoppedLight = state_.mattes || state_.deep,
                 .approximateMedia = &prepared_->approximateMedia(),
-                .sunDepths = &prepared_->sunDepths(),
+                .lightDepths = &prepared_->lightDepths(),
                 .cameraDepths = prepared_->cameraDepths(),
                 .radiance = prepared_->radianceLattice(),
                 .emptyPixels = emptyPixels_ ? &*emptyPixels_ : nullptr};

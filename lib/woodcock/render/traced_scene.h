@@ -32,7 +32,7 @@ struct TracedScene {
           cameraRays(s.camera, o.width, o.height),
           typicalRadiance(s.lights.typicalRadiance(s.bounds())),
           media(s, n, o.approximations, o.approximateMedia),
-          severalEvents(o.sunDepths && !media.replaces() && thickAndPeaked(media[0])) {
+          severalEvents(o.lightDepths && !media.replaces() && thickAndPeaked(media[0])) {
         if (!n.surfaces) return;
         surfaces.emplace(s);
         if (s.camera.kind == camera::Camera::Kind::Perspective && !s.camera.motion &&
@@ -64,8 +64,8 @@ struct TracedScene {
         return *media[media.number(mediumSet, 0)].medium;
     }
     /// The grid of a light's optical depth in a set of media; null: there is none.
-    const medium::DepthGrid* sunDepth(std::uint8_t mediumSet, int light) const {
-        return options.sunDepths ? options.sunDepths->find(mediumSet, light) : nullptr;
+    const medium::DepthGrid* lightDepth(std::uint8_t mediumSet, int light) const {
+        return options.lightDepths ? options.lightDepths->find(mediumSet, light) : nullptr;
     }
     /// Whether a path that has scattered so often may do so again.
     bool mayScatter(std::int64_t scatterings) const {

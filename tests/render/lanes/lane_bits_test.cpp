@@ -48,9 +48,9 @@ protected:
         for (const LaneSubjects::Named& kind : LaneSubjects::kinds()) {
             SCOPED_TRACE(kind.name);
             const Scene scene = subjects.scene(kind.text);
-            const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
+            const LightDepths depths(scene, {}, ApproximateMedia(scene, {}));
             PathTracer::Options options;
-            options.width = options.height = 8, options.seed = 7, options.sunDepths = &depths;
+            options.width = options.height = 8, options.seed = 7, options.lightDepths = &depths;
             const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
             options.cameraDepths = cameraDepths.get();
             const auto radiance = RadianceLattice::make(scene);

@@ -11,8 +11,8 @@
 #include "woodcock/base/temp_dir.h"
 #include "woodcock/proof/support/render_scene.h"
 #include "woodcock/proof/support/write_vdb.h"
+#include "woodcock/render/light_depths.h"
 #include "woodcock/render/path_tracer.h"
-#include "woodcock/render/sun_depths.h"
 
 namespace woodcock::test {
 
@@ -53,6 +53,11 @@ public:
     }
     static constexpr const char* air =
         "[[light]]\ntype = \"environment\"\nradiance = [0.3, 0.5, 0.7]\n";
+    static constexpr const char* lamp =
+        "[[light]]\ntype = \"point\"\nposition = [0.7, 3.5, 0.5]\nintensity = 30\n";
+    static constexpr const char* globe =
+        "[[light]]\ntype = \"sphere\"\nposition = [0.4, 4, -1]\nradius = 0.6\n"
+        "radiance = [9, 7, 5]\n";
     static constexpr const char* fire = "emission = { grid = \"heat\", scale = [8, 3, 1] }\n";
     static constexpr const char* turned =
         "transform = { translate = [0.3, 0.1, -0.2], rotate = [20, 40, 60] }\n";
@@ -77,6 +82,9 @@ public:
             {"absorbing", ball("sigma_s = 2\nsigma_a = 3\n") + sun() + air},
             {"fire", ball("sigma_s = 2\nsigma_a = 3\ng = 0.3\n" + std::string(fire)) + sun() + air},
             {"coloured fires", ball(coloured + fire) + ball(turned + cloud + fire) + air},
+            {"a lamp", ball(cloud) + lamp + air},
+            {"a globe", ball("sigma_s = 3\nsigma_a = 1\n") + globe + air},
+            {"lamps of parts", ball(cloud) + ball(turned + coloured) + globe + lamp + sun(1) + air},
             {"two suns", ball(coloured) + sun() + sun(1, 0.53) + air},
         };
     }

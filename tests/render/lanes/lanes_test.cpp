@@ -42,9 +42,9 @@ TEST_F(Lanes, EveryPathInAFurnaceBringsTheSame) {
             SCOPED_TRACE(testing::Message() << medium << (sun ? "with a sun" : ""));
             const Scene scene =
                 subjects.scene(S::ball(medium) + (sun ? S::sun(1e-15) : "") + furnace);
-            const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
+            const LightDepths depths(scene, {}, ApproximateMedia(scene, {}));
             PathTracer::Options options;
-            options.width = options.height = 10, options.sunDepths = &depths;
+            options.width = options.height = 10, options.lightDepths = &depths;
             const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
             options.cameraDepths = cameraDepths.get();
             const auto radiance = RadianceLattice::make(scene);
@@ -125,9 +125,9 @@ TEST_F(Lanes, KindsAndGroupsOfLightAreThoseOfPathsOneByOne) {
                                "sigma_s = [1, 0.7, 0.5]\nsigma_a = [0.1, 0.2, 0.5]\ng = 0.5\n"}) {
         SCOPED_TRACE(medium);
         const Scene scene = subjects.scene(S::ball(medium) + lights);
-        const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
+        const LightDepths depths(scene, {}, ApproximateMedia(scene, {}));
         PathTracer::Options options;
-        options.width = options.height = 6, options.sunDepths = &depths;
+        options.width = options.height = 6, options.lightDepths = &depths;
         options.layers.parts = {.kinds = true, .groups = {"sun", "air"}};
         const auto cameraDepths = CameraDepths::make(scene, options.width, options.height);
         options.cameraDepths = cameraDepths.get();
@@ -161,9 +161,9 @@ TEST_F(Lanes, PartsOfLightSumToEveryPaths) {
     const std::string lights = S::sun() + "group = \"sun\"\n" + S::air + "group = \"air\"\n";
     const Scene scene = subjects.scene(
         S::ball("sigma_s = [60, 40, 20]\nsigma_a = [0, 0.2, 1]\ng = 0.85\n") + lights);
-    const SunDepths depths(scene, {}, ApproximateMedia(scene, {}));
+    const LightDepths depths(scene, {}, ApproximateMedia(scene, {}));
     PathTracer::Options options;
-    options.width = options.height = 10, options.sunDepths = &depths;
+    options.width = options.height = 10, options.lightDepths = &depths;
     options.layers.parts = {.kinds = true, .groups = {"sun", "air"}};
     const std::vector<PathJob> jobs = jobsOf(10, 4);
     const std::size_t count = options.layers.parts.count();

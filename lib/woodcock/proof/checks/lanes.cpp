@@ -73,6 +73,18 @@ const std::string deltaSun = sun + "0\n", discSun = sun + "0.53\n";
 const std::string secondSun =
     "[[light]]\ntype = \"sun\"\ndirection = [0.5, -0.1, -0.8]\nirradiance = [1, 2, 3]\n";
 const std::string air = "[[light]]\ntype = \"environment\"\nradiance = [0.3, 0.5, 0.7]\n";
+const std::string pointLamp =
+    "[[light]]\ntype = \"point\"\nposition = [0.7, 2.1, 0.5]\nintensity = [9, 6, 4]\n";
+const std::string spotLamp =
+    "[[light]]\ntype = \"spot\"\nposition = [-1.9, 0.4, 0.6]\nintensity = [5, 7, 9]\n"
+    "look_at = [0, 0.1, 0]\ncone = 60\nblend = 0.3\n";
+const std::string sphereLamp =
+    "[[light]]\ntype = \"sphere\"\nposition = [0.4, 2.9, -1.2]\nradius = 0.6\n"
+    "radiance = [9, 7, 5]\n";
+/// It faces the medium from behind, and can be seen beside and through it.
+const std::string panel =
+    "[[light]]\ntype = \"rectangle\"\nposition = [0.5, 0.2, -3]\ndirection = [0, 0, 1]\n"
+    "size = [2, 1]\nradiance = [4, 6, 10]\nvisible = true\n";
 const std::string hidden = "visible = false\n";
 const std::string coloured = "sigma_s = [4, 2, 0.5]\nsigma_a = [0.1, 0.5, 1.5]\ng = 0.5\n";
 const std::string turned =
@@ -249,6 +261,42 @@ std::vector<Subject> glowingSubjects() {
     };
 }
 
+/// Lamps outside of the medium. In some, one of them takes the place of the sun.
+std::vector<Subject> lampSubjects() {
+    const std::string thin = ball + mediumOf(1, 0.3, "g = 0.3"),
+                      cloud = ball + mediumOf(60, 0, "g = 0.85"),
+                      deep = ball + "sigma_s = [60, 40, 20]\nsigma_a = [0, 0.5, 4]\ng = 0.7\n";
+    const std::string elsewhere =
+        ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
+        "[[light]]\ntype = \"point\"\nposition = [-1.5, 1.8, 0]\nintensity = 3\n" + air;
+    return {
+        {"by a lamp, thin", thin + pointLamp + air},
+        {"by a lamp, thick", cloud + pointLamp + air, 0.5},
+        {"by a lamp alone, chromatic", deep + pointLamp, 20},
+        {"by a lamp, by a grid for another one of thrice the density",
+         thin + pointLamp + air,
+         6,
+         {},
+         true,
+         elsewhere},
+        {"by a spot, chromatic", deep + spotLamp + air, 2},
+        {"by a sphere, thin", thin + sphereLamp + air},
+        {"by a sphere, thick", cloud + sphereLamp + air, 0.5},
+        {"by a panel that is seen, thin", thin + panel + air},
+        {"by a panel that is seen, thick", cloud + panel + air, 0.5},
+        {"by several lamps", thin + pointLamp + spotLamp + sphereLamp + panel + air},
+        {"by several lamps, thick", deep + panel + sphereLamp + pointLamp + air},
+        {"by a sun and lamps", cloud + deltaSun + pointLamp + sphereLamp + air, 0.5},
+        {"by a lamp and an image", thin + pointLamp + twoColouredSky},
+        {"by a lamp, turned, of two parts",
+         ball + turned + mediumOf(20, 0.1, "g = 0.6") + ball + coloured + sphereLamp + air, 0.5},
+        {"by a lamp, of Rayleigh",
+         ball + mediumOf(5, 0.1, "phase = { type = \"rayleigh\" }") + pointLamp + air},
+        {"by a lamp, that glows",
+         thin + "emission = { grid = \"heat\", scale = [4, 2, 0.5] }\n" + sphereLamp + air},
+    };
+}
+
 void compare(Lab& lab, const std::vector<Subject>& subjects) {
     writeVdb(lab.file("ball.vdb"), {raggedBall(), heat()});
     writeVdb(lab.file("tile.vdb"), {wideTile()});
@@ -262,9 +310,9 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
         };
         const render::Scene scene = seen(subject.text);
         const render::Scene other = seen(subject.gridOf.empty() ? subject.text : subject.gridOf);
-        const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
+        const render::LightDepths depths(other, {}, render::ApproximateMedia(other, {}));
         SmallPicture picture{
-            .samples = 1, .maxScatterings = subject.maxScatterings, .sunDepths = &depths};
+            .samples = 1, .maxScatterings = subject.maxScatterings, .lightDepths = &depths};
         const auto cameraDepths = render::CameraDepths::make(other, picture.side, picture.side);
         picture.cameraDepths = cameraDepths.get();
         const render::Scene elsewhere =
@@ -304,7 +352,9 @@ std::vector<Check> lanes() {
             {Kind::Sampling, "lanes in all kinds of media",
              [](Lab& lab) { compare(lab, otherSubjects()); }},
             {Kind::Sampling, "lanes in media that glow",
-             [](Lab& lab) { compare(lab, glowingSubjects()); }}};
+             [](Lab& lab) { compare(lab, glowingSubjects()); }},
+            {Kind::Sampling, "lanes in the light of lamps",
+             [](Lab& lab) { compare(lab, lampSubjects()); }}};
 }
 
 }  // namespace woodcock::proof

@@ -21,7 +21,7 @@ std::vector<Check> lightSampling();
 std::vector<Check> aimedPoints();
 std::vector<Check> flatLights();
 std::vector<Check> lampsInFog();
-std::vector<Check> sunDepths();
+std::vector<Check> lightDepths();
 std::vector<Check> lanes();
 std::vector<Check> skies();
 std::vector<Check> extremes();

@@ -15,7 +15,7 @@ render::PathTracer::Options optionsOf(const SmallPicture& picture) {
     render::PathTracer::Options options;
     options.width = options.height = picture.side;
     options.maxScatterings = picture.maxScatterings;
-    options.lanes = picture.lanes, options.sunDepths = picture.sunDepths;
+    options.lanes = picture.lanes, options.lightDepths = picture.lightDepths;
     options.cameraDepths = picture.cameraDepths;
     options.radiance = picture.radiance;
     return options;

@@ -7,9 +7,9 @@
 
 #include "woodcock/base/statistics.h"
 #include "woodcock/render/camera_depths.h"
+#include "woodcock/render/light_depths.h"
 #include "woodcock/render/radiance_lattice.h"
 #include "woodcock/render/scene.h"
-#include "woodcock/render/sun_depths.h"
 
 namespace woodcock::proof {
 
@@ -18,7 +18,7 @@ struct SmallPicture {
     int side = 6, samples = 4;
     std::optional<int> maxScatterings{};
     bool lanes = true;                                   ///< see PathTracer::Options
-    const render::SunDepths* sunDepths = nullptr;        ///< the same
+    const render::LightDepths* lightDepths = nullptr;    ///< the same
     const render::CameraDepths* cameraDepths = nullptr;  ///< the same
     const render::RadianceLattice* radiance = nullptr;   ///< the same
 };

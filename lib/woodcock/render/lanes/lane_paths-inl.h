@@ -109,6 +109,14 @@ void LaneTracer<N>::leave(std::size_t lane) {
         bring(batch_, p, arrived, kind, lights.group(light));
         if (first) p.result->film.background += arrived;
     }
+    if (first) return;  // addLightHits() has added the lamps that camera rays meet
+    for (const int light : lights.meetable()) {
+        const light::LightHit hit = lights.meet(light, p.from.position, p.direction);
+        if (std::isfinite(hit.distance))
+            bring(batch_, p,
+                  toRgb(p.throughput) * hit.radiance * static_cast<float>(hitWeight(lane, light)),
+                  kindOfLight(p, 0), lights.group(light));
+    }
 }
 
 /// The weight, by multiple importance sampling, of a light that a scattered path meets.
@@ -170,10 +178,11 @@ void LaneTracer<N>::endBranch(std::size_t lane) {
     l.phase = b.phase, g_[lane] = phaseOf(lane).g;
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = b.direction[i];
     if (scene_.radiance) findExpected(1u << lane);
+    turnToLamp(1u << lane);
     setLane(w_, lane, b.throughput), setLane(predicted_, lane, b.predicted);
     share_[lane] = 1;
     l.scatterings -= b.scatterings;  // they are the first branch's too
-    p.scatterings = b.scatterings, p.alive = true;
+    p.scatterings = b.scatterings, p.alive = true, p.from = b.from;
     l.first = l.quasiRandom = false;
     if (several_) l.position = positionOf(lane);
     if (--b.copies == 0) l.branches.pop_back();

@@ -189,7 +189,7 @@ bool LaneTracer<N>::keepWindow(std::size_t lane, float target) {
     take(lane, b.vertex);
     for (std::size_t i = 0; i < 3; ++i) b.direction[i] = v_[i][lane];
     b.set = l.set, b.part = l.part, b.phase = l.phase, b.scatterings = p.scatterings,
-    b.copies = copies - 1;
+    b.copies = copies - 1, b.from = p.from;
     b.throughput = throughputOf(lane), b.predicted = laneOf(predicted_, lane);
     return true;
 }
@@ -313,7 +313,7 @@ void LaneTracer<N>::flySeveralTimes(std::size_t lane, int more, float depth) {
         std::min(more, static_cast<int>(std::exp(-depth) * static_cast<float>(l.flights)));
     share_[lane] = 1.0f / static_cast<float>(l.flights);
     take(lane, l.start);
-    l.startSet = l.set, l.startPart = l.part;
+    l.startSet = l.set, l.startPart = l.part, l.startFrom = pathOf(lane).from;
     for (std::size_t i = 0; i < 3; ++i) l.direction[i] = v_[i][lane];
     l.throughput = throughputOf(lane), l.chance = laneOf(chance_, lane);
     flyAgain(lane);
@@ -336,7 +336,7 @@ template <int N>
 void LaneTracer<N>::endExtra(std::size_t lane) {
     Lane& l = lanes_[lane];
     l.set = l.startSet, l.part = l.startPart;
-    pathOf(lane).mediumSet = l.set;
+    pathOf(lane).mediumSet = l.set, pathOf(lane).from = l.startFrom;
     put(lane, l.start);
     scatterIn(lane);
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = l.direction[i];

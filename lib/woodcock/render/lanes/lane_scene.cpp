@@ -72,8 +72,11 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
     const Needs& needs = traced.needs;
     if (!traced.options.lanes || needs.surfaces || needs.localLights || needs.motion ||
         !needs.scattering || traced.options.approximations.marchStep > 0 ||
-        traced.media.phasesOfSetOnward() || !traced.scene.lights.meetable().empty())
+        traced.media.phasesOfSetOnward())
         return {};
+    // Rays that leave the medium meet lamps behind it; these are surely outside of it.
+    for (const int light : traced.scene.lights.meetable())
+        if (!traced.lightDepth(0, light)) return {};
     const auto& parts = traced.scene.medium.parts;
     if (parts.empty() || parts.size() > mostParts || !std::ranges::all_of(parts, canBeWalked))
         return {};
@@ -101,7 +104,8 @@ std::optional<LaneScene> LaneScene::make(const TracedScene& traced) {
 }
 
 void LaneScene::addCameraDepths() {
-    if (!others.empty()) return;  // what waits for a shadow ray cannot be corrected any more
+    // What waits for a shadow ray cannot be corrected any more.
+    if (!std::ranges::all_of(others, [&](int light) { return hasDepths(light); })) return;
     cameraDepths = traced.options.cameraDepths;
     if (!cameraDepths) return;
     Rgb scattering, extinction;
@@ -115,22 +119,16 @@ void LaneScene::addCameraDepths() {
 
 void LaneScene::addLights() {
     const light::LightSet& lights = traced.scene.lights;
-    for (const int light : lights.sampled()) {
-        if (sun < 0 && traced.sunDepth(0, light) &&
-            (!traced.media.replaces() || traced.sunDepth(1, light)))
-            sun = light;
-        else if (!light::isEven(lights, light))
-            others.push_back(light);
-    }
+    findSun();
+    for (const int light : lights.sampled())
+        if (light != sun && !light::isEven(lights, light)) others.push_back(light);
     if (sun >= 0) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const std::size_t set = i / partCount;
-            sunDepths[set] = traced.sunDepth(static_cast<std::uint8_t>(set), sun);
+            sunDepths[set] = traced.lightDepth(static_cast<std::uint8_t>(set), sun);
             parts[i].setLattice(parts[i].latticeFromIndex, sunDepths[set]->latticeFromWorld());
         }
-        delta = !lights.traits(sun).distant;
-        centre = lights.sample(sun, {}, 0, 0);
-        centre.direction = *lights.traits(sun).parallel;
+        delta = !(centre.pdf > 0);
     }
     bool seen = true;
     for (const int light : lights.distant()) {
@@ -141,6 +139,35 @@ void LaneScene::addLights() {
     }
     const auto absorbs = [](const LanePart& part) { return part.part->absorption().maximum() > 0; };
     controlsCameraFlights = seen && (traced.needs.chromatic || std::ranges::any_of(parts, absorbs));
+}
+
+/// The first sun; where there are none, the lamp that is brightest in the medium's middle.
+void LaneScene::findSun() {
+    const light::LightSet& lights = traced.scene.lights;
+    const auto candidates = lights.sampled();
+    const bool suns = std::ranges::any_of(
+        candidates, [&](int light) { return lights.traits(light).parallel.has_value(); });
+    const Vec3d middle = traced.mediumOfSet(0).worldBounds().centre();
+    for (const int light : candidates) {
+        const light::LightTraits& traits = lights.traits(light);
+        if (!hasDepths(light) || traits.parallel.has_value() != suns) continue;
+        const light::LightSample there = sunlight(light, middle);
+        if (!(there.weight.maximum() > (suns ? 0 : centre.weight.maximum()))) continue;
+        sun = light, centre = there, lamp = !suns;
+        if (suns) return;
+    }
+}
+
+bool LaneScene::hasDepths(int light) const {
+    return traced.lightDepth(0, light) && (!traced.media.replaces() || traced.lightDepth(1, light));
+}
+
+light::LightSample LaneScene::sunlight(int light, Vec3d world) const {
+    const light::LightSet& lights = traced.scene.lights;
+    const light::LightTraits& traits = lights.traits(light);
+    light::LightSample s = lights.sample(light, world, 0.5, 0.5);
+    s.direction = traits.parallel ? *traits.parallel : normalize(*traits.position - world);
+    return s;
 }
 
 void LaneScene::addRadiance() {

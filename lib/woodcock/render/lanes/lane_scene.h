@@ -35,12 +35,15 @@ struct LaneScene {
     /// Of the scene's own medium, and then as many of the one that similarity uses in its place.
     std::vector<LanePart> parts;
     std::size_t partCount = 0;  ///< of one medium
-    /// The grids, of each medium, of the optical depth to a sun, which every scattering samples;
-    /// null: there is none.
+    /// The grids, of each medium, of the optical depth to the sun, which every scattering samples;
+    /// null: there is none. The sun is a light of type sun, or a lamp outside of the medium.
     std::array<const medium::DepthGrid*, 2> sunDepths{};
     int sun = -1;
-    bool delta = false;         ///< the sun has no disc
-    light::LightSample centre;  ///< of the sun: its direction and irradiance
+    bool lamp = false;          ///< its direction and irradiance differ from place to place
+    bool delta = false;         ///< it has no disc
+    light::LightSample centre;  ///< its direction and irradiance; a lamp's in the medium's middle
+
+    light::LightSample sunAt(Vec3d world) const { return lamp ? sunlight(sun, world) : centre; }
     /// Other lights that are sampled, one for each scattering: not the environments that are so
     /// even that paths find their light well enough where they leave.
     std::vector<int> others;
@@ -71,6 +74,10 @@ struct LaneScene {
 private:
     explicit LaneScene(const TracedScene& t) : traced(t) {}
     void addLights();
+    void findSun();
+    bool hasDepths(int light) const;  ///< of all media
+    /// The irradiance of a sun or lamp at a place, by one sample, and its direction there.
+    light::LightSample sunlight(int light, Vec3d world) const;
     void addRadiance();
     void addCameraDepths();
 };

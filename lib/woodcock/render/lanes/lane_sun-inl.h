@@ -36,15 +36,20 @@ struct LaneTracer<N>::SunDepths {
 
 template <int N>
 typename LaneTracer<N>::SunDepths LaneTracer<N>::readSunDepths(std::uint32_t bits) {
-    F at[3], within[3];
+    F at[3], x[3], within[3];
     for (int i = 0; i < 3; ++i)
         at[i] = hn::ConvertTo(lanesF, corner_[i].get() - low_[i].get()) + u_[i].get();
+    for (int i = 0; i < 3; ++i)
+        x[i] = at[0] * lattice_[i][0].get() + at[1] * lattice_[i][1].get() +
+               at[2] * lattice_[i][2].get() + lattice_[i][3].get();
+    if (scene_.lamp) {
+        const F perDistance = all(1) / (perspective_[0].get() + x[2] * perspective_[1].get());
+        x[0] = x[0] * perDistance, x[1] = x[1] * perDistance;
+    }
     Ints cell[3];
     for (int i = 0; i < 3; ++i) {
-        const F x = at[0] * lattice_[i][0].get() + at[1] * lattice_[i][1].get() +
-                    at[2] * lattice_[i][2].get() + lattice_[i][3].get();
         const I cells = latticeCells_[i].get();
-        const F inside = hn::Max(hn::Zero(lanesF), hn::Min(hn::ConvertTo(lanesF, cells), x));
+        const F inside = hn::Max(hn::Zero(lanesF), hn::Min(hn::ConvertTo(lanesF, cells), x[i]));
         const I whole = hn::Min(hn::ConvertTo(lanesI, inside), cells - hn::Set(lanesI, 1));
         cell[i].set(whole);
         within[i] = inside - hn::ConvertTo(lanesF, whole);
@@ -86,12 +91,21 @@ typename LaneTracer<N>::SunDepths LaneTracer<N>::readSunDepths(std::uint32_t bit
     return depths;
 }
 
+/// Where the sun is a lamp: finds where it is from the lanes' positions, and how much light comes.
+template <int N>
+void LaneTracer<N>::turnToLamp(std::uint32_t bits) {
+    if (!scene_.lamp) return;
+    forEachLane(bits, [&](std::size_t i) {
+        const light::LightSample s = scene_.sunAt(positionOf(i));
+        for (int k = 0; k < 3; ++k) toSun_[k][i] = static_cast<float>(s.direction[k]);
+        sunScale_[i] = s.weight.maximum() / scene_.centre.weight.maximum();
+    });
+}
+
 /// Henyey and Greenstein's phase function from the lanes' directions to the sun's centre.
 template <int N>
 F LaneTracer<N>::phaseTowardsSun(F g) const {
-    const Vec3d sun = scene_.centre.direction;
-    const V3 s = {all(static_cast<float>(sun.x)), all(static_cast<float>(sun.y)),
-                  all(static_cast<float>(sun.z))};
+    const V3 s = {toSun_[0].get(), toSun_[1].get(), toSun_[2].get()};
     const V3 v = {v_[0].get(), v_[1].get(), v_[2].get()};
     const V3 apart = v - s, together = v + s;
     // Their squares are 2 (1 - cosine) and 2 (1 + cosine), without cancellation.
@@ -107,7 +121,8 @@ template <int N>
 Rgb LaneTracer<N>::sampleSun(std::size_t lane) {
     const std::array<double, 2>& u = numbers_[lane].light;
     const light::LightSample s =
-        scene_.delta ? scene_.centre : traced_.scene.lights.sample(scene_.sun, {}, u[0], u[1]);
+        scene_.delta ? scene_.sunAt(positionOf(lane))
+                     : traced_.scene.lights.sample(scene_.sun, positionOf(lane), u[0], u[1]);
     const medium::PhaseFunction& phase = phaseOf(lane).part->phase();
     const double cosine = dot(directionOf(lane), s.direction);
     Rgb light = s.weight;
@@ -127,6 +142,7 @@ Rgb LaneTracer<N>::sampleSun(std::size_t lane) {
 /// has it. Returns the optical depths to the sun, of the channel that has the least.
 template <int N>
 F LaneTracer<N>::addSunlight(std::uint32_t lit) {
+    turnToLamp(lit);
     const SunDepths depths = readSunDepths(lit);
     F least = depths.least[0], depth = depths.depth[0];
     for (int c = 1; c < N; ++c)
@@ -138,7 +154,8 @@ F LaneTracer<N>::addSunlight(std::uint32_t lit) {
     };
     // The largest channel of what arrives where nothing is in its way.
     Floats light;
-    light.set(phaseTowardsSun(g_.get()) * all(scene_.centre.weight.maximum()) * share_.get());
+    light.set(phaseTowardsSun(g_.get()) * all(scene_.centre.weight.maximum()) * sunScale_.get() *
+              share_.get());
     forEachLane(shallow, [&](std::size_t i) {
         if (!inVectors(i)) light[i] = sampleSun(i).maximum();
     });
@@ -147,8 +164,9 @@ F LaneTracer<N>::addSunlight(std::uint32_t lit) {
     for (int c = 0; c < N; ++c) {
         passes[c].set(hn::IfThenZeroElse(deep, decay(depths.depth[c])));
         // About half of the difference of the transmittances at the nodes.
-        const F unsure = decay(depths.least[c]) *
-                         hn::Min(all(0.5f), all(0.5f) * (depths.most[c] - depths.least[c]));
+        const F unsure =
+            decay(depths.least[c]) *
+            hn::Min(all(0.5f), all(0.5f) * blur_.get() * (depths.most[c] - depths.least[c]));
         const F weight = w_[c].get() * light.get() * all(1 / traced_.typicalRadiance);
         probability = hn::Max(probability, hn::IfThenZeroElse(deep, weight * unsure));
     }
@@ -176,7 +194,8 @@ void LaneTracer<N>::bringSunlight(std::size_t lane, Rgb light, Spectrum<N> passe
                                   float corrected) {
     if (!(light.maximum() > 0)) return;
     if (corrected > 0) {
-        const Vec3d towards = scene_.delta ? scene_.centre.direction : sunDirection_[lane];
+        const Vec3d towards =
+            scene_.delta ? scene_.sunAt(positionOf(lane)).direction : sunDirection_[lane];
         medium::TrackingCounters counters;
         const Spectrum<N> exact = medium::exactTransmittance<N>(
             traced_.mediumOfSet(lanes_[lane].set), positionOf(lane), towards, counters);
@@ -204,11 +223,13 @@ void LaneTracer<N>::predictNextEvent(std::uint32_t lit, const SunDepths& depths)
         bits |= std::uint32_t{predicts} << i;
     });
     const Mask predicts = maskOf(bits);
+    const F scale = sunScale_.get();
     const F phase = phaseTowardsSun(g_.get() * g_.get());
     for (int c = 0; c < N; ++c) {
         const F depth = depths.depth[c];
-        const F expected = hn::IfThenElseZero(
-            depth < all(predictedTo), w_[c].get() * albedo_[c].get() * depth * decay(depth));
+        const F expected =
+            hn::IfThenElseZero(depth < all(predictedTo),
+                               w_[c].get() * albedo_[c].get() * scale * depth * decay(depth));
         predicted_[c].set(predicts, expected);
         prediction_[c].set(predicts, prediction_[c].get() + expected * phase);
     }

@@ -67,7 +67,11 @@ public:
           batch_(batch),
           emission_(scene, batch),
           several_(scene.partCount > 1),
-          samplesLights_(!scene.others.empty() || (scene.sun >= 0 && !scene.delta)) {}
+          samplesLights_(!scene.others.empty() || (scene.sun >= 0 && !scene.delta)) {
+        const Vec3d sun = scene.centre.direction;
+        for (int i = 0; i < 3; ++i) toSun_[i].set(all(static_cast<float>(sun[i])));
+        sunScale_.set(all(1));
+    }
 
     void run() {
         for (std::size_t lane = 0; lane < laneCount; ++lane) nextPath(lane);
@@ -103,6 +107,7 @@ private:
     /// Copies of a path that wait at a scattering until the one before them has ended.
     struct Branch {
         Process vertex;
+        light::ScatterPoint from;  ///< PathState::from
         std::uint8_t set;
         std::size_t part, phase;
         std::array<float, 3> direction;
@@ -140,6 +145,7 @@ private:
         int flights = 1, extraLeft = 0, ownStratum = 0;
         float ownDepth = 0;
         Process start;
+        light::ScatterPoint startFrom;  ///< PathState::from
         std::uint8_t startSet = 0;
         std::size_t startPart = 0;
         std::array<float, 3> direction;
@@ -225,6 +231,7 @@ private:
     void noteDecision(int c, Mask colliding, Mask scatters, F scattering, F null, F after, F phase);
 
     // ---- lane_sun-inl.h
+    void turnToLamp(std::uint32_t bits);
     struct SunDepths;
     SunDepths readSunDepths(std::uint32_t bits);
     F phaseTowardsSun(F g) const;
@@ -279,8 +286,11 @@ private:
     // Of the part that walks:
     Ints low_[3]{}, high_[3]{}, latticeCells_[3]{};
     Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
-    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, cells_[3][4]{}, sunColour_[N]{},
-        albedo_[N]{};
+    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, perspective_[2]{}, blur_{},
+        cells_[3][4]{}, sunColour_[N]{}, albedo_[N]{};
+    // The direction to the sun, and its irradiance as a multiple of LaneScene::centre's. A lamp's
+    // are those where the path has scattered last.
+    Floats toSun_[3]{}, sunScale_{};
     // The radiance that a path is expected to bring from far away: going anywhere, and by how much
     // more along each axis. And the irradiance of the sun there.
     Floats expected_[N]{}, expectedAhead_[N][3]{}, expectedSun_[N]{};

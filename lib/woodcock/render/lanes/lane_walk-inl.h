@@ -117,6 +117,9 @@ void LaneTracer<N>::loadMatter(std::size_t lane, std::size_t number) {
     if (!grid) return;
     setLane(sunColour_, lane,
             grid->channels() == 1 ? channels<N>(grid->colour()) : Spectrum<N>(1.0f));
+    for (std::size_t i = 0; i < 2; ++i)
+        perspective_[i][lane] = static_cast<float>(grid->perspective()[i]);
+    blur_[lane] = grid->blur();
     for (int i = 0; i < 3; ++i) {
         latticeCells_[i][lane] = grid->cells()[i];
         for (int k = 0; k < 4; ++k) lattice_[i][k][lane] = part.latticeFromIndex[i][k];

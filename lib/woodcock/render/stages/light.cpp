@@ -60,7 +60,7 @@ void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_
     double weight = phase / chosen.probability;
     if (s.pdf > 0) weight *= powerHeuristic(s.pdf * chosen.probability, phase);
     weight *= share(lights, chosen.light);
-    const medium::DepthGrid* const depths = traced.sunDepth(p.mediumSet, chosen.light);
+    const medium::DepthGrid* const depths = traced.lightDepth(p.mediumSet, chosen.light);
     if (!Surfaces && depths) {
         const Rgb light = s.weight * tint(p) * (static_cast<float>(weight) * p.sunShare);
         bringSunlight(traced, batch, p, *depths, s.direction, light,
@@ -70,7 +70,7 @@ void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_
     if (addShadowRay(traced, batch, i, p.from.position, s.direction, s.distance,
                      s.weight * static_cast<float>(weight), true)) {
         batch.shadows.back().emitter = s.emitter;
-        if constexpr (Surfaces) batch.shadows.back().sunDepth = depths;
+        if constexpr (Surfaces) batch.shadows.back().lightDepth = depths;
         noteOrigin(batch, lights.group(chosen.light, s.emitter), 1);
     }
 }
@@ -80,7 +80,7 @@ void addSunlight(const TracedScene& traced, Batch<N, false>& batch, std::size_t 
                  const EventNumbers& u) {
     PathState<N, false>& p = batch.paths[i];
     const auto chosen = batch.choice.choose(p.from, u.pick);
-    if (!chosen || !traced.sunDepth(p.mediumSet, chosen->light)) return;
+    if (!chosen || !traced.lightDepth(p.mediumSet, chosen->light)) return;
     addSampled(traced, batch, i, *chosen, u, FlightShare());
 }
 

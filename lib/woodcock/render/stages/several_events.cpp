@@ -18,7 +18,7 @@ template <int N>
 float depthToSun(const TracedScene& traced, const PathState<N, false>& p) {
     float least = std::numeric_limits<float>::infinity();
     for (const int light : traced.scene.lights.sampled())
-        if (const medium::DepthGrid* grid = traced.sunDepth(p.mediumSet, light))
+        if (const medium::DepthGrid* grid = traced.lightDepth(p.mediumSet, light))
             for (const medium::DepthGrid::Depth& d : grid->at<N>(p.from.position))
                 least = std::min(least, d.depth);
     return least;

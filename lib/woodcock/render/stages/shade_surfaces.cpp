@@ -78,7 +78,7 @@ void lightSurface(const TracedScene& traced, Batch<N, true>& batch, std::size_t 
         return;
     noteOrigin(batch, traced.scene.lights.group(chosen->light, l.emitter), 1);
     ShadowRay<true>& ray = batch.shadows.back();
-    ray.emitter = l.emitter, ray.sunDepth = traced.sunDepth(p.mediumSet, chosen->light);
+    ray.emitter = l.emitter, ray.lightDepth = traced.lightDepth(p.mediumSet, chosen->light);
     if (dot(out, hit.normal) * dot(l.direction, hit.normal) < 0) ray.start.inside = crossing.beyond;
 }
 

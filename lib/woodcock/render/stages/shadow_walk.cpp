@@ -87,19 +87,18 @@ void followThroughSurfaces(const TracedScene& traced, Batch<N, true>& batch, std
     q.contribution *= passed.mean();
 }
 
-/// Brings the light of a sun whose optical depth is in a grid, where the ray meets no boundary: its
-/// only piece, the last that was added, goes through the outer medium to infinity. Nothing is left
-/// of it then.
+/// Brings the light of a sun or lamp whose optical depth is in a grid, where the ray meets no
+/// boundary: its only piece, the last that was added, goes through the outer medium all the way.
+/// Nothing is left of it then.
 template <int N>
 void arriveByGrid(const TracedScene& traced, Batch<N, true>& batch, std::size_t i,
                   medium::TrackingCounters& c) {
     const ShadowRay<true>& shadow = batch.shadows[i];
     medium::TransmittanceQuery<N>& q = batch.shadowQueries[i];
     const ShadowPiece piece = batch.pieces.back();
-    if (std::isfinite(piece.length) || piece.medium != traced.media.number(shadow.mediumSet, 0))
-        return;
+    if (piece.medium != traced.media.number(shadow.mediumSet, 0)) return;
     const Spectrum<N> passes = medium::correctedTransmittance<N>(
-        *traced.media[piece.medium].medium, *shadow.sunDepth, piece.origin, q.direction,
+        *traced.media[piece.medium].medium, *shadow.lightDepth, piece.origin, q.direction,
         q.contribution * (1 / traced.typicalRadiance), q.random, c);
     bring(batch, batch.paths[shadow.path], shadow.colour * toRgb(q.contribution * passes),
           shadow.kind, shadow.group, shadow.inFront);
@@ -117,7 +116,7 @@ void passSurfacesAndMedia(const TracedScene& traced, Batch<N, true>& batch,
     for (std::size_t i = 0; i < batch.shadows.size(); ++i) {
         const std::size_t pieces = batch.pieces.size();
         followThroughSurfaces(traced, batch, i);
-        if (batch.shadows[i].sunDepth && batch.pieces.size() == pieces + 1)
+        if (batch.shadows[i].lightDepth && batch.pieces.size() == pieces + 1)
             arriveByGrid(traced, batch, i, c);
     }
     for (std::size_t left = batch.pieces.size(); left > 0;) {

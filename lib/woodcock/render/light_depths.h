@@ -15,11 +15,11 @@ namespace woodcock::render {
 /// Grids of the optical depth from any point outside of all surfaces to the scene's suns, for the
 /// scene's own medium and those that approximations use in its place. Shared by all threads. What
 /// they hold decides how large the noise is, and never what is expected.
-class SunDepths {
+class LightDepths {
 public:
     /// The scene and the media must outlive this.
-    SunDepths(const Scene& scene, const Approximations& approximations,
-              const ApproximateMedia& media);
+    LightDepths(const Scene& scene, const Approximations& approximations,
+                const ApproximateMedia& media);
 
     /// For a set of media, as the MediaTable numbers them, and a light by its index. Null: there is
     /// none, and its shadow rays are tracked.
@@ -38,6 +38,6 @@ private:
 };
 
 /// Memory that the grids of a render of the scene take at most, in bytes.
-double bytesOfSunDepths(const Scene& scene, const Approximations& approximations);
+double bytesOfLightDepths(const Scene& scene, const Approximations& approximations);
 
 }  // namespace woodcock::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grids of the optical depth to suns: whatever they hold, the mean is right.
+// Grids of the optical depth to suns and lamps: whatever they hold, the mean is right.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,22 +42,26 @@ constexpr Wrong kinds[]{{"right", 1, {}},
                         {"of thrice the density", 3, {}},
                         {"moved by some voxels", 1, {1.3, -0.9, 2.1}}};
 
-/// The transmittance from points within, by brute force.
-void transmittances(Lab& lab) {
+/// The transmittance from points within, to a sun or to a lamp, by brute force.
+void transmittances(Lab& lab, bool toLamp) {
     const PlainMedium plain = clouds(1, {});
     const medium::Medium right = plain.medium();
-    const Vec3d towards = normalize(Vec3d{0.4, 0.8, -0.3});
+    const Vec3d sun = normalize(Vec3d{0.4, 0.8, -0.3});
     const Box3d box = right.worldBounds();
+    const Vec3d lamp = box.centre() + sun * (0.7 * length(box.size()));
     RandomStream places(lab.seed("places"));
     for (const Wrong& wrong : kinds) {
         const medium::Medium other = clouds(wrong.density, wrong.shift).medium();
-        const auto grid = medium::DepthGrid::make(other, towards, 1 << 24);
+        const auto grid =
+            toLamp ? medium::DepthGrid::makeForLamp(other, lamp + wrong.shift, 0, 1 << 24)
+                   : medium::DepthGrid::make(other, sun, 1 << 24);
         Moments excess[3];  // over what is expected, of all places
         double expected[3]{};
         constexpr int count = 40;
         for (int place = 0; place < count; ++place) {
             const Vec3d from = box.lower + box.size() * Vec3d{places.uniform(), places.uniform(),
                                                               places.uniform()};
+            const Vec3d towards = toLamp ? normalize(lamp - from) : sun;
             const Vec3d exact = plain.transmittance(from, towards, 2 * length(box.size()));
             RandomStream random(lab.seed(fmt::format("{} {}", wrong.what, place)));
             medium::TrackingCounters counters;
@@ -70,7 +74,8 @@ void transmittances(Lab& lab) {
         }
         for (int c = 0; c < 3; ++c) {
             Case one =
-                caseOf(fmt::format("transmittance by a grid that is {}, channel {}", wrong.what, c),
+                caseOf(fmt::format("transmittance to a {} by a grid that is {}, channel {}",
+                                   toLamp ? "lamp" : "sun", wrong.what, c),
                        expected[c], {expected[c] + excess[c].mean(), excess[c].standardError()},
                        {lab.pick(2e-2, 3e-3), 0});
             one.allowance = 1e-6;
@@ -85,30 +90,43 @@ struct Subject {
     double thickness, g;
     bool surfaces;
     int effort;  ///< one over it, against the others'
+    bool lamps = false;
 };
-/// In the last one, several next events are drawn near the suns.
+/// In thick clouds, several next events are drawn near the light.
 constexpr Subject subjects[]{{"of fog", 1, 0.5, false, 1},
                              {"with surfaces", 1, 0.5, true, 1},
-                             {"of a thick cloud", 20, 0.85, false, 9}};
+                             {"of a thick cloud", 20, 0.85, false, 9},
+                             {"of fog by lamps", 1, 0.5, false, 1, true},
+                             {"with surfaces by lamps", 1, 0.5, true, 1, true},
+                             {"of a thick cloud by lamps", 20, 0.85, false, 9, true}};
 
-/// Fog under a delta sun and a disc; with surfaces above a floor and around a glass ball.
+/// Fog under a delta sun and a disc, or under a spot and a sphere; with surfaces above a floor and
+/// around a glass ball.
 std::string foggyScene(const Subject& subject, double density, double shift) {
     const char* const solid =
         "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.4\n"
         "[[surface]]\nmaterial = \"glass\"\n"
         "sphere = { centre = [0.4, 0.5, 0.5], radius = 0.4 }\n"
         "[[surface]]\nplane = {}\ntransform = { translate = [0, -1, 0] }\n";
+    const char* const suns =
+        "[[light]]\ntype = \"sun\"\ndirection = [0.5, -1, -0.3]\nirradiance = [2, 1, 1]\n"
+        "[[light]]\ntype = \"sun\"\ndirection = [-0.2, -1, 0.3]\nirradiance = [0.5, 1, 2]\n"
+        "angular_diameter = 0.5\n";
+    const char* const lamps =
+        "[[light]]\ntype = \"spot\"\nposition = [-1, 3, 1]\nlook_at = [0, 0, 0]\n"
+        "intensity = [20, 10, 10]\ncone = 70\n"
+        "[[light]]\ntype = \"sphere\"\nposition = [2.5, 2, -1]\nradius = 0.4\n"
+        "radiance = [5, 10, 20]\n";
     return fmt::format(
         "[[volume]]\nbox = {{ min = [{1}, -1, -1], max = [{2}, 1.2, 1] }}\n"
         "sigma_a = [{3}, {4}, {5}]\nsigma_s = {6}\ng = {8}\n"
         "[[volume]]\nbox = {{ min = [-0.5, -0.2, -2], max = [0.4, 0.9, 0.3] }}\n"
         "transform = {{ translate = [{0}, 0, 0], rotate = [0, 30, 10] }}\nsigma_s = {6}\n"
-        "[[light]]\ntype = \"sun\"\ndirection = [0.5, -1, -0.3]\nirradiance = [2, 1, 1]\n"
-        "[[light]]\ntype = \"sun\"\ndirection = [-0.2, -1, 0.3]\nirradiance = [0.5, 1, 2]\n"
-        "angular_diameter = 0.5\n"
+        "{9}"
         "[camera]\neye = [0, 0.5, 5]\nlook_at = [0, 0, 0]\nfov = 30\n{7}",
         shift, -1 + shift, 1 + shift, 0.2 * density, 0.5 * density, density,
-        1.5 * density * subject.thickness, subject.surfaces ? solid : "", subject.g);
+        1.5 * density * subject.thickness, subject.surfaces ? solid : "", subject.g,
+        subject.lamps ? lamps : suns);
 }
 
 /// Mean radiance of a small picture by so many seeds.
@@ -121,11 +139,11 @@ void comparePictures(Lab& lab) {
         for (const Wrong& wrong : kinds) {
             const render::Scene other = sceneIn(
                 lab, foggyScene(subject, wrong.density, wrong.shift.x / (4 * subject.thickness)));
-            const render::SunDepths depths(other, {}, render::ApproximateMedia(other, {}));
+            const render::LightDepths depths(other, {}, render::ApproximateMedia(other, {}));
             const std::string name =
                 fmt::format("picture {} by a grid that is {}", subject.name, wrong.what);
             const auto means =
-                meansOf(scene, {.sunDepths = &depths}, lab.seed(name), seeds).radiance;
+                meansOf(scene, {.lightDepths = &depths}, lab.seed(name), seeds).radiance;
             for (std::size_t c = 0; c < 3; ++c) {
                 const double error =
                     std::hypot(means[c].standardError(), tracked[c].standardError());
@@ -141,8 +159,9 @@ void comparePictures(Lab& lab) {
 
 }  // namespace
 
-std::vector<Check> sunDepths() {
-    return {{Kind::Sampling, "transmittance by grids of depths", transmittances},
+std::vector<Check> lightDepths() {
+    return {{Kind::Sampling, "transmittance by grids of depths",
+             [](Lab& lab) { transmittances(lab, false), transmittances(lab, true); }},
             {Kind::Sampling, "pictures by grids of depths", comparePictures}};
 }
 
