@@ -11,6 +11,12 @@ Environment::Environment(EnvironmentMap map, Rgb scale, const Affine3d& worldFro
       lightFromWorld_(worldFromLight.inverse()),
       visible_(visible) {}
 
+Environment::Environment(EnvironmentMap::Sun sun, Rgb scale, const Affine3d& worldFromLight,
+                         bool visible)
+    : Environment(std::move(sun.map), scale, worldFromLight, visible) {
+    sun_ = normalize(worldFromLight.vector(sun.direction));
+}
+
 Rgb Environment::meanRadiance() const { return constant() ? scale_ : scale_ * map_.meanRadiance(); }
 
 Rgb Environment::radiance(Vec3d direction) const {

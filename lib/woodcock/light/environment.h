@@ -12,6 +12,8 @@ class Environment {
 public:
     Environment(Rgb radiance, bool visible) : scale_(radiance), visible_(visible) {}
     Environment(EnvironmentMap map, Rgb scale, const Affine3d& worldFromLight, bool visible);
+    /// A sun that EnvironmentMap::takeSun() has found.
+    Environment(EnvironmentMap::Sun sun, Rgb scale, const Affine3d& worldFromLight, bool visible);
 
     bool constant() const { return map_.empty(); }
     bool visible() const { return visible_; }
@@ -20,8 +22,11 @@ public:
     Rgb radiance(Vec3d direction) const;
 
     LightTraits traits() const {
-        return {
-            .name = "an environment", .sampled = !constant(), .distant = true, .visible = visible_};
+        return {.name = "an environment",
+                .sampled = !constant(),
+                .distant = true,
+                .visible = visible_,
+                .parallel = sun_};
     }
     LightSample sample(Vec3d from, double u0, double u1) const;  ///< of the image
     double pdf(Vec3d from, Vec3d direction) const;
@@ -34,6 +39,7 @@ private:
     Rgb scale_;
     Affine3d worldFromLight_, lightFromWorld_;
     bool visible_;
+    std::optional<Vec3d> sun_;  ///< the direction to it, in the world, where it is one
 };
 
 }  // namespace woodcock::light

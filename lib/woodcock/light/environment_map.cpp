@@ -18,16 +18,31 @@ std::pair<std::size_t, double> invert(const double* cdf, std::size_t n, double u
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(int width, int height, std::vector<float> pixels)
-    : width_(width), height_(height), pixels_(std::move(pixels)) {
-    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+    : EnvironmentMap(width, height, {0, 0, width, height}, std::move(pixels)) {}
+
+EnvironmentMap::EnvironmentMap(int width, int height, const Window& window,
+                               std::vector<float> pixels)
+    : width_(width), height_(height), window_(window), pixels_(std::move(pixels)) {
+    tabulate();
+}
+
+/// Makes the tables for sampling, and the mean.
+void EnvironmentMap::tabulate() {
+    sampled_ = window_;
+    if (window_.width + 2 <= width_) --sampled_.x, sampled_.width += 2;
+    const int top = std::max(0, window_.y - 1),
+              bottom = std::min(height_, window_.y + window_.height + 1);
+    sampled_.y = top, sampled_.height = bottom - top;
+    const auto w = static_cast<std::size_t>(sampled_.width),
+               h = static_cast<std::size_t>(sampled_.height);
     rowCdf_.assign(h + 1, 0), columnCdf_.assign(h * (w + 1), 0);
-    double solidAngle = 0;
     std::array<double, 3> total{};
-    for (int y = 0; y < height; ++y) {
-        const double top = std::cos(pi * y / height), bottom = std::cos(pi * (y + 1) / height);
-        const double area = top - bottom;  // x 2 pi / width
-        double* row = &columnCdf_[static_cast<std::size_t>(y) * (w + 1)];
-        for (int x = 0; x < width; ++x) {
+    for (int k = 0; k < sampled_.height; ++k) {
+        const int y = sampled_.y + k;
+        const double area = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
+        double* row = &columnCdf_[static_cast<std::size_t>(k) * (w + 1)];
+        for (int l = 0; l < sampled_.width; ++l) {
+            const int x = sampled_.x + l;
             // The pixel's brightness as bilinear interpolation spreads it: zero only where the
             // radiance is.
             double brightness = 0;
@@ -35,22 +50,28 @@ EnvironmentMap::EnvironmentMap(int width, int height, std::vector<float> pixels)
                 for (int i = -1; i <= 1; ++i)
                     brightness += double{pixel(x + i, y + j).mean()} *
                                   ((2 - std::abs(i)) * (2 - std::abs(j)));
-            row[x + 1] = row[x] + brightness * area;
+            row[l + 1] = row[l] + brightness * area;
             const Rgb p = pixel(x, y);
             for (int c = 0; c < 3; ++c) total[static_cast<std::size_t>(c)] += p[c] * area;
-            solidAngle += area;
         }
-        rowCdf_[static_cast<std::size_t>(y) + 1] = rowCdf_[static_cast<std::size_t>(y)] + row[w];
+        rowCdf_[static_cast<std::size_t>(k) + 1] = rowCdf_[static_cast<std::size_t>(k)] + row[w];
     }
     for (int c = 0; c < 3; ++c)
-        mean_[c] = static_cast<float>(total[static_cast<std::size_t>(c)] / solidAngle);
+        mean_[c] = static_cast<float>(total[static_cast<std::size_t>(c)] / (2 * width_));
+}
+
+/// A pixel of the window, three floats; null outside of it.
+float* EnvironmentMap::find(int x, int y) {
+    x = ((x - window_.x) % width_ + width_) % width_;
+    y = std::clamp(y, 0, height_ - 1) - window_.y;
+    if (x >= window_.width || y < 0 || y >= window_.height) return nullptr;
+    return &pixels_[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.width) +
+                         static_cast<std::size_t>(x))];
 }
 
 Rgb EnvironmentMap::pixel(int x, int y) const {
-    x = (x % width_ + width_) % width_, y = std::clamp(y, 0, height_ - 1);
-    const std::size_t i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                               static_cast<std::size_t>(x));
-    return {pixels_[i], pixels_[i + 1], pixels_[i + 2]};
+    const float* p = const_cast<EnvironmentMap*>(this)->find(x, y);
+    return p ? Rgb{p[0], p[1], p[2]} : Rgb();
 }
 
 Rgb EnvironmentMap::radiance(Vec3d d) const {
@@ -62,35 +83,95 @@ Rgb EnvironmentMap::radiance(Vec3d d) const {
            (pixel(x, y + 1) * (1 - fx) + pixel(x + 1, y + 1) * fx) * fy;
 }
 
+/// Of a place in the image, in pixels.
+Vec3d EnvironmentMap::direction(double x, double y) const {
+    const double polar = pi * y / height_, phi = 2 * pi * (x / width_ - 0.5);
+    const double sine = std::sin(polar);
+    return {sine * std::sin(phi), std::cos(polar), -sine * std::cos(phi)};
+}
+
 EnvironmentMap::Sample EnvironmentMap::sample(double u0, double u1) const {
-    const auto w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+    const auto w = static_cast<std::size_t>(sampled_.width),
+               h = static_cast<std::size_t>(sampled_.height);
     if (!(rowCdf_[h] > 0)) return {{0, 1, 0}, 0};
-    const auto [y, fy] = invert(rowCdf_.data(), h, u1);
-    const auto [x, fx] = invert(&columnCdf_[y * (w + 1)], w, u0);
+    const auto [row, fy] = invert(rowCdf_.data(), h, u1);
+    const auto [column, fx] = invert(&columnCdf_[row * (w + 1)], w, u0);
+    const double x = static_cast<double>(column) + sampled_.x,
+                 y = static_cast<double>(row) + sampled_.y;
     // Uniform in solid angle inside the pixel: linear in the cosine of the polar angle.
-    const double top = std::cos(pi * static_cast<double>(y) / height_);
-    const double bottom = std::cos(pi * static_cast<double>(y + 1) / height_);
+    const double top = std::cos(pi * y / height_), bottom = std::cos(pi * (y + 1) / height_);
     const double cosine = top + (bottom - top) * fy;
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    const double phi = 2 * pi * ((static_cast<double>(x) + fx) / width_ - 0.5);
+    const double phi = 2 * pi * ((x + fx) / width_ - 0.5);
     const double share =
-        (columnCdf_[y * (w + 1) + x + 1] - columnCdf_[y * (w + 1) + x]) / rowCdf_[h];
+        (columnCdf_[row * (w + 1) + column + 1] - columnCdf_[row * (w + 1) + column]) / rowCdf_[h];
     return {{sine * std::sin(phi), cosine, -sine * std::cos(phi)},
             share / (2 * pi / width_ * (top - bottom))};
 }
 
 double EnvironmentMap::pdf(Vec3d d) const {
-    const auto w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+    const auto w = static_cast<std::size_t>(sampled_.width),
+               h = static_cast<std::size_t>(sampled_.height);
     if (!(rowCdf_[h] > 0)) return 0;
     const double u = (0.5 + std::atan2(d.x, -d.z) / (2 * pi)) * width_;
     const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / pi * height_;
-    const auto x = std::min(static_cast<std::size_t>(std::max(0.0, u)), w - 1);
-    const auto y = std::min(static_cast<std::size_t>(std::max(0.0, v)), h - 1);
-    const double top = std::cos(pi * static_cast<double>(y) / height_);
-    const double bottom = std::cos(pi * static_cast<double>(y + 1) / height_);
+    const int x = std::min(static_cast<int>(std::max(0.0, u)), width_ - 1);
+    const int y = std::min(static_cast<int>(std::max(0.0, v)), height_ - 1);
+    const auto column = static_cast<std::size_t>((x - sampled_.x + width_) % width_);
+    if (column >= w || y < sampled_.y || y >= sampled_.y + sampled_.height) return 0;
+    const auto row = static_cast<std::size_t>(y - sampled_.y);
+    const double top = std::cos(pi * y / height_), bottom = std::cos(pi * (y + 1) / height_);
     const double share =
-        (columnCdf_[y * (w + 1) + x + 1] - columnCdf_[y * (w + 1) + x]) / rowCdf_[h];
+        (columnCdf_[row * (w + 1) + column + 1] - columnCdf_[row * (w + 1) + column]) / rowCdf_[h];
     return share / (2 * pi / width_ * (top - bottom));
+}
+
+std::optional<EnvironmentMap::Sun> EnvironmentMap::takeSun() {
+    constexpr double widest = 2 * pi / 180;  // from its middle
+    constexpr float aboveMean = 10;          // so many times as bright as the sky is elsewhere
+    constexpr double leastShare = 0.05;      // of all light
+    if (empty()) return {};
+    int brightX = 0, brightY = 0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            if (pixel(x, y).mean() > pixel(brightX, brightY).mean()) brightX = x, brightY = y;
+    const Vec3d towards = direction(brightX + 0.5, brightY + 0.5);
+    const auto isNear = [&](int x, int y) {
+        return dot(direction(x + 0.5, y + 0.5), towards) > std::cos(widest);
+    };
+    const double sine = std::max(towards.y < 1 ? std::sqrt(1 - towards.y * towards.y) : 0.0, 1e-3);
+    Window window;
+    const int reachY = static_cast<int>(widest / pi * height_) + 1,
+              reachX = static_cast<int>(
+                  std::min(width_ / 2.0 - 1, widest / sine / (2 * pi) * width_ + 1));
+    window.x = brightX - reachX, window.width = 2 * reachX + 1;
+    window.y = std::max(0, brightY - reachY);
+    window.height = std::min(height_, brightY + reachY + 1) - window.y;
+    if (window.width > width_) return {};
+    const Rgb sky = mean_ * aboveMean;
+    const auto forEachBright = [&](auto&& take) {
+        for (int y = window.y; y < window.y + window.height; ++y)
+            for (int x = window.x; x < window.x + window.width; ++x)
+                if (isNear(x, y) && pixel(x, y).mean() > sky.mean()) take(x, y, pixel(x, y));
+    };
+    const auto width = static_cast<std::size_t>(window.width);
+    std::vector<float> taken(3 * width * static_cast<std::size_t>(window.height));
+    Vec3d middle;
+    forEachBright([&](int x, int y, Rgb p) {
+        const std::size_t i = 3 * (static_cast<std::size_t>(y - window.y) * width +
+                                   static_cast<std::size_t>(x - window.x));
+        for (std::size_t c = 0; c < 3; ++c)
+            taken[i + c] = std::max(0.0f, p[static_cast<int>(c)] - sky[static_cast<int>(c)]);
+        middle = middle + direction(x + 0.5, y + 0.5) * double{p.mean()};
+    });
+    EnvironmentMap map(width_, height_, window, std::move(taken));
+    if (!(map.mean_.mean() > leastShare * mean_.mean())) return {};
+    forEachBright([&](int x, int y, Rgb p) {
+        float* const left = find(x, y);
+        for (int c = 0; c < 3; ++c) left[c] = std::min(p[c], sky[c]);
+    });
+    tabulate();
+    return Sun{std::move(map), normalize(middle)};
 }
 
 }  // namespace woodcock::light

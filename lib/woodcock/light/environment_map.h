@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "woodcock/base/spectrum.h"
@@ -27,13 +28,36 @@ public:
     Sample sample(double u0, double u1) const;
     double pdf(Vec3d direction) const;
 
+    struct Sun;
+    /// Takes a sun out of the image: what exceeds the sky around it within two degrees of the
+    /// brightest place, where that is a notable part of all light. Both images together show what
+    /// this one did. Nothing: there is no such place.
+    std::optional<Sun> takeSun();
+
 private:
+    /// Of a whole image of such a size, the part `window`. Elsewhere it is black.
+    struct Window {
+        int x = 0, y = 0, width = 0, height = 0;
+    };
+    EnvironmentMap(int width, int height, const Window& window, std::vector<float> pixels);
+
+    void tabulate();
+    float* find(int x, int y);
     Rgb pixel(int x, int y) const;
+    Vec3d direction(double x, double y) const;
 
     int width_ = 0, height_ = 0;
-    std::vector<float> pixels_;
-    std::vector<double> rowCdf_, columnCdf_;  // height + 1; height x (width + 1)
+    Window window_;
+    std::vector<float> pixels_;  // of the window
+    // Of what is sampled, the window and a pixel around it: height + 1; height x (width + 1).
+    Window sampled_;
+    std::vector<double> rowCdf_, columnCdf_;
     Rgb mean_;
+};
+
+struct EnvironmentMap::Sun {
+    EnvironmentMap map;
+    Vec3d direction;  ///< of its middle
 };
 
 }  // namespace woodcock::light

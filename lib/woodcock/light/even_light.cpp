@@ -18,6 +18,15 @@ Rgb meanRadiance(const LightSet& lights, int light) {
     return sum * (1.0f / points);
 }
 
+Rgb irradiance(const LightSet& lights, int light) {
+    constexpr int side = 8;
+    Rgb sum;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+            sum += lights.sample(light, {}, (i + 0.5) / side, (j + 0.5) / side).weight;
+    return sum * (1.0f / (side * side));
+}
+
 bool isEven(const LightSet& lights, int light) {
     if (!lights.traits(light).distant) return false;
     if (!lights.traits(light).sampled) return true;

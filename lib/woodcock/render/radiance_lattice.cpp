@@ -52,7 +52,7 @@ RadianceLattice::Light lightOf(const light::LightSet& lights) {
         lights.sampled(), [&](int i) { return lights.traits(i).parallel.has_value(); });
     if (sun == lights.sampled().end()) return light;
     if (environment >= 0 && lights.group(environment) != lights.group(*sun)) return light;
-    light.sun = lights.sample(*sun, {}, 0, 0).weight;
+    light.sun = light::irradiance(lights, *sun);
     light.towardsSun = *lights.traits(*sun).parallel;
     return light;
 }

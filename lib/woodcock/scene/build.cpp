@@ -64,6 +64,13 @@ template <class L>
 void addLights(std::vector<light::Light>& lights, const L& light, LoadedLight&& loaded) {
     lights.push_back(buildLight(light, std::move(loaded)));
 }
+void addLights(std::vector<light::Light>& lights, const EnvironmentDescription& environment,
+               LoadedLight&& loaded) {
+    if (auto sun = loaded.map.takeSun())
+        lights.push_back(light::Environment(std::move(*sun), environment.radiance,
+                                            worldFromLight(environment), environment.visible));
+    lights.push_back(buildLight(environment, std::move(loaded)));
+}
 void addLights(std::vector<light::Light>& lights, const SkyDescription& sky, LoadedLight&&) {
     SkyParts parts = partsOf(sky);
     image::Image& image = parts.image;

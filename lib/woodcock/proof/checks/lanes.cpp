@@ -9,6 +9,7 @@
 #include "woodcock/base/random.h"
 #include "woodcock/proof/checks/measure.h"
 #include "woodcock/proof/checks/subjects.h"
+#include "woodcock/proof/support/read_back.h"
 #include "woodcock/proof/support/small_pictures.h"
 #include "woodcock/proof/support/write_vdb.h"
 
@@ -63,6 +64,19 @@ void writeColouredPhase(const Lab& lab) {
              << 1 - 0.8 * cosine << '\n';
     }
 }
+
+/// An image of a blue sky with a small sun, which is taken out of it.
+void writeSunnySky(const Lab& lab) {
+    constexpr int rows = 128, columns = 256;
+    std::vector<float> rgb;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) {
+            const bool sun = y == 38 && (x == 90 || x == 91);
+            for (const float v : {0.2f, 0.3f, 0.5f}) rgb.push_back(v + (sun ? 1500.0f : 0.0f));
+        }
+    writeFloats(lab.file("sunny.exr"), columns, rows, 3, rgb);
+}
+const std::string sunnySky = "[[light]]\ntype = \"environment\"\nimage = \"sunny.exr\"\n";
 
 const std::string ball = "[[volume]]\nfile = \"ball.vdb\"\n";
 const std::string tile = "[[volume]]\nfile = \"tile.vdb\"\n";
@@ -166,6 +180,8 @@ std::vector<Subject> plainSubjects() {
         {"in a disc's light", fog + discSun + air},
         {"in the light of two suns", fog + deltaSun + secondSun + air},
         {"in the light of an image", fog + twoColouredSky},
+        {"in the light of an image with a sun", fog + sunnySky},
+        {"thick, in the light of an image with a sun", cloud + sunnySky, 0.5},
         {"in the light of an image and of a sun", fog + deltaSun + twoColouredSky},
         {"in air that is not seen", cloud + deltaSun + air + hidden, 0.5},
         {"in air alone", cloud + air, 0.3},
@@ -301,7 +317,7 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
     writeVdb(lab.file("ball.vdb"), {raggedBall(), heat()});
     writeVdb(lab.file("tile.vdb"), {wideTile()});
     writeTwoColouredSky(lab);
-    writeColouredPhase(lab);
+    writeColouredPhase(lab), writeSunnySky(lab);
     for (const Subject& subject : subjects) {
         const auto seen = [&](const std::string& text) {
             return sceneIn(lab, text + (subject.camera ? "[camera]\neye = [0, 0.6, 3.5]\n"

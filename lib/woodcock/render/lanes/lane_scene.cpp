@@ -166,7 +166,10 @@ light::LightSample LaneScene::sunlight(int light, Vec3d world) const {
     const light::LightSet& lights = traced.scene.lights;
     const light::LightTraits& traits = lights.traits(light);
     light::LightSample s = lights.sample(light, world, 0.5, 0.5);
-    s.direction = traits.parallel ? *traits.parallel : normalize(*traits.position - world);
+    if (traits.parallel)
+        s.direction = *traits.parallel, s.weight = light::irradiance(lights, light);
+    else
+        s.direction = normalize(*traits.position - world);
     return s;
 }
 
