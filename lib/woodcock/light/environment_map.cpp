@@ -37,24 +37,32 @@ void EnvironmentMap::tabulate() {
                h = static_cast<std::size_t>(sampled_.height);
     rowCdf_.assign(h + 1, 0), columnCdf_.assign(h * (w + 1), 0);
     std::array<double, 3> total{};
-    for (int k = 0; k < sampled_.height; ++k) {
-        const int y = sampled_.y + k;
+    // A pixel's brightness as bilinear interpolation spreads it: zero only where the radiance is.
+    // Here along a row.
+    std::vector<double> means(w + 2);
+    const auto spread = [&](int y) {
+        const bool counts = y >= sampled_.y && y < sampled_.y + sampled_.height;
         const double area = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
-        double* row = &columnCdf_[static_cast<std::size_t>(k) * (w + 1)];
-        for (int l = 0; l < sampled_.width; ++l) {
-            const int x = sampled_.x + l;
-            // The pixel's brightness as bilinear interpolation spreads it: zero only where the
-            // radiance is.
-            double brightness = 0;
-            for (int j = -1; j <= 1; ++j)
-                for (int i = -1; i <= 1; ++i)
-                    brightness += double{pixel(x + i, y + j).mean()} *
-                                  ((2 - std::abs(i)) * (2 - std::abs(j)));
-            row[l + 1] = row[l] + brightness * area;
-            const Rgb p = pixel(x, y);
+        for (std::size_t i = 0; i < means.size(); ++i) {
+            const Rgb p = pixel(sampled_.x - 1 + static_cast<int>(i), y);
+            means[i] = double{p.mean()};
+            if (!counts || i == 0 || i > w) continue;
             for (int c = 0; c < 3; ++c) total[static_cast<std::size_t>(c)] += p[c] * area;
         }
-        rowCdf_[static_cast<std::size_t>(k) + 1] = rowCdf_[static_cast<std::size_t>(k)] + row[w];
+        std::vector<double> row(w);
+        for (std::size_t i = 0; i < w; ++i) row[i] = means[i] + 2 * means[i + 1] + means[i + 2];
+        return row;
+    };
+    std::vector<double> above = spread(sampled_.y - 1), here = spread(sampled_.y);
+    for (std::size_t k = 0; k < h; ++k) {
+        const int y = sampled_.y + static_cast<int>(k);
+        std::vector<double> below = spread(y + 1);
+        const double area = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
+        double* row = &columnCdf_[k * (w + 1)];
+        for (std::size_t i = 0; i < w; ++i)
+            row[i + 1] = row[i] + (above[i] + 2 * here[i] + below[i]) * area;
+        rowCdf_[k + 1] = rowCdf_[k] + row[w];
+        above = std::move(here), here = std::move(below);
     }
     for (int c = 0; c < 3; ++c)
         mean_[c] = static_cast<float>(total[static_cast<std::size_t>(c)] / (2 * width_));
@@ -132,9 +140,11 @@ std::optional<EnvironmentMap::Sun> EnvironmentMap::takeSun() {
     constexpr double leastShare = 0.05;      // of all light
     if (empty()) return {};
     int brightX = 0, brightY = 0;
+    float brightest = 0;
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x)
-            if (pixel(x, y).mean() > pixel(brightX, brightY).mean()) brightX = x, brightY = y;
+            if (const float mean = pixel(x, y).mean(); mean > brightest)
+                brightest = mean, brightX = x, brightY = y;
     const Vec3d towards = direction(brightX + 0.5, brightY + 0.5);
     const auto isNear = [&](int x, int y) {
         return dot(direction(x + 0.5, y + 0.5), towards) > std::cos(widest);
