@@ -161,7 +161,20 @@ defect "lanes take a prediction twice" '' "lanes and paths one by one" \
     $lanes/lane_sun-inl.h \
     'predicted_[c].set(departing, hn::Zero(lanesF));' ''
 
+defect "lanes meet lamps that next events bring, too" '' "lanes in the light of lamps" \
+    $lanes/lane_paths-inl.h \
+    'hit.radiance * static_cast<float>(hitWeight(lane, light))' 'hit.radiance'
+
+defect "lanes' lamps are as bright everywhere" '' "lanes in the light of lamps" \
+    $lanes/lane_sun-inl.h \
+    'all(scene_.centre.weight.maximum()) * sunScale_.get() *' \
+    'all(scene_.centre.weight.maximum()) *'
+
 # ---- light
+
+defect "a sun stays in the image that it is taken from" 'EnvironmentMap.*' "" \
+    lib/woodcock/light/environment_map.cpp \
+    'left[c] = std::min(p[c], sky[c]);' 'left[c] = p[c];'
 
 defect "sun's irradiance without the cosine" 'Sun.*' "sun" \
     lib/woodcock/light/sun.cpp \

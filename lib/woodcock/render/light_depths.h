@@ -12,9 +12,10 @@
 
 namespace woodcock::render {
 
-/// Grids of the optical depth from any point outside of all surfaces to the scene's suns, for the
-/// scene's own medium and those that approximations use in its place. Shared by all threads. What
-/// they hold decides how large the noise is, and never what is expected.
+/// Grids of the optical depth from any point outside of all surfaces to the scene's suns, and to
+/// lamps that stand outside of the medium, for the scene's own medium and those that approximations
+/// use in its place. Shared by all threads. What they hold decides how large the noise is, and
+/// never what is expected.
 class LightDepths {
 public:
     /// The scene and the media must outlive this.

@@ -48,7 +48,7 @@ struct PathState {
     std::int64_t scatterings = 0;
     light::ScatterPoint from{};  ///< the last event, for MIS at what its direction hits
     double phasePdf = 0;         ///< of that direction
-    /// Of the light of suns with depth grids, what the next event is to bring: see
+    /// Of the light of suns and lamps with depth grids, what the next event is to bring: see
     /// several_events.h.
     float sunShare = 1;
     double flight = 1;  ///< draws the next optical depth

@@ -58,7 +58,7 @@ public:
         bool stoppedLight = false;  ///< of tracked rays only; it changes nothing else
         const ApproximateMedia* approximateMedia =
             nullptr;                                 ///< made from `approximations`; null: no sets
-        const LightDepths* lightDepths = nullptr;    ///< null: shadow rays to suns are tracked
+        const LightDepths* lightDepths = nullptr;    ///< null: shadow rays are tracked
         const CameraDepths* cameraDepths = nullptr;  ///< null: camera rays are walked
         const RadianceLattice* radiance = nullptr;   ///< null: nothing is known of it
         const EmptyPixels* emptyPixels = nullptr;    ///< null: paths are traced in all

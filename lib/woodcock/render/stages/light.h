@@ -17,7 +17,8 @@ template <int N, bool Surfaces>
 void addSampled(const TracedScene& traced, Batch<N, Surfaces>& batch, std::size_t i,
                 const LightChoice::Chosen& chosen, const EventNumbers& u, const FlightShare& share);
 
-/// The same for the suns alone of which grids know the optical depth, where there are no surfaces.
+/// The same for those lights alone of which grids know the optical depth, where there are no
+/// surfaces.
 template <int N>
 void addSunlight(const TracedScene& traced, Batch<N, false>& batch, std::size_t i,
                  const EventNumbers& u);

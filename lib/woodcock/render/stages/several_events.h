@@ -6,11 +6,11 @@
 
 namespace woodcock::render {
 
-/// Several next events near a sun. In dense media that scatter forwards, nearly all of a sun's
-/// light comes from the few events that are near it, and the peak of the phase function makes it
-/// noisy. So where the optical depth to a sun is small, the path's next event is drawn several
-/// times: direction, flight, and sunlight at its end. The path goes on along one of them. Each
-/// brings an equal share, so the mean stays.
+/// Several next events near a sun, or a lamp with a grid of depths. In dense media that scatter
+/// forwards, nearly all of its light comes from the few events that are near it, and the peak of
+/// the phase function makes it noisy. So where the optical depth to it is small, the path's next
+/// event is drawn several times: direction, flight, and light at its end. The path goes on along
+/// one of them. Each brings an equal share, so the mean stays.
 ///
 /// The n-tuple local estimate of Buras and Mayer 2011, "Efficient unbiased variance reduction
 /// techniques for Monte Carlo simulations of radiative transfer in cloudy atmospheres: The
