@@ -189,6 +189,31 @@ TEST(DepthGrid, OfALampIsAsNearToTheTruthAsOfASun) {
     }
 }
 
+/// The least and the most are true of most rays to the rim of a wide lamp. A grid that takes it for
+/// a small one is wrong of many times as many.
+TEST(DepthGrid, OfAWideLampIsLessSure) {
+    const Medium medium = greyMedium().medium();
+    const Box3d box = medium.worldBounds();
+    const double size = length(box.size()), radius = 0.4 * size;
+    const Vec3d lamp = box.centre() + Vec3d{0, 1.2 * size, 0};
+    const auto holds = [&](const DepthGrid& grid) {
+        RandomStream random(5);
+        int held = 0;
+        for (const Vec3d p : pointsIn(medium, 1000)) {
+            const double angle = 2 * pi * random.uniform();
+            const Vec3d rim = lamp + Vec3d{std::cos(angle), 0, std::sin(angle)} * radius;
+            const float exact = exactOpticalDepth(medium, p, normalize(rim - p), 0, infinity)[0];
+            const DepthGrid::Depth d = grid.at<1>(p)[0];
+            EXPECT_GE(d.least, 0);
+            held += d.least <= exact && exact <= d.most;
+        }
+        return held;
+    };
+    const int wide = holds(*DepthGrid::makeForLamp(medium, lamp, radius, plenty));
+    const int small = holds(*DepthGrid::makeForLamp(medium, lamp, 0, plenty));
+    EXPECT_LT(4 * (1000 - wide), 1000 - small);
+}
+
 /// Readers that interpolate by themselves find what at() does.
 TEST(DepthGrid, TellsWhereItsNodesAre) {
     const Medium medium = greyMedium().medium();

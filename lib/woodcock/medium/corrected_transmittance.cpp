@@ -26,7 +26,7 @@ Spectrum<N> correctedTransmittance(const Medium& medium, const DepthGrid& grid, 
         const DepthGrid::Depth& d = depths[static_cast<std::size_t>(c)];
         transmittance[c] = decay(d.depth);
         // At least the difference of the transmittances at the nodes.
-        const float unsure = decay(d.least) * std::min(1.0f, grid.blur() * (d.most - d.least));
+        const float unsure = decay(d.least) * std::min(1.0f, d.most - d.least);
         probability = std::max(probability, weight[c] * unsure);
     }
     if (probability < 1 && random.uniform() >= double{probability}) return transmittance;

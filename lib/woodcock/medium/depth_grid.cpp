@@ -193,12 +193,14 @@ DepthGrid::Depth DepthGrid::read(const Place& place, int channel) const {
     const float *n10 = n00 + lineFloats(), *n01 = n00 + columnNodes * lineFloats(),
                 *n11 = n01 + lineFloats();
     const int on = channels_;  // to the next node along
+    // Depths fall towards the light.
+    const float least = std::min(std::min(n00[on], n10[on]), std::min(n01[on], n11[on])),
+                most = std::max(std::max(n00[0], n10[0]), std::max(n01[0], n11[0]));
+    const float beside = (blur_ - 1) / 2 * (most - least);
     return {
         lerp(place.v, lerp(place.u, lerp(place.w, n00[0], n00[on]), lerp(place.w, n10[0], n10[on])),
              lerp(place.u, lerp(place.w, n01[0], n01[on]), lerp(place.w, n11[0], n11[on]))),
-        // Depths fall towards the sun.
-        std::min(std::min(n00[on], n10[on]), std::min(n01[on], n11[on])),
-        std::max(std::max(n00[0], n10[0]), std::max(n01[0], n11[0]))};
+        std::max(0.0f, least - beside), most + beside};
 }
 
 const float* DepthGrid::makeColumn(std::size_t index) const {

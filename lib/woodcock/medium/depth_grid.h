@@ -38,13 +38,13 @@ public:
 
     /// Distance of neighbouring nodes, in world units; of a lamp's about the medium's middle.
     double spacing() const { return spacing_; }
-    /// How far rays to the light may run beside the lattice's lines, in nodes, and at least 1: as
-    /// far from each other are the depths that at() may mistake for one another.
+    /// How far rays to the light may run beside the lattice's lines, in nodes, and at least 1.
     float blur() const { return blur_; }
     std::size_t bytesMade() const { return bytesMade_; }  ///< of columns so far
     std::size_t bytesOfAll() const;                       ///< where all columns are read
 
     /// Optical depths around a point: interpolated, and the least and the most at the eight nodes.
+    /// Of a wide lamp these are as far apart as they would be blur() nodes away from each other.
     struct Depth {
         float depth, least, most;
     };

@@ -76,10 +76,13 @@ typename LaneTracer<N>::SunDepths LaneTracer<N>::readSunDepths(std::uint32_t bit
         depths.depth[c] =
             lerp(within[1], lerp(within[0], line[0], line[1]), lerp(within[0], line[2], line[3]));
         // Depths fall towards the sun.
-        depths.least[c] =
-            hn::Min(hn::Min(near[0].get(), near[1].get()), hn::Min(near[2].get(), near[3].get()));
-        depths.most[c] =
-            hn::Max(hn::Max(far[0].get(), far[1].get()), hn::Max(far[2].get(), far[3].get()));
+        const F least = hn::Min(hn::Min(near[0].get(), near[1].get()),
+                                hn::Min(near[2].get(), near[3].get())),
+                most = hn::Max(hn::Max(far[0].get(), far[1].get()),
+                               hn::Max(far[2].get(), far[3].get()));
+        const F beside = beside_.get() * (most - least);
+        depths.least[c] = hn::Max(hn::Zero(lanesF), least - beside);
+        depths.most[c] = most + beside;
     }
     for (int c = N - 1; c >= 0; --c) {
         const F colour = sunColour_[c].get();
@@ -164,9 +167,8 @@ F LaneTracer<N>::addSunlight(std::uint32_t lit) {
     for (int c = 0; c < N; ++c) {
         passes[c].set(hn::IfThenZeroElse(deep, decay(depths.depth[c])));
         // About half of the difference of the transmittances at the nodes.
-        const F unsure =
-            decay(depths.least[c]) *
-            hn::Min(all(0.5f), all(0.5f) * blur_.get() * (depths.most[c] - depths.least[c]));
+        const F unsure = decay(depths.least[c]) *
+                         hn::Min(all(0.5f), all(0.5f) * (depths.most[c] - depths.least[c]));
         const F weight = w_[c].get() * light.get() * all(1 / traced_.typicalRadiance);
         probability = hn::Max(probability, hn::IfThenZeroElse(deep, weight * unsure));
     }

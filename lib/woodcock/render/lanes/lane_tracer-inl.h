@@ -286,7 +286,7 @@ private:
     // Of the part that walks:
     Ints low_[3]{}, high_[3]{}, latticeCells_[3]{};
     Floats absorption_[N]{}, scattering_[N]{}, channelWeight_[N]{}, extinction_{}, g_{};
-    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, perspective_[2]{}, blur_{},
+    Floats jitterUnit_{}, firstJitter_{}, lattice_[3][4]{}, perspective_[2]{}, beside_{},
         cells_[3][4]{}, sunColour_[N]{}, albedo_[N]{};
     // The direction to the sun, and its irradiance as a multiple of LaneScene::centre's. A lamp's
     // are those where the path has scattered last.

@@ -119,7 +119,7 @@ void LaneTracer<N>::loadMatter(std::size_t lane, std::size_t number) {
             grid->channels() == 1 ? channels<N>(grid->colour()) : Spectrum<N>(1.0f));
     for (std::size_t i = 0; i < 2; ++i)
         perspective_[i][lane] = static_cast<float>(grid->perspective()[i]);
-    blur_[lane] = grid->blur();
+    beside_[lane] = (grid->blur() - 1) / 2;
     for (int i = 0; i < 3; ++i) {
         latticeCells_[i][lane] = grid->cells()[i];
         for (int k = 0; k < 4; ++k) lattice_[i][k][lane] = part.latticeFromIndex[i][k];
