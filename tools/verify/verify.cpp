@@ -122,7 +122,7 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
     CLI::App* command = app.add_subcommand("verify", verifyPurpose);
     auto options = std::make_shared<VerifyOptions>();
     command->add_flag("--quick", options->quick,
-                      "Check to two digits, in three minutes on two cores (the default)");
+                      "Check to two digits, in four minutes on two cores (the default)");
     command->add_flag(
         "--full", options->full,
         "Check the tables of slabs to three digits, which takes an hour or more on two cores");
