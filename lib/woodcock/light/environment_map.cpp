@@ -135,8 +135,8 @@ double EnvironmentMap::pdf(Vec3d d) const {
 }
 
 std::optional<EnvironmentMap::Sun> EnvironmentMap::takeSun() {
-    constexpr double widest = 2 * pi / 180;  // from its middle
-    constexpr float aboveMean = 10;          // so many times as bright as the sky is elsewhere
+    constexpr double widest = 2 * pi / 180;  // from the brightest pixel
+    constexpr float aboveMean = 10;          // what is so many times as bright as the image's mean
     constexpr double leastShare = 0.05;      // of all light
     if (empty()) return {};
     int brightX = 0, brightY = 0;

@@ -29,9 +29,9 @@ public:
     double pdf(Vec3d direction) const;
 
     struct Sun;
-    /// Takes a sun out of the image: what exceeds the sky around it within two degrees of the
-    /// brightest place, where that is a notable part of all light. Both images together show what
-    /// this one did. Nothing: there is no such place.
+    /// Takes a sun out of the image: what exceeds ten times the image's mean within two degrees of
+    /// the brightest pixel, where that is a twentieth of all light or more. Both images together
+    /// show what this one did. Nothing: there is no such place.
     std::optional<Sun> takeSun();
 
 private:

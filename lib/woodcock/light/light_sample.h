@@ -60,7 +60,8 @@ struct LightTraits {
     /// Rays that escape meet its radiance: an environment, the disc of a sun.
     bool distant = false;
     bool visible = false;  ///< to camera rays, where rays can meet it
-    /// Towards a light whose rays are parallel, or nearly so: a sun of at most 2 degrees.
+    /// Towards a light whose rays are parallel, or nearly so: a sun of at most 2 degrees, or one of
+    /// an environment's image.
     std::optional<Vec3d> parallel = {};
     /// Of a local light: the most power per solid angle, largest channel.
     double intensity = 0;

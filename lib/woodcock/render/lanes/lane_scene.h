@@ -36,7 +36,8 @@ struct LaneScene {
     std::vector<LanePart> parts;
     std::size_t partCount = 0;  ///< of one medium
     /// The grids, of each medium, of the optical depth to the sun, which every scattering samples;
-    /// null: there is none. The sun is a light of type sun, or a lamp outside of the medium.
+    /// null: there is none. The sun is a light of type sun, one of an environment's image, or a
+    /// lamp outside of the medium.
     std::array<const medium::DepthGrid*, 2> sunDepths{};
     int sun = -1;
     bool lamp = false;          ///< its direction and irradiance differ from place to place
