@@ -54,6 +54,14 @@ TEST(SampleSequence, DependsOnNothingButItsName) {
     EXPECT_NE(SampleSequence(5, 6, 7, 8).draw(9), SampleSequence(5, 7, 6, 8).draw(9));
 }
 
+TEST(SampleSequence, CopiesOfAllSamplesAreOneLongerSequence) {
+    for (std::uint32_t copies : {1u, 2u, 3u, 8u})
+        for (std::uint32_t sample : {0u, 1u, 77u})
+            for (std::uint32_t k = 0; k < copies; ++k)
+                EXPECT_EQ(SampleSequence(5, 6, 7, sample).copy(k, copies).draw(2),
+                          SampleSequence(5, 6, 7, sample * copies + k).draw(2));
+}
+
 /// Correlation of two functions of a pixel: products of centred numbers, of mean 0 and variance 1
 /// where they are independent.
 template <class A, class B>

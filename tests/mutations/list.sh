@@ -147,6 +147,10 @@ defect "lanes' camera rays are worth as much as if nothing passed" 'Lanes.*' "la
     $lanes/lane_camera-inl.h \
     'toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth)' 'toRgb(l.worth)'
 
+defect "lanes' camera rays bring all light from each of their points" 'Lanes.*' "lanes and paths one by one" \
+    $lanes/lane_camera-inl.h \
+    '(density * scene_.points)' 'density'
+
 defect "lanes without depth left collide in empty cells" 'Lanes.*' "" \
     $lanes/lane_walk-inl.h \
     'hn::IfThenElse(mu_.get() > zero, depth_.get() * perMu_.get(), all(huge))' \

@@ -69,6 +69,12 @@ constexpr std::array<std::array<Digits, 256>, 4> reversedSobolBytes = [] {
 SampleSequence::SampleSequence(std::uint64_t seed, int x, int y, std::uint32_t sample)
     : pixelSeed_(hashOf(seed, x, y)), reversedIndex_(reverseBits(sample)) {}
 
+SampleSequence SampleSequence::copy(std::uint32_t number, std::uint32_t copies) const {
+    SampleSequence sequence = *this;
+    sequence.reversedIndex_ = reverseBits(reverseBits(reversedIndex_) * copies + number);
+    return sequence;
+}
+
 std::array<double, 4> SampleSequence::draw(std::uint32_t set) const {
     const std::uint64_t seed = hashOf(pixelSeed_, set, 0x51);
     const std::uint32_t index = scrambleReversed(reversedIndex_, static_cast<std::uint32_t>(seed));

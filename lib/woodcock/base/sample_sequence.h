@@ -17,6 +17,10 @@ class SampleSequence {
 public:
     SampleSequence(std::uint64_t seed, int x, int y, std::uint32_t sample);
 
+    /// The sequence of one of `copies` copies of the sample. Those of all samples of a pixel are
+    /// one sequence, so many times as long.
+    SampleSequence copy(std::uint32_t number, std::uint32_t copies) const;
+
     /// Four numbers of dimensions 4 set ... 4 set + 3.
     std::array<double, 4> draw(std::uint32_t set) const;
 

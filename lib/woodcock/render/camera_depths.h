@@ -27,7 +27,7 @@ public:
     /// Null where the camera is inside of the medium's box or moves, where the medium has no end,
     /// moves, or has fields of several channels, and where the lattice would be too coarse to show
     /// what the medium is like. Null where lines lie farther apart than the picture is wide: then
-    /// few rays share them, and the same error. Null in thick media, too: where a camera ray
+    /// few rays share them, and the same error. Null in deep media, too: where a camera ray
     /// scatters decides little there. The scene must outlive it.
     static std::unique_ptr<const CameraDepths> make(const Scene& scene, int width, int height);
     ~CameraDepths();

@@ -14,10 +14,14 @@ bool flightsMeetLight(const Scene& scene, const Needs& needs) {
 
 }  // namespace
 
+double depthAcross(const MediumSummary& medium) {
+    if (medium.medium->parts.empty()) return 0;
+    return medium.meanExtinction * length(medium.bounds.size());
+}
+
 bool isThick(const MediumSummary& medium) {
     constexpr double thick = 30;
-    return !medium.medium->parts.empty() &&
-           medium.meanExtinction * length(medium.bounds.size()) > thick;
+    return depthAcross(medium) > thick;
 }
 
 bool thickAndPeaked(const MediumSummary& medium) {

@@ -12,7 +12,10 @@
 
 namespace woodcock::render {
 
-/// Whether paths in a medium are long, as the mean optical depth of its diagonal tells.
+/// The mean optical depth along the diagonal of a medium's box.
+double depthAcross(const MediumSummary& medium);
+
+/// Whether paths in a medium are long, as that tells.
 bool isThick(const MediumSummary& medium);
 
 /// Whether they are, and a single next event is noisy as the phase function has a peak: see

@@ -23,24 +23,23 @@ namespace woodcock::render::HWY_NAMESPACE {
 /// So often the point of a camera ray is drawn evenly, so that it may be wherever the medium is.
 inline constexpr double evenPoints = 1.0 / 32;
 
-/// Draws where a camera ray scatters, by the depths along it, and weights the path by what
-/// scatters there. The light behind the medium is added for what passes. So no chance decides
-/// between the two. False: the ray has no such depths.
+/// Draws where a camera ray scatters, by the depths along it: at several points, each of which the
+/// path follows, weighted by what scatters there. The light behind the medium is added for what
+/// passes. So no chance decides between the two. False: the ray has no such depths.
 ///
-/// All that the path brings is proportional to the transmittance up to where it scatters, which the
-/// depths estimate. As in correctedTransmittance(), rare exact integrations correct it: by a factor
-/// for the path, see endCameraPath().
+/// All that the path brings from a point is proportional to the transmittance up to there, which
+/// the depths estimate. As in correctedTransmittance(), rare exact integrations correct it: by a
+/// factor for the point, see endPoint().
 template <int N>
 bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
     Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
     l.fromCamera = scene_.cameraDepths && l.set == 0;
     if (!l.fromCamera) return false;
-    l.cameraDirection = p.direction, l.correction = Spectrum<N>(1.0f), l.worth = Spectrum<N>();
-    const CameraDepths::Ray ray = scene_.cameraDepths->at(p.raster[0], p.raster[1]);
-    const DepthsAhead<N> ahead(*scene_.cameraDepths, ray, scene_.parts.data());
-    l.passes = transmittanceOf<N>(ahead.whole());
-    std::ranges::fill(l.stopped, Spectrum<N>());
+    l.cameraDirection = p.direction, l.sequence = p.sequence;
+    l.worth = Spectrum<N>(), l.passes = Spectrum<N>(1.0f);
+    l.point = 0, l.points.clear();
+    state_[lane] = Idle;
     double t0 = std::numeric_limits<double>::infinity(), t1 = 0;
     for (std::size_t k = 0; k < scene_.partCount; ++k) {
         const medium::MediumPart& part = *scene_.parts[k].part;
@@ -48,36 +47,60 @@ bool LaneTracer<N>::scatterCameraRay(std::size_t lane) {
         if (grid::clip(part.indexRay(p.origin, p.direction), part.support(), enters, leaves))
             t0 = std::min(t0, enters), t1 = std::max(t1, leaves);
     }
-    state_[lane] = Idle;
-    if (!(t0 < t1)) {
-        l.passes = Spectrum<N>(1.0f);
-        return true;
-    }
-    l.worth = worthOf(p);
+    if (!(t0 < t1)) return true;
+    const CameraDepths::Ray ray = scene_.cameraDepths->at(p.raster[0], p.raster[1]);
+    const DepthsAhead<N> ahead(*scene_.cameraDepths, ray, scene_.parts.data());
+    l.passes = transmittanceOf<N>(ahead.whole()), l.worth = worthOf(p);
     // Of each channel, the share of the points that are drawn by its depth.
     float shares[N], sum = 0;
     for (int c = 0; c < N; ++c)
         sum += shares[c] = -std::expm1(-ahead.whole()[c]) * scene_.cameraAlbedo[c];
     const double even = sum > 0 ? evenPoints : 1;
-    double u = p.flight, t = t0 + (t1 - t0) * u / even;
-    if (u >= even) {
+    const auto drawPoint = [&](double u) {
+        if (u < even) return t0 + (t1 - t0) * u / even;
         u = (u - even) / (1 - even) * double{sum};
         int c = 0;
         while (c + 1 < N && u >= double{shares[c]}) u -= double{shares[c++]};
         const auto scattered = std::min(1.0f - 0x1p-24f, static_cast<float>(u / double{shares[c]}));
-        t = ahead.find(c, -std::log1p(scattered * std::expm1(-ahead.whole()[c])));
+        return ahead.find(c, -std::log1p(scattered * std::expm1(-ahead.whole()[c])));
+    };
+    float chance = 0;
+    for (int i = 0; i < scene_.points; ++i) {
+        const double t = drawPoint((i + p.flight) / scene_.points);
+        const typename DepthsAhead<N>::Place place = ahead.at(t);
+        double density = t > t0 && t < t1 ? even / (t1 - t0) : 0;
+        for (int c = 0; c < N; ++c)
+            if (sum > 0)
+                density += (1 - even) * double{scene_.cameraAlbedo[c] / sum} *
+                           double{place.slope[c]} * std::exp(-double{place.depth[c]});
+        chance = std::max(chance, ahead.correctionChance(place.step + 1));
+        if (!(density > 0)) continue;
+        l.points.push_back({t, transmittanceOf<N>(place.depth),
+                            static_cast<float>(1 / (density * scene_.points))});
     }
-    const typename DepthsAhead<N>::Place place = ahead.at(t);
-    double density = t > t0 && t < t1 ? even / (t1 - t0) : 0;
-    for (int c = 0; c < N; ++c)
-        if (sum > 0)
-            density += (1 - even) * double{scene_.cameraAlbedo[c] / sum} * double{place.slope[c]} *
-                       std::exp(-double{place.depth[c]});
-    l.flightStart = t;
-    const float chance = ahead.correctionChance(place.step + 1);
-    const Spectrum<N> estimate = transmittanceOf<N>(place.depth);
-    if (p.random.uniform() < double{chance}) correctCameraRay(lane, t, estimate, chance);
-    return density > 0 ? scatterAt(lane, t, estimate * static_cast<float>(1 / density)) : true;
+    std::ranges::sort(l.points, {}, &CameraPoint::t);
+    if (p.random.uniform() < double{chance}) correctCameraRay(lane, chance);
+    return true;
+}
+
+/// Has a path of scatterCameraRay() scatter at the next of its points. False: there is none.
+template <int N>
+bool LaneTracer<N>::nextPoint(std::size_t lane) {
+    Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    for (; l.point < l.points.size(); ++l.point) {
+        p.scatterings = 0, p.direction = l.cameraDirection, p.mediumSet = l.set = 0;
+        p.sequence = l.sequence.copy(static_cast<std::uint32_t>(l.point),
+                                     static_cast<std::uint32_t>(scene_.points));
+        l.first = true, share_[lane] = 1, l.radianceBefore = p.radiance;
+        if (batch_.layers.splitsLight() && l.points[l.point].corrected) {
+            const auto parts = batch_.layers.partsOf(*p.result);
+            l.partsBefore.assign(parts.begin(), parts.end());
+        }
+        if (scatterAt(lane, l.points[l.point])) return true;
+        endPoint(lane);
+    }
+    return false;
 }
 
 /// What light that stops on a path's camera ray is expected to bring. Where it stops is chance, and
@@ -103,31 +126,37 @@ Spectrum<N> LaneTracer<N>::worthOf(const PathState<N, false>& p) {
     return worth_.value;
 }
 
-/// Integrates a camera ray exactly, up to `t` and beyond.
+/// Integrates a camera ray exactly, up to its points and beyond.
 template <int N>
-void LaneTracer<N>::correctCameraRay(std::size_t lane, double t, const Spectrum<N>& estimate,
-                                     float chance) {
+void LaneTracer<N>::correctCameraRay(std::size_t lane, float chance) {
     Lane& l = lanes_[lane];
     const PathState<N, false>& p = pathOf(lane);
     const medium::Medium& medium = traced_.mediumOfSet(0);
-    const Spectrum<N> before = channels<N>(
-                          medium::exactOpticalDepth(medium, p.origin, p.direction, 0, t)),
-                      behind = channels<N>(
-                          medium::exactOpticalDepth(medium, p.origin, p.direction, t,
-                                                    std::numeric_limits<double>::infinity()));
-    for (int c = 0; c < N; ++c) {
-        l.correction[c] += (std::exp(-before[c]) / estimate[c] - 1) / chance;
-        l.passes[c] += (std::exp(-before[c] - behind[c]) - l.passes[c]) / chance;
+    Spectrum<N> depth;
+    double from = 0;
+    const auto goTo = [&](double t) {
+        depth += channels<N>(medium::exactOpticalDepth(medium, p.origin, p.direction, from, t));
+        from = t;
+    };
+    for (CameraPoint& point : l.points) {
+        goTo(point.t);
+        point.corrected = true;
+        for (int c = 0; c < N; ++c)
+            point.correction[c] += (std::exp(-depth[c]) / point.passes[c] - 1) / chance;
     }
+    goTo(std::numeric_limits<double>::infinity());
+    for (int c = 0; c < N; ++c) l.passes[c] += (std::exp(-depth[c]) - l.passes[c]) / chance;
 }
 
 /// Puts the lane's path to a point of its camera ray, where it scatters; its throughput becomes
-/// `weight` times the density of the scattering. It scatters nowhere where nothing is there.
+/// the point's weight times the density of the scattering. It scatters nowhere where nothing is
+/// there.
 template <int N>
-bool LaneTracer<N>::scatterAt(std::size_t lane, double t, const Spectrum<N>& weight) {
+bool LaneTracer<N>::scatterAt(std::size_t lane, CameraPoint& point) {
     Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
-    const Vec3d at = p.origin + p.direction * t;
+    const Vec3d at = p.origin + p.direction * point.t;
+    const Spectrum<N> weight = point.passes * point.weight;
     Spectrum<N> scattered[CameraDepths::mostParts];
     float shares[CameraDepths::mostParts], sum = 0;
     for (std::size_t k = 0; k < scene_.partCount; ++k) {
@@ -135,20 +164,22 @@ bool LaneTracer<N>::scatterAt(std::size_t lane, double t, const Spectrum<N>& wei
         const float f = part.field()->trilinear(part.indexRay(at, p.direction).origin);
         scattered[k] = weight * channels<N>(part.scattering()) * f;
         sum += shares[k] = scattered[k].mean();
-        l.stopped[k] = weight * channels<N>(part.extinction()) * f;
-        setLane(chance_, lane, laneOf(chance_, lane) + l.stopped[k] * l.worth);
+        point.stopped[k] = weight * channels<N>(part.extinction()) * f;
+        setLane(chance_, lane, laneOf(chance_, lane) + point.stopped[k] * l.worth);
     }
-    if (!(sum > 0)) return true;
+    if (!(sum > 0)) return false;
     double u = several_ ? p.random.uniform() * double{sum} : 0;
     std::size_t k = 0;
     while (k + 1 < scene_.partCount && (u >= double{shares[k]} || !(shares[k] > 0)))
         u -= double{shares[k++]};
-    if (!(shares[k] > 0)) return true;
+    if (!(shares[k] > 0)) return false;
     l.processes.resize(scene_.partCount);
-    enter(scene_.parts[numberOf(lane, k)], at, p.direction, 0, l.processes[k]);
-    if (l.processes[k].ended) return true;
-    l.processes[k].t = 0, l.part = k;
+    enter(scene_.parts[numberOf(lane, k)], at, l.cameraDirection, 0, l.processes[k]);
+    if (l.processes[k].ended) return false;
+    l.processes[k].t = 0, l.part = k, l.flightStart = point.t;
     limit_[lane] = huge;
+    for (int i = 0; i < 3; ++i) v_[i][lane] = static_cast<float>(l.cameraDirection[i]);
+    density_[lane] = 0, scattered_[lane] = 0;
     put(lane, l.processes[k]);
     scatterIn(lane);
     setLane(w_, lane, scattered[k] * (sum / shares[k]));
@@ -157,17 +188,32 @@ bool LaneTracer<N>::scatterAt(std::size_t lane, double t, const Spectrum<N>& wei
     return true;
 }
 
-/// All is known that a path brings that scatterCameraRay() has begun: corrects it, and adds the
-/// light from behind the medium.
+/// All is known that a path brings from a point of its camera ray: corrects it.
+template <int N>
+void LaneTracer<N>::endPoint(std::size_t lane) {
+    Lane& l = lanes_[lane];
+    PathState<N, false>& p = pathOf(lane);
+    bringControls(lane);
+    CameraPoint& point = l.points[l.point];
+    if (point.corrected) {
+        const Rgb correction = toRgb(point.correction);
+        p.radiance = l.radianceBefore + (p.radiance - l.radianceBefore) * correction;
+        if (batch_.layers.splitsLight()) {
+            const std::span<Rgb> parts = batch_.layers.partsOf(*p.result);
+            for (std::size_t i = 0; i < parts.size(); ++i)
+                parts[i] = l.partsBefore[i] + (parts[i] - l.partsBefore[i]) * correction;
+        }
+    }
+    point.light = p.radiance - l.radianceBefore;
+}
+
+/// All is known that a path brings from the points of its camera ray: adds the light from behind
+/// the medium.
 template <int N>
 void LaneTracer<N>::endCameraPath(std::size_t lane) {
     const Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
     const light::LightSet& lights = traced_.scene.lights;
-    const Rgb correction = toRgb(l.correction);
-    p.radiance *= correction;
-    if (batch_.layers.splitsLight())
-        for (Rgb& part : batch_.layers.partsOf(*p.result)) part *= correction;
     if (scene_.chanceLight >= 0)
         bring(batch_, p, toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth) * scene_.chanceUnit,
               image::LightKind::VolumeIndirect, lights.group(scene_.chanceLight));
@@ -182,9 +228,9 @@ void LaneTracer<N>::endCameraPath(std::size_t lane) {
     if (traced_.options.stoppedLight) noteCameraStops(lane);
 }
 
-/// Notes where a camera ray that scatterCameraRay() has drawn has lost its light. What its parts
-/// stop at the point adds up to alpha on average. The rest has a mean of zero, wherever it is
-/// counted: where half of the depth is.
+/// Notes where a camera ray that scatterCameraRay() has drawn has lost its light, and from where
+/// light has come. What its parts stop at the points adds up to alpha on average. The rest has a
+/// mean of zero, wherever it is counted: where half of the depth is.
 template <int N>
 void LaneTracer<N>::noteCameraStops(std::size_t lane) {
     const Lane& l = lanes_[lane];
@@ -193,36 +239,43 @@ void LaneTracer<N>::noteCameraStops(std::size_t lane) {
     image::StoppedLight& stopped = *p.result->stopped;
     const CameraDepths::Ray ray = scene_.cameraDepths->at(p.raster[0], p.raster[1]);
     const DepthsAhead<N> ahead(*scene_.cameraDepths, ray, scene_.parts.data());
-    Spectrum<N> rest = Spectrum<N>(1.0f) - l.passes;
-    double amounts[CameraDepths::mostParts], shares[CameraDepths::mostParts],
-        left = double{p.result->film.alpha}, depth = 0;
-    for (std::size_t k = 0; k < scene_.partCount; ++k) {
-        const Spectrum<N> atPoint = l.stopped[k] * l.correction;
-        rest = rest - atPoint;
-        left -= amounts[k] = double{atPoint.mean()};
-        depth += shares[k] = double{ray.density(scene_.cameraDepths->steps(), k) *
-                                    scene_.parts[k].part->largestExtinction()};
-    }
     int channel = 0;
     for (int c = 1; c < N; ++c)
         if (ahead.whole()[c] > ahead.whole()[channel]) channel = c;
     const double half = ahead.find(channel, ahead.whole()[channel] / 2);
     const PlanarDepth planar(traced_, p);
-    const auto addRest = [&] {
+    const Rgb unit = scene_.chanceLight >= 0 ? scene_.chanceUnit : Rgb();
+    Spectrum<N> rest = Spectrum<N>(1.0f) - l.passes;
+    for (const CameraPoint& point : l.points) {
+        Spectrum<N> atPoint;
+        for (std::size_t k = 0; k < scene_.partCount; ++k)
+            atPoint += point.stopped[k] * point.correction;
+        rest = rest - atPoint;
+        stopped.arrivals.push_back(
+            {planar.at(point.t), point.light + toRgb(atPoint * l.worth) * unit, false});
+    }
+    stopped.arrivals.push_back({planar.at(half), toRgb(rest * l.worth) * unit, false});
+    // What glows brings its light later, and then there is one point.
+    stopped.firstEvent = {planar.at(l.points.empty() ? half : l.points.front().t), {}, false};
+    double depth = 0, shares[CameraDepths::mostParts];
+    for (std::size_t k = 0; k < scene_.partCount; ++k)
+        depth += shares[k] = double{ray.density(scene_.cameraDepths->steps(), k) *
+                                    scene_.parts[k].part->largestExtinction()};
+    bool added = false;
+    const auto addRestBefore = [&](double t) {
+        if (added || half >= t) return;
+        added = true;
         for (std::size_t k = 0; k < scene_.partCount; ++k)
             addStop(traced_, stopped, planar.at(half), k,
-                    left * (depth > 0 ? shares[k] / depth : (k == 0 ? 1.0 : 0.0)));
+                    double{rest.mean()} * (depth > 0 ? shares[k] / depth : (k == 0 ? 1.0 : 0.0)));
     };
-    const bool atPoint = std::ranges::any_of(std::span(l.stopped).first(scene_.partCount),
-                                             [](const auto& s) { return s.maximum() > 0; });
-    if (!atPoint || half < l.flightStart) addRest();
-    for (std::size_t k = 0; atPoint && k < scene_.partCount; ++k)
-        addStop(traced_, stopped, planar.at(l.flightStart), k, amounts[k]);
-    if (atPoint && half >= l.flightStart) addRest();
-    if (scene_.chanceLight >= 0)
-        stopped.arrivals.push_back(
-            {planar.at(half), toRgb(rest * l.worth) * scene_.chanceUnit, false});
-    stopped.firstEvent = {planar.at(atPoint ? l.flightStart : half), {}, false};
+    for (const CameraPoint& point : l.points) {
+        addRestBefore(point.t);
+        for (std::size_t k = 0; k < scene_.partCount; ++k)
+            addStop(traced_, stopped, planar.at(point.t), k,
+                    double{(point.stopped[k] * point.correction).mean()});
+    }
+    addRestBefore(std::numeric_limits<double>::infinity());
 }
 
 }  // namespace woodcock::render::HWY_NAMESPACE

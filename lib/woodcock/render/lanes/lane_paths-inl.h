@@ -34,12 +34,11 @@ void LaneTracer<N>::nextPath(std::size_t lane) {
         count_[lane] = 0;
         density_[lane] = 0, scattered_[lane] = 0, share_[lane] = 1;
         setLane(w_, lane, p.throughput);
-        for (Floats* rows : {chance_, prediction_, predicted_}) setLane(rows, lane, Spectrum<N>());
         collisionsToNote(traced_, batch_, l.path);  // makes room
         if (!scene_.emission.empty()) lookForEmission(lane, nullptr);
         if (scatterCameraRay(lane)) {
-            if (state_[lane] == Arrived) return;
-            bringControls(lane);
+            if (nextPoint(lane)) return;
+            endCameraPath(lane);
         } else {
             if (begin(lane, p.origin, static_cast<float>(-std::log(p.flight)))) return;
             leave(lane);
@@ -56,7 +55,8 @@ void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) 
     const Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
     Spectrum<N> throughput = throughputOf(lane);
-    if (scatters && l.fromCamera) throughput *= l.correction;  // what comes later has it no more
+    // What comes later is not corrected by endPoint().
+    if (scatters && l.fromCamera) throughput *= l.points[l.point].correction;
     EmissionVertex<N> vertex{.path = l.path,
                              .set = l.set,
                              .kind = kindOfLight(p, scatters ? 1 : 0),
@@ -69,8 +69,8 @@ void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) 
                              .raster = p.raster};
     if (!scatters && isToBeNoted(traced_, p)) vertex.depth.emplace(traced_, p);
     if (scatters) {
-        // As many as its light is worth: of 3 to 99 rays for a weight of 1, 6 measured best.
-        constexpr float raysPerWeight = 6, mostRays = 4;
+        // As many as its light is worth: of 3 to 12 rays for a weight of 1, 9 measured best.
+        constexpr float raysPerWeight = 9, mostRays = 4;
         if (p.scatterings < 2)
             vertex.rays = static_cast<int>(
                 std::clamp(std::ceil(raysPerWeight * throughput.maximum()), 1.0f, mostRays));
@@ -166,8 +166,14 @@ void LaneTracer<N>::endBranch(std::size_t lane) {
     PathState<N, false>& p = pathOf(lane);
     l.scatterings += p.scatterings;
     if (l.branches.empty()) {
+        if (l.fromCamera) {
+            endPoint(lane), ++l.point;
+            if (nextPoint(lane)) return;
+            endCameraPath(lane);
+        } else {
+            bringControls(lane);
+        }
         p.alive = false, p.scatterings = l.scatterings;  // as a measure of work
-        bringControls(lane);
         nextPath(lane);
         return;
     }
@@ -202,7 +208,7 @@ void LaneTracer<N>::bringControls(std::size_t lane) {
     if (scene_.sun >= 0)
         bring(batch_, p, toRgb(laneOf(prediction_, lane)) * scene_.centre.weight, kind,
               lights.group(scene_.sun));
-    if (lanes_[lane].fromCamera) endCameraPath(lane);
+    for (Floats* rows : {chance_, prediction_, predicted_}) setLane(rows, lane, Spectrum<N>());
 }
 
 }  // namespace woodcock::render::HWY_NAMESPACE

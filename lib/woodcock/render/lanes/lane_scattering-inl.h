@@ -66,9 +66,12 @@ bool LaneTracer<N>::mayGoOn(std::size_t lane) {
         if (several_) l.position = positionOf(lane);
     }
     ++batch_.counters.scatterings;
-    l.quasiRandom = !l.extra && l.first && p.scatterings < quasiRandomOrders;
+    const std::int64_t orders = l.fromCamera && scene_.points > 1 ? 1 : quasiRandomOrders;
+    l.quasiRandom = !l.extra && l.first && p.scatterings < orders;
     EventNumbers& u = numbers_[lane];
-    if (l.quasiRandom) {
+    if (l.quasiRandom && !samplesLights_ && scene_.emission.empty()) {
+        drawTurnNumbers(p, u);
+    } else if (l.quasiRandom) {
         u = drawNumbers(p);
     } else if (samplesLights_) {
         u.light = {p.random.uniform(), p.random.uniform()}, u.pick = p.random.uniform();
@@ -142,7 +145,9 @@ void LaneTracer<N>::goOn(std::size_t lane, float growth) {
         setLane(w_, lane, p.throughput);
     }
     if (scene_.thick && scene_.sun >= 0) {
-        if (!keepWindow(lane, partOf(lane).windowScale * growth)) {
+        // A path's points on its camera ray share its weight.
+        const auto points = static_cast<float>(lanes_[lane].fromCamera ? scene_.points : 1);
+        if (!keepWindow(lane, partOf(lane).windowScale * growth / points)) {
             endBranch(lane);
             return;
         }

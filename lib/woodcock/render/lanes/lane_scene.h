@@ -68,6 +68,7 @@ struct LaneScene {
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
     Rgb cameraAlbedo;  ///< of all parts: sigma_s / sigma_t
+    int points = 1;    ///< of a camera ray that has such depths, at which its path scatters
 
     /// Nothing where the scene needs more than lanes can do; its paths are then traced one by one.
     static std::optional<LaneScene> make(const TracedScene& traced);

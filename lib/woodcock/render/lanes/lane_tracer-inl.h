@@ -116,6 +116,18 @@ private:
         int copies;
     };
 
+    /// A point at which a camera ray scatters.
+    struct CameraPoint {
+        double t;            ///< its distance
+        Spectrum<N> passes;  ///< what its depths let pass up to there
+        float weight;        ///< one over the density with which points are drawn there
+        Spectrum<N> correction{1.0f};
+        bool corrected = false;
+        /// What each part stops there, before the correction.
+        Spectrum<N> stopped[CameraDepths::mostParts]{};
+        Rgb light{};  ///< that the path has brought from there
+    };
+
     /// What a lane's path has that is not in vectors.
     struct Lane {
         std::uint32_t path;
@@ -128,17 +140,20 @@ private:
         std::vector<Process> processes;  ///< of each part, where there are several
         Vec3d position;                  ///< of the last scattering; there
         std::vector<Branch> branches;    ///< that are still to be followed
-        bool first = true;               ///< this branch has the quasi-random numbers
+        bool first = true;               ///< this branch has quasi-random numbers
         bool quasiRandom = false;        ///< also for the turn and the flight ahead
         std::int64_t scatterings = 0;    ///< of the branches before
 
         // Of a path that scatterCameraRay() has begun:
         bool fromCamera = false;
         Vec3d cameraDirection;
-        Spectrum<N> passes, correction;  ///< of the camera ray; of all that scatters on it
-        Spectrum<N> worth;               ///< what light that stops there is expected to bring
-        /// What each part stops where it scatters, before the correction.
-        Spectrum<N> stopped[CameraDepths::mostParts];
+        SampleSequence sequence{0, 0, 0, 0};
+        Spectrum<N> passes;  ///< of the camera ray
+        Spectrum<N> worth;   ///< what light that stops there is expected to bring
+        std::vector<CameraPoint> points;
+        std::size_t point = 0;  ///< that it scatters at now
+        Rgb radianceBefore;     ///< what it has brought before that one
+        std::vector<Rgb> partsBefore;
 
         // Of several flights from where the path has turned:
         bool extra = false;  ///< this is one of them, and not the path's own
@@ -196,8 +211,10 @@ private:
 
     // ---- lane_camera-inl.h
     bool scatterCameraRay(std::size_t lane);
-    void correctCameraRay(std::size_t lane, double t, const Spectrum<N>& estimate, float chance);
-    bool scatterAt(std::size_t lane, double t, const Spectrum<N>& weight);
+    void correctCameraRay(std::size_t lane, float chance);
+    bool nextPoint(std::size_t lane);
+    bool scatterAt(std::size_t lane, CameraPoint& point);
+    void endPoint(std::size_t lane);
     Spectrum<N> worthOf(const PathState<N, false>& p);
     void endCameraPath(std::size_t lane);
     void noteCameraStops(std::size_t lane);
