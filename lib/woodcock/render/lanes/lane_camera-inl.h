@@ -89,7 +89,8 @@ bool LaneTracer<N>::nextPoint(std::size_t lane) {
     Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
     for (; l.point < l.points.size(); ++l.point) {
-        p.scatterings = 0, p.direction = l.cameraDirection, p.mediumSet = l.set = 0;
+        p.scatterings = 0, p.alive = true;
+        p.direction = l.cameraDirection, p.mediumSet = l.set = 0;
         p.sequence = l.sequence.copy(static_cast<std::uint32_t>(l.point),
                                      static_cast<std::uint32_t>(scene_.points));
         l.first = true, share_[lane] = 1, l.radianceBefore = p.radiance;
@@ -176,10 +177,9 @@ bool LaneTracer<N>::scatterAt(std::size_t lane, CameraPoint& point) {
     l.processes.resize(scene_.partCount);
     enter(scene_.parts[numberOf(lane, k)], at, l.cameraDirection, 0, l.processes[k]);
     if (l.processes[k].ended) return false;
-    l.processes[k].t = 0, l.part = k, l.flightStart = point.t;
+    l.processes[k].t = 0, l.part = k;
     limit_[lane] = huge;
     for (int i = 0; i < 3; ++i) v_[i][lane] = static_cast<float>(l.cameraDirection[i]);
-    density_[lane] = 0, scattered_[lane] = 0;
     put(lane, l.processes[k]);
     scatterIn(lane);
     setLane(w_, lane, scattered[k] * (sum / shares[k]));
@@ -245,16 +245,18 @@ void LaneTracer<N>::noteCameraStops(std::size_t lane) {
     const double half = ahead.find(channel, ahead.whole()[channel] / 2);
     const PlanarDepth planar(traced_, p);
     const Rgb unit = scene_.chanceLight >= 0 ? scene_.chanceUnit : Rgb();
+    const auto addArrival = [&](double t, Rgb radiance) {
+        if (radiance != Rgb()) stopped.arrivals.push_back({planar.at(t), radiance, false});
+    };
     Spectrum<N> rest = Spectrum<N>(1.0f) - l.passes;
     for (const CameraPoint& point : l.points) {
         Spectrum<N> atPoint;
         for (std::size_t k = 0; k < scene_.partCount; ++k)
             atPoint += point.stopped[k] * point.correction;
         rest = rest - atPoint;
-        stopped.arrivals.push_back(
-            {planar.at(point.t), point.light + toRgb(atPoint * l.worth) * unit, false});
+        addArrival(point.t, point.light + toRgb(atPoint * l.worth) * unit);
     }
-    stopped.arrivals.push_back({planar.at(half), toRgb(rest * l.worth) * unit, false});
+    addArrival(half, toRgb(rest * l.worth) * unit);
     // What glows brings its light later, and then there is one point.
     stopped.firstEvent = {planar.at(l.points.empty() ? half : l.points.front().t), {}, false};
     double depth = 0, shares[CameraDepths::mostParts];

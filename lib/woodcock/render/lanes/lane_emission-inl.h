@@ -36,7 +36,8 @@ struct EmissionVertex {
     Vec3d direction;           ///< of the path before; of the camera's ray
     const LanePart* scatters;  ///< the part whose phase function turns the rays; null: the camera's
     Spectrum<N> throughput;
-    std::uint64_t key;        ///< of random numbers
+    Spectrum<N> correction{1.0f};  ///< of the camera's ray: see LaneTracer::endPoint()
+    std::uint64_t key;             ///< of random numbers
     std::array<double, 2> u;  ///< in [0, 1): of the rays' directions; of the camera's first tooth
     std::array<double, 2> raster;  ///< of the camera's ray, in pixels
     int rays = 1;
@@ -404,7 +405,7 @@ private:
         PathState<N, false>& p = batch_.paths[vertex.path];
         if (!vertex.scatters) p.result->film.glow = 1;
         bring(batch_, p,
-              ray.light * ray.weight * toRgb(vertex.throughput) *
+              ray.light * ray.weight * toRgb(vertex.throughput * vertex.correction) *
                   (1 / static_cast<float>(vertex.rays)),
               vertex.kind, scene_.emission[vertex.set].group());
     }

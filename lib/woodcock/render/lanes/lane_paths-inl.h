@@ -54,16 +54,13 @@ template <int N>
 void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) {
     const Lane& l = lanes_[lane];
     PathState<N, false>& p = pathOf(lane);
-    Spectrum<N> throughput = throughputOf(lane);
-    // What comes later is not corrected by endPoint().
-    if (scatters && l.fromCamera) throughput *= l.points[l.point].correction;
     EmissionVertex<N> vertex{.path = l.path,
                              .set = l.set,
                              .kind = kindOfLight(p, scatters ? 1 : 0),
                              .position = scatters ? positionOf(lane) : p.origin,
                              .direction = scatters ? directionOf(lane) : p.direction,
                              .scatters = scatters,
-                             .throughput = throughput,
+                             .throughput = throughputOf(lane),
                              .key = p.random.bits(),
                              .u = {p.equiangular, 0},
                              .raster = p.raster};
@@ -71,9 +68,14 @@ void LaneTracer<N>::lookForEmission(std::size_t lane, const LanePart* scatters) 
     if (scatters) {
         // As many as its light is worth: of 3 to 12 rays for a weight of 1, 9 measured best.
         constexpr float raysPerWeight = 9, mostRays = 4;
-        if (p.scatterings < 2)
-            vertex.rays = static_cast<int>(
-                std::clamp(std::ceil(raysPerWeight * throughput.maximum()), 1.0f, mostRays));
+        if (l.fromCamera) vertex.correction = l.points[l.point].correction;
+        if (p.scatterings < 2) {
+            const Spectrum<N> brings = vertex.throughput * vertex.correction;
+            const float weight =
+                Spectrum<N>::map([&](int c) { return std::abs(brings[c]); }).maximum();
+            vertex.rays =
+                static_cast<int>(std::clamp(std::ceil(raysPerWeight * weight), 1.0f, mostRays));
+        }
         if (l.quasiRandom)
             vertex.u = numbers_[lane].light;
         else

@@ -142,7 +142,7 @@ private:
         std::vector<Branch> branches;    ///< that are still to be followed
         bool first = true;               ///< this branch has quasi-random numbers
         bool quasiRandom = false;        ///< also for the turn and the flight ahead
-        std::int64_t scatterings = 0;    ///< of the branches before
+        std::int64_t scatterings = 0;    ///< of the branches and points before
 
         // Of a path that scatterCameraRay() has begun:
         bool fromCamera = false;

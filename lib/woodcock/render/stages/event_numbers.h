@@ -41,9 +41,9 @@ template <int N, bool Surfaces>
     return {{a[0], a[1]}, {a[2], a[3]}, 1 - b[0], b[1], b[2]};
 }
 
-/// Only those of the turn and the flight, where nothing else needs any.
-template <int N, bool Surfaces>
-[[gnu::always_inline]] inline void drawTurnNumbers(const PathState<N, Surfaces>& p,
+/// Only those of the turn and the flight of one of the first orders, where nothing else needs any.
+template <int N>
+[[gnu::always_inline]] inline void drawTurnNumbers(const PathState<N, false>& p,
                                                    EventNumbers& numbers) {
     const auto u = p.sequence.draw(static_cast<std::uint32_t>(2 * p.scatterings + 1));
     numbers.phase = {u[0], u[1]}, numbers.flight = 1 - u[2];
