@@ -22,7 +22,7 @@ constexpr double fewestNodes = 80;
 /// Memory that all lines may take: so much, or a quarter of the medium's fields.
 constexpr std::size_t mostLineBytes = 64u << 20;
 /// Media deeper than this, across, have none. At 31 and 32, they make a grey and a coloured medium
-/// 1.1 to 1.3 times cheaper; at 63 and more, 1.1 to 1.4 times dearer.
+/// 1.06 to 1.3 times cheaper; at 63 and more, 1.1 to 1.4 times dearer.
 constexpr double deepest = 50;
 
 bool canHaveLines(const Scene& scene) {

@@ -11,7 +11,7 @@ namespace {
 
 /// Points at which the path of a camera ray scatters. They share what leads to them, which costs as
 /// much as what follows from one of them. Of 1 to 6, these measured best: 1.7 times cheaper than 1
-/// in thin smoke, 1.6 in two overlapping media, and 1.1 to 1.3 in a coloured medium that is barely
+/// in thin smoke, 1.5 in two overlapping media, and 1.06 to 1.3 in a coloured medium that is barely
 /// thick. In fire, most of the variance is of what glows, and 1 is best.
 constexpr int pointsWhereThin = 4, pointsWhereThick = 2;
 
