@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "woodcock/base/denormals_are_zero.h"
 #include "woodcock/render/lanes/lane_camera-inl.h"
 #include "woodcock/render/lanes/lane_collisions-inl.h"
 #include "woodcock/render/lanes/lane_emission-inl.h"
@@ -43,10 +44,12 @@ HWY_EXPORT(traceChromatic);
 
 template <>
 void traceLanes(const LaneScene& scene, Batch<1, false>& batch) {
+    const DenormalsAreZero flush;
     HWY_DYNAMIC_DISPATCH(traceGrey)(scene, batch);
 }
 template <>
 void traceLanes(const LaneScene& scene, Batch<3, false>& batch) {
+    const DenormalsAreZero flush;
     HWY_DYNAMIC_DISPATCH(traceChromatic)(scene, batch);
 }
 
