@@ -23,7 +23,7 @@ namespace woodcock::medium {
 class DepthGrid {
 public:
     /// `towards`: unit vector in world space. `mostBytes`: of the whole lattice, whose nodes are
-    /// two of the medium's finest voxels apart where that fits. Null where the medium has no end,
+    /// 1.4 of the medium's finest voxels apart where that fits. Null where the medium has no end,
     /// moves, or has an extinction that varies against its density; and where so much memory is too
     /// little to show what the medium is like. The medium must outlive the grid.
     static std::unique_ptr<const DepthGrid> make(const Medium& medium, Vec3d towards,
