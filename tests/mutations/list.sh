@@ -143,6 +143,11 @@ defect "lanes' decisions are expected to lose what goes on" 'Lanes.*' "lanes and
     $lanes/lane_expected-inl.h \
     '(scattering * scattered + null * others)' '(scattering * scattered)'
 
+defect "lanes that leave are expected to have collided" '' "lanes and paths one by one" \
+    $lanes/lane_expected-inl.h \
+    'gain_[c][lane] * (drawn_[lane] - depth_[lane])' \
+    'gain_[c][lane] * (drawn_[lane] - depth_[lane] - 1)'
+
 defect "lanes' camera rays are worth as much as if nothing passed" 'Lanes.*' "lanes and paths one by one" \
     $lanes/lane_camera-inl.h \
     'toRgb((Spectrum<N>(1.0f) - l.passes) * l.worth)' 'toRgb(l.worth)'

@@ -54,6 +54,7 @@ public:
 
     /// From world space to cells, the first of which begins at the origin.
     const Affine3d& latticeFromWorld() const { return latticeFromWorld_; }
+    double edge() const { return edge_; }  ///< of a cell, in the world
     Vec3i cells() const { return cells_; }
     const Cell* content() const { return content_.data(); }  ///< x first, then y
     /// Where the medium is grey, its radiance is one channel of the mean colour of the lights.

@@ -176,6 +176,15 @@ std::vector<Subject> plainSubjects() {
          {},
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" +
              "sigma_s = [0.2, 1.5, 6]\nsigma_a = [1, 0.1, 0.3]\n" + lights},
+        {"barely thick, by the radiance of another medium",
+         ball + mediumOf(22, 0.8, "g = 0.5") + lights,
+         2,
+         {},
+         true,
+         {},
+         ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(60, 0.1, "g = -0.3") +
+             lights},
+        {"barely thick, in the sun alone", ball + mediumOf(22, 0.8, "g = 0.5") + deltaSun, 2},
         {"thick, in a disc's light", cloud + discSun + air, 0.2},
         {"in a disc's light", fog + discSun + air},
         {"in the light of two suns", fog + deltaSun + secondSun + air},
@@ -198,6 +207,8 @@ std::vector<Subject> otherSubjects() {
     return {
         {"chromatic", ball + coloured + lights},
         {"chromatic and thick", ball + deep + lights, 0.3},
+        {"chromatic and barely thick",
+         ball + "sigma_s = [25, 12, 4]\nsigma_a = [0.5, 2, 6]\ng = 0.5\n" + lights},
         {"chromatic and thick, in the sun alone", ball + deep + deltaSun, 2},
         {"chromatic, in a disc's light", ball + deep + discSun + air + hidden, 0.3},
         {"of two parts", ball + mediumOf(3, 0.1, "g = 0.6") + ball + turned +
@@ -288,6 +299,7 @@ std::vector<Subject> lampSubjects() {
     return {
         {"by a lamp, thin", thin + pointLamp + air},
         {"by a lamp, thick", cloud + pointLamp + air, 0.5},
+        {"by a lamp, barely thick", ball + mediumOf(22, 0.8, "g = 0.5") + pointLamp + air},
         {"by a lamp alone, chromatic", deep + pointLamp, 20},
         {"by a lamp, by a grid for another one of thrice the density",
          thin + pointLamp + air,

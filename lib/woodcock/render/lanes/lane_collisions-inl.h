@@ -27,6 +27,11 @@ HWY_INLINE void LaneTracer<N>::decideCollisions() {
     if (traced_.options.stoppedLight)
         forEachLane(bits, [&](std::size_t i) { noteCollision(i, !(bitsOf(nulls) >> i & 1)); });
     depth_.set(nulls, drawDepth(words[3]));
+    if (scene_.controlsFlights) {
+        drawn_.set(nulls, depth_.get());
+        for (int c = 0; c < N; ++c) gain_[c].set(nulls, hn::Zero(lanesF));
+        foresee(nulls);
+    }
     state_.set(ofInts(nulls), hn::Set(lanesI, Walking));
     state_.set(ofInts(hn::And(alive, scatters)), hn::Set(lanesI, Arrived));
     if (several_)
@@ -49,6 +54,7 @@ HWY_INLINE Mask LaneTracer<N>::decide(Mask colliding, const F f[N], F random) {
     const Mask counts =
         scene_.controlsCameraFlights ? colliding : hn::And(colliding, scattered_.get() > zero);
     F phase = zero;
+    if (scene_.controlsFlights) noteFlight(hn::And(colliding, scattered_.get() > zero));
     if (scene_.radiance) findExpected(bitsOf(colliding)), phase = phaseOfNextEvent();
     if constexpr (N == 1) {
         const F absorption = absorption_[0].get() * f[0], left = mu - absorption;

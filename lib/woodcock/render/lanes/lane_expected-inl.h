@@ -49,7 +49,11 @@ HWY_NOINLINE void LaneTracer<N>::findExpected(std::uint32_t bits) {
     const Mask where = maskOf(bits);
     for (int c = 0; c < N; ++c) {
         F here = read();
-        for (int k = 0; k < 3; ++k) here = here + within[k] * read();
+        for (int k = 0; k < 3; ++k) {
+            const F slope = read();
+            expectedSlope_[c][k].set(where, slope);
+            here = here + within[k] * slope;
+        }
         for (int k = 0; k < 3; ++k) expectedAhead_[c][k].set(where, read());
         expected_[c].set(where, here), expectedSun_[c].set(where, read());
     }
@@ -91,6 +95,40 @@ void LaneTracer<N>::noteTurn(std::uint32_t turned, const F before[N]) {
         const F more = all(expectedOfTurns) * (aheadIn(c) - before[c]);
         chance_[c].set(known, chance_[c].get() + w_[c].get() * more);
     }
+}
+
+/// Adds to gain_, for the flights ahead of these lanes, what is expected of the light that changes
+/// little. Sunlight at their ends is in it already, see takePrediction().
+///
+/// A path that flies on to where more light comes from brings more than one that collides: by the
+/// equation of transfer, sigma_t L - sigma_s J is the growth of the radiance L along the ray, where
+/// J is what scatters into it. So a tentative collision has a gain of -growth / majorant. Tentative
+/// collisions come once for each optical depth of the majorant, on average. So gain x (collisions -
+/// depth) has a mean of zero at the end of a flight, whatever gain is, if only it is known before
+/// the flight is drawn (a compensated Poisson process). noteFlight() and noteLeaving() take it off.
+template <int N>
+HWY_INLINE void LaneTracer<N>::foresee(Mask flying) {
+    // Cells are too coarse to tell where a thin one has its light from.
+    const F depth = hn::Max(all(1), mu_.get() * all(static_cast<float>(scene_.radiance->edge())));
+    for (int c = 0; c < N; ++c) {
+        const Floats* slope = expectedSlope_[c];
+        const F growth = v_[0].get() * slope[0].get() + v_[1].get() * slope[1].get() +
+                         v_[2].get() * slope[2].get();
+        gain_[c].set(flying, gain_[c].get() - w_[c].get() * growth / depth);
+    }
+}
+
+/// Takes off what flights bring too much that have come to a tentative collision where they did.
+template <int N>
+HWY_INLINE void LaneTracer<N>::noteFlight(Mask colliding) {
+    const F more = all(1) - drawn_.get();
+    for (int c = 0; c < N; ++c) chance_[c].set(colliding, chance_[c].get() + gain_[c].get() * more);
+}
+
+/// The same of a flight that has left the medium.
+template <int N>
+void LaneTracer<N>::noteLeaving(std::size_t lane) {
+    for (int c = 0; c < N; ++c) chance_[c][lane] -= gain_[c][lane] * (drawn_[lane] - depth_[lane]);
 }
 
 /// The phase function of the sunlight that a collision brings where it scatters.

@@ -96,6 +96,7 @@ template <int N>
 void LaneTracer<N>::leave(std::size_t lane) {
     PathState<N, false>& p = pathOf(lane);
     p.throughput = throughputOf(lane);
+    if (scene_.controlsFlights && scattered_[lane] > 0) noteLeaving(lane);
     const bool first = seen(p);
     if (first)
         endCameraFlight(lane, false);

@@ -221,8 +221,10 @@ void LaneTracer<N>::depart(Mask departing) {
     turn(departing, bits, u0.get(), u1.get());
     if (scene_.radiance) noteTurn(bits, before);
     Floats more;
+    for (int c = 0; c < N; ++c) gain_[c].set(departing, hn::Zero(lanesF));
     more.set(scene_.sun >= 0 ? takePrediction(departing) : hn::Zero(lanesF));
     play(departing, uniform(words[3]));
+    if (scene_.controlsFlights) foresee(departing);
     if (traced_.media.replaces())
         forEachLane(bits, [&](std::size_t i) {
             lanes_[i].phase = numberOf(i, lanes_[i].part), g_[i] = phaseOf(i).g;
@@ -296,7 +298,7 @@ void LaneTracer<N>::takeDirection(Mask departing) {
 template <int N>
 bool LaneTracer<N>::takeOff(std::size_t lane, float depth) {
     if (several_) return begin(lane, lanes_[lane].position, depth);
-    depth_[lane] = depth;
+    depth_[lane] = drawn_[lane] = depth;
     state_[lane] = Walking;
     return true;
 }
@@ -321,6 +323,7 @@ void LaneTracer<N>::flySeveralTimes(std::size_t lane, int more, float depth) {
     l.startSet = l.set, l.startPart = l.part, l.startFrom = pathOf(lane).from;
     for (std::size_t i = 0; i < 3; ++i) l.direction[i] = v_[i][lane];
     l.throughput = throughputOf(lane), l.chance = laneOf(chance_, lane);
+    l.gain = laneOf(gain_, lane);
     flyAgain(lane);
 }
 
@@ -346,6 +349,7 @@ void LaneTracer<N>::endExtra(std::size_t lane) {
     scatterIn(lane);
     for (std::size_t i = 0; i < 3; ++i) v_[i][lane] = l.direction[i];
     setLane(w_, lane, l.throughput), setLane(chance_, lane, l.chance);
+    setLane(gain_, lane, l.gain);
     --l.extraLeft;
     flyAgain(lane);
 }

@@ -115,6 +115,7 @@ void LaneScene::addCameraDepths() {
     cameraDepths = traced.options.cameraDepths;
     if (!cameraDepths) return;
     if (emission.empty()) points = thick ? pointsWhereThick : pointsWhereThin;
+    controlsFlights = radiance && thick && partCount == 1;
     Rgb scattering, extinction;
     for (std::size_t k = 0; k < partCount; ++k)
         scattering += parts[k].part->scattering(), extinction += parts[k].part->extinction();
@@ -186,6 +187,12 @@ void LaneScene::addRadiance() {
     radiance = chanceLight >= 0 ? traced.options.radiance : nullptr;
     if (!radiance) return;
     chanceUnit = radiance->unit();
+    const light::LightSet& lights = traced.scene.lights;
+    if (sun >= 0 && lights.group(sun) == lights.group(chanceLight))
+        sunPerUnit = Rgb::map(
+            [&](int c) { return chanceUnit[c] > 0 ? centre.weight[c] / chanceUnit[c] : 0.0f; });
+    if (!traced.needs.chromatic)
+        sunPerUnit = Rgb(sunPerUnit[0] > 0 ? centre.weight.mean() / chanceUnit.mean() : 0.0f);
     for (LanePart& part : parts) part.setLattice(part.cellsFromIndex, radiance->latticeFromWorld());
 }
 

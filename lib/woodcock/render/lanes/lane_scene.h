@@ -61,10 +61,14 @@ struct LaneScene {
     /// Decisions on camera rays are controlled as well: where rays see the environments, and carry
     /// more or less of their light by what is decided.
     bool controlsCameraFlights = false;
+    /// Flights are controlled as well, by how much light comes along them. That pays where a flight
+    /// is about as long as a cell of `radiance`, and costs where it is much longer.
+    bool controlsFlights = false;
     /// Radiance of which LaneTracer::chance_ has multiples: without a lattice, the environment's.
     /// And the light that its control variate counts to; -1: there is none.
     Rgb chanceUnit{};
     int chanceLight = -1;
+    Rgb sunPerUnit{};  ///< the irradiance of `centre`, in chanceUnit; 0 if another light counts
     /// Depths along camera rays; null: they are walked.
     const CameraDepths* cameraDepths = nullptr;
     Rgb cameraAlbedo;  ///< of all parts: sigma_s / sigma_t

@@ -28,6 +28,10 @@ inline constexpr float predictedTo = 8;
 inline constexpr float worthAFlight = 0.1f;
 inline constexpr float mostExtraFlights = 4;
 
+/// Of what is expected of the next event, a flight that collides brings this much more than one
+/// that goes on; see foresee(). Of 0, 0.33 and 0.5 this measured best.
+inline constexpr float gainOfNextEvent = 0.33f;
+
 /// Optical depths of the lanes' positions to the sun, as DepthGrid::Depth.
 template <int N>
 struct LaneTracer<N>::SunDepths {
@@ -247,6 +251,7 @@ F LaneTracer<N>::takePrediction(Mask departing) {
         const F expected = predicted_[c].get() * phase;
         prediction_[c].set(departing, prediction_[c].get() - expected);
         predicted_[c].set(departing, hn::Zero(lanesF));  // the next event need not predict
+        gain_[c].set(departing, expected * all(gainOfNextEvent * scene_.sunPerUnit[c]));
         most = hn::Max(most, expected);
     }
     const float flightsPerLight =

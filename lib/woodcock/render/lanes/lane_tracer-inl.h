@@ -164,7 +164,7 @@ private:
         std::uint8_t startSet = 0;
         std::size_t startPart = 0;
         std::array<float, 3> direction;
-        Spectrum<N> throughput, chance;
+        Spectrum<N> throughput, chance, gain;
     };
     static constexpr std::size_t none = ~std::size_t{0};
 
@@ -244,6 +244,9 @@ private:
     F expectedWith(int c, F more) const;
     float expectedToScatter(std::size_t lane, int c);
     void noteTurn(std::uint32_t turned, const F before[N]);
+    void foresee(Mask flying);
+    void noteFlight(Mask colliding);
+    void noteLeaving(std::size_t lane);
     F phaseOfNextEvent() const;
     void noteDecision(int c, Mask colliding, Mask scatters, F scattering, F null, F after, F phase);
 
@@ -308,9 +311,13 @@ private:
     // The direction to the sun, and its irradiance as a multiple of LaneScene::centre's. A lamp's
     // are those where the path has scattered last.
     Floats toSun_[3]{}, sunScale_{};
-    // The radiance that a path is expected to bring from far away: going anywhere, and by how much
-    // more along each axis. And the irradiance of the sun there.
-    Floats expected_[N]{}, expectedAhead_[N][3]{}, expectedSun_[N]{};
+    // The radiance that a path is expected to bring from far away: going anywhere, how that grows
+    // along each axis, and by how much more a path brings that goes along each. And the irradiance
+    // of the sun there.
+    Floats expected_[N]{}, expectedSlope_[N][3]{}, expectedAhead_[N][3]{}, expectedSun_[N]{};
+    // By how much more a path is expected to bring that collides than one that flies on; and the
+    // optical depth that was drawn for its flight. See foresee().
+    Floats gain_[N]{}, drawn_{};
     // Control variates: what chance has brought too much, as radiance; and what was predicted of
     // the next event, as throughput.
     Floats chance_[N]{}, prediction_[N]{}, predicted_[N]{};
