@@ -189,10 +189,10 @@ void LaneScene::addRadiance() {
     chanceUnit = radiance->unit();
     const light::LightSet& lights = traced.scene.lights;
     if (sun >= 0 && lights.group(sun) == lights.group(chanceLight))
-        sunPerUnit = Rgb::map(
-            [&](int c) { return chanceUnit[c] > 0 ? centre.weight[c] / chanceUnit[c] : 0.0f; });
-    if (!traced.needs.chromatic)
-        sunPerUnit = Rgb(sunPerUnit[0] > 0 ? centre.weight.mean() / chanceUnit.mean() : 0.0f);
+        sunPerUnit = Rgb::map([&](int c) {
+            if (!traced.needs.chromatic) return centre.weight.mean() / chanceUnit.mean();
+            return chanceUnit[c] > 0 ? centre.weight[c] / chanceUnit[c] : 0.0f;
+        });
     for (LanePart& part : parts) part.setLattice(part.cellsFromIndex, radiance->latticeFromWorld());
 }
 

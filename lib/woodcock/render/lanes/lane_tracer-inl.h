@@ -164,7 +164,8 @@ private:
         std::uint8_t startSet = 0;
         std::size_t startPart = 0;
         std::array<float, 3> direction;
-        Spectrum<N> throughput, chance, gain;
+        Spectrum<N> throughput, chance;
+        Spectrum<N> gain;  ///< of its own: it may not know the others, whose depths depend on its
     };
     static constexpr std::size_t none = ~std::size_t{0};
 
