@@ -165,7 +165,7 @@ private:
         std::size_t startPart = 0;
         std::array<float, 3> direction;
         Spectrum<N> throughput, chance;
-        Spectrum<N> gain;  ///< of its own: it may not know the others, whose depths depend on its
+        Spectrum<N> gain;  ///< as before the other flights, whose depths depend on its own
     };
     static constexpr std::size_t none = ~std::size_t{0};
 
