@@ -351,7 +351,7 @@ void compare(Lab& lab, const std::vector<Subject>& subjects) {
         Case used{.name = name + ", traced in lanes", .expected = 1};
         used.measured = inLanes(scene, picture);
         lab.add(used);
-        const int seeds = static_cast<int>(lab.pick(600, 40000) * subject.effort);
+        const int seeds = static_cast<int>(lab.pick(600, 15000) * subject.effort);
         const SmallPictureMeans lanes = meansOf(scene, picture, lab.seed(name), seeds);
         picture.lanes = false;
         const SmallPictureMeans each = meansOf(scene, picture, lab.seed(name + " each"), seeds);
