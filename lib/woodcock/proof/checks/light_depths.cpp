@@ -101,17 +101,18 @@ constexpr Subject subjects[]{{"of fog", 1, 0.5, false, 1},
                              {"of a thick cloud by lamps", 20, 0.85, false, 9, true}};
 
 /// Fog under a delta sun and a disc, or under a spot and a sphere; with surfaces above a floor and
-/// around a glass ball.
+/// around a glass ball. The disc is wide there: paths meet it through the glass by chance alone.
 std::string foggyScene(const Subject& subject, double density, double shift) {
     const char* const solid =
         "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.4\n"
         "[[surface]]\nmaterial = \"glass\"\n"
         "sphere = { centre = [0.4, 0.5, 0.5], radius = 0.4 }\n"
         "[[surface]]\nplane = {}\ntransform = { translate = [0, -1, 0] }\n";
-    const char* const suns =
+    const std::string suns = fmt::format(
         "[[light]]\ntype = \"sun\"\ndirection = [0.5, -1, -0.3]\nirradiance = [2, 1, 1]\n"
         "[[light]]\ntype = \"sun\"\ndirection = [-0.2, -1, 0.3]\nirradiance = [0.5, 1, 2]\n"
-        "angular_diameter = 0.5\n";
+        "angular_diameter = {}\n",
+        subject.surfaces ? 10 : 0.5);
     const char* const lamps =
         "[[light]]\ntype = \"spot\"\nposition = [-1, 3, 1]\nlook_at = [0, 0, 0]\n"
         "intensity = [20, 10, 10]\ncone = 70\n"
