@@ -170,13 +170,14 @@ RgbEstimate turnedAside(const Lab& lab, const std::string& name, const Volume& v
         {{part}},
         light::LightSet({light::Sun(in, Rgb(1.0f), 0, false)}),
         camera::Camera::orthographic(v.centre() + out * size, v.centre(), up, size)};
-    constexpr int seeds = 32;
+    const int seeds = lab.pick(32, 64);
+    constexpr int firstSeeds = 16;
     Picture picture{24, 24, 1, hashOf(lab.seed(name), 0)};
-    const RgbEstimate first = meanOverSeeds(scene, picture, seeds);
+    const RgbEstimate first = meanOverSeeds(scene, picture, firstSeeds);
     double samples = 1;
     for (const Estimate& e : first) {
         const double ratio = 1.3 * e.error / (relative * e.mean);
-        samples = std::max(samples, ratio * ratio);
+        samples = std::max(samples, ratio * ratio * firstSeeds / seeds);
     }
     picture.samples = static_cast<int>(std::min(samples, 1e4));
     picture.seed = hashOf(lab.seed(name), 1);
