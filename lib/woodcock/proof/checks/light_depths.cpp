@@ -101,12 +101,16 @@ constexpr Subject subjects[]{{"of fog", 1, 0.5, false, 1},
                              {"of a thick cloud by lamps", 20, 0.85, false, 9, true}};
 
 /// Fog under a delta sun and a disc, or under a spot and a sphere; with surfaces above a floor and
-/// around a glass ball. The disc is wide there: paths meet it through the glass by chance alone.
+/// around a ball of glass and a bubble. The disc is wide there: paths meet it through the glass by
+/// chance alone.
 std::string foggyScene(const Subject& subject, double density, double shift) {
     const char* const solid =
         "[[material]]\nname = \"glass\"\ntype = \"dielectric\"\nior = 1.4\n"
         "[[surface]]\nmaterial = \"glass\"\n"
         "sphere = { centre = [0.4, 0.5, 0.5], radius = 0.4 }\n"
+        "[[material]]\nname = \"skin\"\ntype = \"interface\"\n"
+        "[[surface]]\nmaterial = \"skin\"\n"
+        "sphere = { centre = [-0.5, 0.5, 0.2], radius = 0.5 }\n"
         "[[surface]]\nplane = {}\ntransform = { translate = [0, -1, 0] }\n";
     const std::string suns = fmt::format(
         "[[light]]\ntype = \"sun\"\ndirection = [0.5, -1, -0.3]\nirradiance = [2, 1, 1]\n"
