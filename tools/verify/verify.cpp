@@ -125,7 +125,7 @@ CLI::App& addTo(CLI::App& app, const std::string&) {
                       "Check to two digits, in four minutes on two cores (the default)");
     command->add_flag(
         "--full", options->full,
-        "Check the tables of slabs to three digits, which takes an hour or more on two cores");
+        "Check the tables of slabs to three digits, which takes one to two hours on two cores");
     addChoice(*command, "--quality", options->quality, {"reference", "final"},
               "Which quality to check. final samples adaptively. The qualities that are not here "
               "are biased:")
