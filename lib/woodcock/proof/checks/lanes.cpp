@@ -264,7 +264,7 @@ std::vector<Subject> glowingSubjects() {
          ball + "transform = { translate = [0.4, -0.2, 0.1] }\n" + mediumOf(3, 0.9, "g = 0.3") +
              hot + lights},
         {"that glows and is thick",
-         ball + mediumOf(39, 1, "g = 0.7") + "emission = [5, 4, 3]\n" + lights, 0.3},
+         ball + mediumOf(39, 1, "g = 0.7") + "emission = [5, 4, 3]\n" + lights, 0.4},
         {"that glows in no other light", smoke + hot + air + hidden, 4},
         {"that glows, chromatic", ball + coloured + hot + lights},
         {"that glows, of two parts", smoke + bright + ball + turned + coloured + hot + lights},
