@@ -120,7 +120,8 @@ defect "similar media absorb less under an albedo grid" 'SimilarMedium.*' "" \
 
 defect "lanes draw the same numbers again" 'Lane*' "lanes and paths one by one" \
     $lanes/lane_tracer-inl.h \
-    'count_.set(hn::RebindMask(lanesU, where), count + hn::Set(lanesU, 1));' ''
+    'count_.set(hn::RebindMask(lanesU, where), count + hn::Set(lanesU, 1));' \
+    'count_.set(hn::RebindMask(lanesU, where), count);'
 
 defect "lanes come to the face behind" 'Lane*' "lanes and paths one by one" \
     $lanes/lane_walk-inl.h \
