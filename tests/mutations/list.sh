@@ -142,7 +142,8 @@ defect "lanes' chance is what is left of it" 'Lanes.*' "lanes and paths one by o
 
 defect "lanes' decisions are expected to lose what goes on" 'Lanes.*' "lanes and paths one by one" \
     $lanes/lane_expected-inl.h \
-    '(scattering * scattered + null * others)' '(scattering * scattered)'
+    '(scattering * scattered + null * others)' \
+    '(scattering * scattered + null * (others - others))'
 
 defect "lanes that leave are expected to have collided" '' "lanes and paths one by one" \
     $lanes/lane_expected-inl.h \
